@@ -82,7 +82,7 @@ class Stratum:
 LATE = np.log10(0.6), np.log10(1.05)
 """Amplitudes at which the stick zone of a translation to and fro is small."""
 NEAR = {"velocity": (-3.0, 1.0), "amplitude": (-1.3, 0.7)}
-"""Where partial slip decides."""
+"""Range where partial slip decides the friction, as decimal logarithms."""
 CALIBRATION_SEED = 3
 CALIBRATION = (
     Stratum("lateral, nu = 0", 0.14, ("transverse",)),
@@ -140,7 +140,7 @@ PHASES = (0, 10, 30, 45, 60, 90, 120)
 SLOW = {"velocity": (-4.5, -1.0), "tolerances": (1e-2, 5e-3, 2e-3)}
 STRAIGHT = ("transverse", "transverse", "zigzag", *LOOPS)
 MOVING = {"velocity": (-2.0, 0.5), "amplitude": (-0.5, 1.0), "tolerances": TOLERANCES[:2]}
-"""Where a force moves most contacts, and a spring changes the friction."""
+"""Range where a force moves most contacts, and a spring changes the friction."""
 COUPLES = (
     "phase=0;phase=180",
     "phase=0;phase=180",
@@ -157,7 +157,7 @@ BORE_FULL_SLIDING = {
     "velocity": tuple(np.log10((0.05, 0.4))),
     "amplitude": tuple(np.log10((0.9, 3.0))),
 }
-"""The same for rotations, whose centre slides last."""
+"""Neighbourhood of full sliding of a rotation, whose centre slides last."""
 STIFFNESS = 1.5
 """Stiffness of a sphere's contact at nu = 0."""
 

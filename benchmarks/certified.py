@@ -124,7 +124,7 @@ def judged(dataset, points, truth):
 
 
 def named(dataset):
-    """What a line is about."""
+    """First columns of a line: map and error."""
     over = dataset["poisson"]
     ratio = ", Poisson's ratio {:g} to {:g}".format(*over.values[[0, -1]]) if over.ndim else ""
     return {"map": dataset.motion + ratio, "error": f"{dataset.error:g}"}

@@ -123,7 +123,7 @@ def damage(path, rng):
 
 
 def round_of(project, fault, reference, seconds, rng):
-    """What was found after one fault: a list of sentences, empty if all is as it was."""
+    """Findings after one fault: a list of sentences, empty if all is as it was."""
     chosen = rng.choice([1.0, 0.5, 0.2])
     for path in project.files().values():
         if rng.random() < chosen:

@@ -42,7 +42,7 @@ def left_out(dataset):
 
 
 def places(dataset, points, rng):
-    """Where -> (velocities, amplitudes), random, on the map and beyond each of its sides."""
+    """Random (velocities, amplitudes) by region: on the map, and beyond each of its sides."""
     v, a = dataset["velocity"].values, dataset["amplitude"].values
     first, last, top, few = np.log10(v[0]), np.log10(v[-1]), a[-1], points // 4
     spread = rng.uniform

@@ -28,7 +28,7 @@ from microslip.datasets import certified_map
 
 
 def questions(dataset, count, chunk):
-    """What is asked, by the names of the arguments, in chunks."""
+    """Random requests by the names of the arguments, in chunks."""
     across = "force" if certified_map.is_of_drift(dataset) else "velocity"
     draw = dask.array.random.default_rng(3)
     return {

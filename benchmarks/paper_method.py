@@ -38,7 +38,7 @@ POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Motion and amplitude."""
 VELOCITY = 0.005
 TOLERANCE = 1e-3
-"""Of the certified point, absolute, on the friction."""
+"""Tolerance of the certified point, absolute, on the friction."""
 
 
 def timed(function):

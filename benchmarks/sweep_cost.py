@@ -1,4 +1,4 @@
-"""What the points of a configuration cost, in one process on one core, compiled beforehand.
+"""Cost of the points of a configuration, in one process on one core, compiled beforehand.
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 

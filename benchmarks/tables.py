@@ -1,4 +1,4 @@
-"""What benchmarks share: lines of an earlier run, tables, and where they are written to."""
+"""Helpers of benchmarks: lines of an earlier run, tables, and their output files."""
 
 import json
 from pathlib import Path

@@ -50,11 +50,11 @@ def unless_imposed(
 
 
 def closed_form(problem: Problem, tolerance: float) -> tuple | None:
-    """What is known where nothing has to be computed, else None.
+    """The result of a closed form, or None where no closed form applies.
 
-    The steady state of a motion that does not oscillate, where every point slips along its rigid
-    velocity; the limit of vanishing velocity; motion along one line, nu = 0; and sliding so fast
-    that the bracket of bounds.py is within the tolerance.
+    Closed forms cover the steady state of a motion that does not oscillate, where every point slips
+    along its rigid velocity; the limit of vanishing velocity; motion along one line, nu = 0; and
+    sliding so fast that the bracket of bounds.py is within the tolerance.
 
     Parameters
     ----------

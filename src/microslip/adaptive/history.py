@@ -1,4 +1,4 @@
-"""What happens inside: force histories from a given start, and steady traction fields."""
+"""Force histories from a given start, and steady traction fields."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LONGEST_TRAVEL = 1e6
 LONGEST_PHASE = 1e12
 """Angle that a steady motion turns by, u_lim / a; floats tell its steps apart."""
 MOST_STEPS = 10 * LARGEST["steps"]
-"""Of a history, over all of its periods."""
+"""Largest number of steps of a history, over all of its periods."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +86,9 @@ def history(
         "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
         (rotational slip everywhere).
     periods : int
-        Of an oscillation.
+        Number of periods of an oscillation.
     travel : float
-        Of a steady motion, in u_lim.
+        Travel of a steady motion, in u_lim.
 
     Returns
     -------

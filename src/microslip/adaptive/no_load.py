@@ -1,4 +1,4 @@
-"""Where friction changes its sign: the velocity of a self-propelled motion without a load.
+"""The no-load velocity of a self-propelled motion, where its friction changes sign.
 
 Friction never falls with the velocity, so that every velocity at which its sign is certain bounds
 the no-load velocity.

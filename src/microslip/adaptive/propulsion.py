@@ -127,12 +127,12 @@ def propulsion(
 
 
 class Known(NamedTuple):
-    """What is known at a velocity.
+    """The value of a quantity at a velocity, with its error estimate.
 
     Attributes
     ----------
     value, error : float
-        The number, and the largest error that it may have.
+        The value, and its estimated error.
     reason : str
         Why it is not within the tolerance, else empty.
     """
@@ -214,7 +214,7 @@ def _with_power(run: Run, speed: float) -> Run:
 
 
 def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """The same runs, each done once: what one quantity needs is there for the other."""
+    """A cache of `run` by resolution, so that two quantities share their runs."""
     done = {}
 
     def again(resolution: Resolution, guess: Run | None) -> Run:

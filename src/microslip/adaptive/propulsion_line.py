@@ -9,11 +9,11 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PropulsionLine:
-    """What a motion drives, from stall to no load; dimensionless but for the time.
+    """Load and velocity of a self-propelled motion, from stall to no load.
 
-    Forces are over mu times the mean normal load, velocities in the unit of the motion's own
-    velocity, powers over mu times the mean normal load, u_lim and omega.  Every error is the
-    largest that the number before it may have, by estimate.
+    All values except the time are dimensionless.  Forces are divided by mu times the mean normal
+    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the unit of
+    the motion's own velocity.  Every error is the estimated error of the number before it.
 
     Attributes
     ----------

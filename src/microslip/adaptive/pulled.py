@@ -43,20 +43,20 @@ from microslip.solver.stick_edge import found_focus
 from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
-"""Of the velocity of a steady motion, over 1 and the velocity."""
+"""Stated error of the velocity of a steady motion, over 1 and the velocity."""
 COARSE_TOLERANCE = 1e-2
-"""Of the runs that tell about which velocity a force belongs to."""
+"""Tolerance of the coarse runs that locate the velocity under a force."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
-"""A contact of which only the stiffness is of interest."""
+"""Resolution of a contact that is built for its stiffness only."""
 FIRST_VELOCITY = 0.1
-"""For which these are planned."""
+"""Velocity for which the coarse runs are planned."""
 SLOWEST_SHARE = 0.3
-"""Of the velocity of the contact that is moved: one that the force makes slower is not known so
-coarsely."""
+"""Least velocity of the coarse run under the force, over the velocity from the friction of coarse
+runs; a slower run under the force is not resolved and is not used."""
 SCALE_SHARE = 0.9
-"""Of the velocity so found that the tolerance is taken over."""
+"""Share of the coarse velocity that the relative tolerance refers to."""
 ROUGH_TOLERANCE = 3e-2
-"""Of a static limit that is far from the force."""
+"""Largest accepted error of a static limit that is far from the force."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of a static limit that a force is close to; the SI side asks for the same,
 so that both agree on what is below the threshold."""

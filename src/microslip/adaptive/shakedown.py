@@ -47,12 +47,12 @@ from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
 from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
-"""Of the displacement, in u_lim, unless told otherwise."""
+"""Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
 """Tolerance of a run over that of a periodic state: what its steps leave unsolved adds up over all
 periods, up to some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""For which the steps are planned: near the static limit there would be none."""
+"""Velocity for which the steps are planned: at the static limit there would be none."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -105,7 +105,7 @@ def run_trial(
 
 
 def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
-    """What a backward Euler step costs.
+    """Measure the cost of a backward Euler step.
 
     The path is half a period from full slip, transverse for rings, else bore, each step solved to
     1e-6 of mu F_z.  Times are the median of three marches, after one that compiles.
@@ -115,7 +115,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
     model : str
         Name in models.registry.MODELS.
     cells, angles, steps : int
-        Of the model, and of half a period.
+        Rings and angular points of the model, and steps in half a period.
     poisson : float
         Poisson's ratio.
 

@@ -1,4 +1,4 @@
-"""Where the contact sticks in a period: shares of its area, right and left, and single moments."""
+"""Stick area over a period: shares of the contact area, right and left, and single moments."""
 
 from __future__ import annotations
 

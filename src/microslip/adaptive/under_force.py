@@ -34,9 +34,9 @@ SLOWEST, FASTEST = 1e-6, 1e6
 """Drift in a radian at which the search for a velocity begins, what it is multiplied by from one
 run to the next, and where it ends."""
 FLATTEST = 1e-6
-"""Least rise of friction that a pair of runs may tell, over the relative rise of the velocity."""
+"""Smallest slope of friction taken from a pair of runs, over the relative rise of the velocity."""
 HALVINGS = 2
-"""Of the last such interval, by its logarithm."""
+"""Halvings of the last interval of velocities, on a logarithmic scale."""
 
 
 def drive_of(problem: Problem) -> Drive:

@@ -1,7 +1,7 @@
-"""What it takes to vibrate a contact: mean work of the oscillation, with an error estimate.
+"""Power needed to vibrate a contact: mean work of the oscillation, with an error estimate.
 
-What drags the contact forward does the work mu_macro v besides, and elastic energy returns, so that
-both together are what friction dissipates.
+The forward drive does the work mu_macro v in addition.  Elastic energy is returned, so that
+friction dissipates the sum of both.
 """
 
 from __future__ import annotations

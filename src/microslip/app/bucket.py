@@ -9,10 +9,10 @@ from microslip.sweeps.sealed_files import write_atomically
 
 
 class Bucket:
-    """What `sweeps.batch_plans.Folder` is, for results that lie in a storage.
+    """A `sweeps.batch_plans.Folder` for results in a remote storage.
 
-    What was planned stays so, whether or not it was made: to ask for hundreds of batches one by one
-    would take longer than planning.
+    Planned batches stay as planned, whether or not they were made: to check hundreds of batches one
+    by one would take longer than planning.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Bucket:
         self.object_of = object_of
 
     def read(self, file: str) -> bytes:
-        """What a file holds, nothing if it is not there."""
+        """Content of a file, empty if it does not exist."""
         stored = self.object_of(file)
         if not stored.exists():
             return b""

@@ -259,7 +259,7 @@ def _as_given(options: argparse.Namespace, argument: str) -> tuple[str, object]:
 
 
 def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:
-    """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
+    """The result for the options; raises InputError and CacheError as microslip.solve_stored."""
     typed = {name: getattr(options, name, None) for name in REALS}
     given = {name: text for name, text in typed.items() if text is not None}
     numbers: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""What a dry run says about the work: how many points there are to solve, and about how long."""
+"""Output of a dry run: the number of points to solve, and an estimate of the time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ START = 2.3
 COMPILE = 50.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
-"""What the log of a batch says about the time that it took."""
+"""Line in the log of a batch with the time that it took."""
 
 
 def summary(

@@ -1,4 +1,4 @@
-"""What every job of the workflow has: a log, and one clear message on failure."""
+"""The log of a job of the workflow, and one clear message on failure."""
 
 import errno
 import gc
@@ -95,9 +95,9 @@ def plain_words(folder: str | Path) -> Callable[[logging.LogRecord], bool]:
 
 
 def closing_lines(folder: str | Path, names: Iterable[str]) -> list[str]:
-    """What the logs of collecting say about datasets: a list of lines; names: of the datasets.
+    """Lines about datasets from the logs of collecting them; names: those of the datasets.
 
-    How many points each has, and which of them did not converge.
+    The lines give the number of points of each, and the points that did not converge.
     """
     paths = (Path(folder, "logs", "collect", f"{name}.log") for name in names)
     lines = [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]

@@ -1,6 +1,6 @@
-"""What a configuration leads to: batches of requests, datasets, figures, and what each is made of.
+"""Plan of a configuration: batches of requests, datasets, figures, and the inputs of each.
 
-The workflow's rules ask this; nothing here knows Snakemake. Importing it is cheap, since the
+The workflow's rules use it; nothing here depends on Snakemake. Importing it is cheap, since the
 workflow is parsed by every job.
 """
 
@@ -25,11 +25,11 @@ DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 ROUND_CODE = ("sweeps/map_rounds.py",)
-"""What says which points of a certified map are next."""
+"""Modules that choose the next points of a certified map."""
 
 
 class Plan:
-    """What a checked configuration leads to. Paths are inside the folder of results.
+    """The plan of a checked configuration. Paths are inside the folder of results.
 
     Attributes
     ----------
@@ -155,7 +155,7 @@ class Plan:
         return [request for cut in self.batches_in(group).values() for request in cut]
 
     def points_of(self, group: str) -> str:
-        """What a group asks for, as a short text, however it is cut into batches."""
+        """Fingerprint of the requests of a group, independent of the cut into batches."""
         growing = self._growing(group)
         requests = self.requests_in(group)
         if growing is None or not requests:
@@ -249,7 +249,7 @@ class Plan:
         return canonical_json(self.configuration.of_sweep(dataset))
 
     def fingerprint_of(self, file: str) -> str:
-        """What a file in `made_files` is made of, as a short text: settings, code, points."""
+        """Fingerprint of the settings, code and points of a file in `made_files`."""
         path, code = PurePosixPath(file), self.code_of(file)
         names: Sequence[str]
         groups: Sequence[str]

@@ -1,4 +1,4 @@
-"""What `microslip point` prints of an answer."""
+"""Text that `microslip point` prints for a Result."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 
 RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
-"""What is said beside a number."""
+"""Explanation next to a number."""
 OWN_EQUATIONS = (
     "an approximation: the error is that of its own equations, not of what they leave out"
 )

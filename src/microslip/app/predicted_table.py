@@ -1,4 +1,4 @@
-"""What `microslip predict --table` asks and says: a contact for every line of a CSV file."""
+"""Input and output of `microslip predict --table`: one contact for each line of a CSV file."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Answered:
     lines : list of int
         Numbers of the lines of the file that they come from.
     found : list of Prediction or NoPrediction
-        Of each line.
+        Prediction of each line.
     """
 
     motion: str
@@ -61,7 +61,7 @@ class Answered:
 
     @property
     def errors(self) -> list[str]:
-        """What is wrong with lines that have no prediction."""
+        """Error messages of the lines without a prediction."""
         pairs = zip(self.lines, self.found, strict=True)
         texts = ((line, one.error) for line, one in pairs if isinstance(one, NoPrediction))
         return [
@@ -139,7 +139,7 @@ def ask(
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
-    """What is wrong with a line, with the names of columns and options in place of arguments.
+    """Error message of a line, with the names of columns and options in place of arguments.
 
     error: InputError, without a value where the cell is empty or has no column; or a text.
     """

@@ -30,7 +30,7 @@ TARGETS = {
     "explorer": "one page that shows what is behind every point of the maps",
     "explorer_all": "the same page with every other sweep of the configuration",
 }
-"""What can be made by name: the rules of the workflow without wildcards that people ask for."""
+"""Targets by name: the rules of the workflow without wildcards that users need."""
 RULES = ("warm_up", "warm_up_angles", "warm_up_pulled")
 """Others that Snakemake makes by name."""
 
@@ -94,8 +94,8 @@ def main(arguments: list[str]) -> int:
 def _hang_up(running: subprocess.Popen) -> None:
     """End Snakemake and its jobs, the terminal of which was closed.
 
-    Of a terminal's processes only the first one is told, and a shell tells the whole group; where
-    this process is the first one, or started by the shell, the group is its own.
+    A terminal sends the signal to its first process only, a shell to the whole group.  If this
+    process is the first one, or was started by the shell, the group is its own.
     """
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # its own is to come
     if os.getpgrp() == os.getpid():

@@ -129,7 +129,7 @@ def _may_be_made(target: str) -> bool:
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """What Snakemake's parser makes of the arguments; None where it says something by itself."""
+    """The arguments parsed by Snakemake; None where Snakemake prints a message by itself."""
     from snakemake.cli import parse_args
 
     said = io.StringIO()

@@ -20,7 +20,7 @@ CANNOT_WRITE = 74
 CLOSED_PIPE = 141
 """Exit code where nobody reads the answer any more: as of a program that SIGPIPE ends."""
 OF_SIGNAL = 128
-"""What shells add to the number of the signal that ended a program."""
+"""Exit code of a program ended by a signal, less the number of the signal, as in shells."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 GRACE = 0.4
@@ -157,7 +157,7 @@ class _Stop:
             signal.signal(number, self._interrupt)
 
     def _interrupt(self, number: int, frame: object) -> None:
-        """What Python calls in the main thread, as soon as it can."""
+        """Signal handler, which Python calls in the main thread as soon as it can."""
         if self.signal is None:  # a second one would end the tidying up
             self.signal = signal.Signals(number)
             raise KeyboardInterrupt

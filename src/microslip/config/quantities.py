@@ -16,7 +16,7 @@ class Quantity:
     Attributes
     ----------
     name : str
-        Of the coordinate or the variable in a dataset.
+        Name of the coordinate or the variable in a dataset.
     text : str
         In words, for an axis.
     unit : str
@@ -107,4 +107,4 @@ DRIVES = {
         "damping of what is pulled, over mu F_z / (u_lim omega)",
     ),
 }
-"""What pulls the contact."""
+"""Parameters of the drive of a contact."""

@@ -1,4 +1,4 @@
-"""What a checked configuration is: sweeps, studies and single runs as records.
+"""Records of a checked configuration: sweeps, studies and single runs.
 
 `config` makes them from a file. Imports nothing heavy, since the workflow reads it whenever it is
 parsed.
@@ -63,7 +63,7 @@ class Sweep:
 
     @property
     def drawn_over(self) -> str:
-        """What the figure of a group shows friction over."""
+        """Abscissa of friction in the figure of a group."""
         if self.spans_a_map:
             return "velocity and amplitude"
         return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
@@ -128,7 +128,7 @@ class StudyPoint:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What is asked to see what accuracy costs."""
+    """Settings of the study of accuracy and cost."""
 
     methods: tuple
     points: dict  # name -> StudyPoint
@@ -141,7 +141,7 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class Stability:
-    """What is asked to see where methods fail."""
+    """Settings of the study of the stability of methods."""
 
     methods: tuple
     tolerance: float
@@ -150,7 +150,7 @@ class Stability:
 
 @dataclass(frozen=True)
 class Claims:
-    """What is asked to judge the statements of the paper. All numbers are dimensionless."""
+    """Settings of the study of the paper's statements. All numbers are dimensionless."""
 
     tolerance: float
     velocity: tuple
@@ -172,7 +172,7 @@ class SelfPropelledMotion:
 
 @dataclass(frozen=True)
 class Propulsion:
-    """What is asked to see what motions drive."""
+    """Settings of the study of self-propelled motions."""
 
     tolerance: float
     points: int

@@ -63,7 +63,7 @@ class Descent(NamedTuple):
     sums: np.ndarray
 
     def own(self) -> Descent:
-        """The same with scratch of its own."""
+        """A copy of this solver with its own scratch arrays."""
         return self._replace(length=self.length.copy(), sums=np.empty_like(self.sums))
 
     @staticmethod

@@ -38,7 +38,7 @@ from microslip.foundation.compiled import kernel
 
 
 class Loading(NamedTuple):
-    """What is imposed on the contacts of a body along a path, and the integrator.
+    """The motion and the friction bounds imposed on contacts along a path, and the integrator.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Loading(NamedTuple):
 
 
 class Trace(NamedTuple):
-    """What a march leaves.
+    """The result of a march: final state, forces and effort.
 
     Attributes
     ----------
@@ -73,9 +73,9 @@ class Trace(NamedTuple):
     body : np.ndarray, shape (1 + steps, 2)
         x and x' of the body, 0 without one.
     residual : float
-        Sum over the stages, a force over mu F_z.
+        Residual force over mu F_z, summed over the stages.
     iterations : int
-        Of the step solver.
+        Iterations of the step solver.
     broken : bool
         Whether it was interrupted, which makes the rest worthless.
     """
@@ -113,7 +113,7 @@ def march(
     guess : np.ndarray
         Trace.fields of a march from a start near by, or of shape (0, ...).
     tolerance : float
-        Of every stage, a force over mu F_z.
+        Tolerance of every stage, a force over mu F_z.
 
     Returns
     -------

@@ -55,7 +55,7 @@ class Matrices(NamedTuple):
     blocks: np.ndarray
 
     def own(self) -> Matrices:
-        """The same: it has no scratch."""
+        """Return the object itself, which has no scratch arrays."""
         return self
 
     @staticmethod

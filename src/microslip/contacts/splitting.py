@@ -63,7 +63,7 @@ class Resolvent(NamedTuple):
     count: float  # type: ignore[assignment]  # hides a method of tuples that nobody needs
 
     def own(self) -> Resolvent:
-        """The same: it has no scratch."""
+        """Return the object itself, which has no scratch arrays."""
         return self
 
     @staticmethod

@@ -57,7 +57,7 @@ class Balance(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """What the solver of a step changes.
+    """The arrays that the step solver changes.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Fields(NamedTuple):
     slip : np.ndarray, field
         Slip.
     scratch : tuple of np.ndarray, field
-        Three.
+        Three arrays for intermediate results.
     """
 
     y: np.ndarray

@@ -41,7 +41,7 @@ VELOCITY_VARIABLES = {
     "velocity": (float, "mean forward velocity"),
     "velocity_error": (float, "estimated error of velocity"),
 }
-"""Of a sweep under a force, where mu_macro is that force."""
+"""Variables of a sweep under a force, where mu_macro is that force."""
 TORQUE = "torque over its value at velocity 0"
 TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
@@ -109,8 +109,10 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
 
 
 def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
-    """What Poisson's ratio changes: mu_macro less that at the smallest one, and the errors of both,
-    one ratio at a time."""
+    """Add the change of mu_macro from the smallest Poisson's ratio, and the sum of both errors.
+
+    One ratio is written at a time.
+    """
     file.set_auto_mask(False)
     for name, (source, sign, long_name) in CHANGES.items():
         _create(file, name, float, long_name, dims, box)

@@ -24,7 +24,7 @@ ZONE = replace(
 
 
 def formulas_under(motion: str, name: str) -> dict:
-    """What theory says about a motion under the pressure of this name: ClosedForms by name."""
+    """Closed forms of a motion under the pressure of this name: dict of ClosedForm by name."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     if motion == "continuous-bore" and pressure.is_round:
         return _steady(pressure, of_sphere)

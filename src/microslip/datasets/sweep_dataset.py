@@ -40,7 +40,7 @@ def write_sweep(
     Parameters
     ----------
     path : str or path
-        Of the file.
+        Path of the file.
     sweep : records.Sweep
         Whose dataset it is.
     points : iterable of dict
@@ -49,7 +49,7 @@ def write_sweep(
     histories : list of dict
         Records in the order of batches.history_requests.
     settings : dict
-        Of the configuration that led here, kept as provenance.
+        Settings of the configuration, stored as provenance.
 
     Raises
     ------

@@ -16,8 +16,8 @@ CURVE_POINTS = 241
 
 
 def formulas(motion: str, pressure: str = "hertz") -> dict:
-    """What theory says about a motion under a pressure, by the solver's names: a dict of
-    catalogue.ClosedForm by name, {} if it says nothing."""
+    """Closed forms of a motion under a pressure, both by the solver's names: a dict of
+    catalogue.ClosedForm by name, empty if there are none."""
     if pressure == "hertz":
         return catalogue.FORMS.get(motion, {})
     from microslip.datasets.pressure_limits import formulas_under  # it takes a while to load
@@ -26,7 +26,7 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Those that hold for a records.Sweep: what is said of a velocity holds where one moves."""
+    """Closed forms that are valid for a records.Sweep; under a drive those of the amplitude."""
     if sweep.contacts is not None:
         return {}  # they are of one contact
     found = formulas(*solver_names(sweep))
@@ -36,7 +36,7 @@ def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
 
 
 def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Those of the velocity under a force, where one pulls."""
+    """Closed forms of the velocity under a force, for a sweep over forces."""
     motion, pressure = solver_names(sweep)
     form = catalogue.DRIFT_FORMS.get(motion)
     if sweep.contacts is not None:
@@ -64,10 +64,10 @@ def variables(sweep: Sweep) -> dict:
 
 
 def curves(sweep: Sweep) -> dict:
-    """The same on axes fine enough to draw, by `velocity_curves` and `amplitude_curves`.
+    """Limits on axes fine enough to draw, in the groups `velocity_curves` and `amplitude_curves`.
 
-    Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or
-    `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
+    Every limit has a variable `<name>_curve`, on the fine axis `amplitude_curve` or
+    `velocity_curve`.  A limit that depends on both is given at the largest amplitude.
     """
     found: dict[str, dict] = {}
     for name, form in _forms(sweep).items():

@@ -45,9 +45,9 @@ class Refined:
     Attributes
     ----------
     value : Estimate
-        The quantity asked for, extrapolated.
+        The requested quantity, extrapolated.
     torque : Estimate
-        Likewise.
+        The torque, extrapolated.
     order : float
         Observed order of convergence, NaN where it is not known.
     finest : discretise.Resolution

@@ -1,1 +1,1 @@
-"""What every room stands on: bad input, names with numbers, compiled functions, sources."""
+"""Common base of all packages: bad input, names with numbers, compiled functions, sources."""

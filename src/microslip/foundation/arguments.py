@@ -9,10 +9,10 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
-a test keeps them as in the schema of configurations."""
+"""Largest allowed values: larger ones are typing errors, or exceed the memory or range of floats.
+A test compares them with the schema of configurations."""
 LARGEST_BODY = 1e6
-"""Likewise of the stiffness, mass and damping of what is pulled, in working units."""
+"""Largest allowed stiffness, mass and damping of a drive, in working units."""
 SMALLEST_STIFFNESS = 1e-9
 """Smallest stiffness of a spring, in working units: a softer one is stretched by more than 1e9
 u_lim, of which rounding leaves no more than 1e-7 u_lim; it pulls with a constant force."""

@@ -25,7 +25,7 @@ DECIMALS = (".", ",")
 PURE = {"", "1", "-"}
 """Units that say that there is none."""
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
-"""What spreadsheets write into a cell without a value, such as #N/A and #DIV/0!."""
+"""Error texts of spreadsheets in a cell without a value, such as #N/A and #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
 """A number with points between thousands, or with three decimals."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)

@@ -35,7 +35,7 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """The same about another argument, and another value unless that is None."""
+        """A copy about another argument, and with another value unless that is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 

@@ -1,4 +1,4 @@
-"""Where compiled code is kept, for functions that compiled.py compiles.
+"""Folders for the compiled code of functions that compiled.py compiles.
 
 Numba looks at the date and size of a function's own file to see if its code on disk is still good.
 What the function calls or takes from another file may have changed all the same.  So the code is
@@ -21,7 +21,7 @@ from platformdirs import user_cache_path
 from microslip.foundation import source_digest
 
 FOLDER_NAME = "compiled-"
-"""What the names of these folders begin with."""
+"""Prefix of the names of these folders."""
 
 
 @contextmanager
@@ -62,7 +62,7 @@ class BySources:
         return str(folder() / self.function.__module__)
 
     def get_source_stamp(self) -> str:
-        """The same whenever it is asked: the folder changes with the sources."""
+        """A constant stamp, since the folder itself changes with the sources."""
         return ""
 
     def get_disambiguator(self) -> str:

@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 CPU_LIST = Path("/proc/cpuinfo")
-"""Where Linux describes the processors."""
+"""File in which Linux describes the processors."""
 
 
 @functools.cache

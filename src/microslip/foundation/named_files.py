@@ -21,7 +21,7 @@ from microslip.foundation.errors import InputError
 
 PREFIX = "file:"
 GRID = "cells"
-"""What the values of a grid are unless the name says something else."""
+"""Default meaning of the values of a grid, see pressures.grid.READINGS."""
 DIGITS = 16
 MOST_BYTES = 100_000_000
 OPTIONS = re.compile(r"(?:^|,)(grid|sha256|decimal|encoding)=([^,]*)$")
@@ -35,14 +35,14 @@ _PLACES: dict[str, Path] = {}
 
 @dataclass(frozen=True)
 class NamedFile:
-    """What a name says of a file.
+    """A file as given by a name: path, digest and options.
 
     Attributes
     ----------
     path : str
         As it was given; empty if the digest alone names the file.
     grid : str
-        What the values of the grid are, see pressures.grid.READINGS.
+        Meaning of the values of the grid, see pressures.grid.READINGS.
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of its content; empty if it is not known.
     decimal, encoding : str
@@ -78,7 +78,7 @@ def speaks_of_file(name: object) -> bool:
 
 
 def parsed(name: str) -> NamedFile:
-    """What a name says; raises InputError for one that names no file."""
+    """The NamedFile of a name; raises InputError for a name without a file."""
     path, options = name.removeprefix(PREFIX), {}
     while found := OPTIONS.search(path):
         if found[1] in options:
@@ -127,7 +127,7 @@ def remember(names: Iterable[str]) -> None:
 
 
 def base_name(name: str) -> str:
-    """What the file is called that a name speaks of, for people; "" if it is not known here."""
+    """Base name of the file of a name, for messages; "" if it is not known here."""
     if not speaks_of_file(name):
         return ""
     file = parsed(name)

@@ -19,7 +19,7 @@ MIRROR = np.array([1.0, -1.0])[:, None, None]
 
 @dataclass(frozen=True, eq=False)
 class March:
-    """What one march along a path gives.
+    """The result of one march along a path.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class March:
     forces : np.ndarray, shape (steps + 1, 3)
         Forward force, lateral force, torque at each phase, over mu F_z and mu F_z a.
     residual : float
-        Sum over the stages of what the step solver left (force over mu F_z).
+        Residual force of the step solver over mu F_z, summed over the stages.
     iterations, solves : int
         Step-solver iterations and stages.
     fields : np.ndarray or None, shape (1 + steps stages, shape of state)
@@ -45,7 +45,7 @@ class March:
 
 
 class Guess(Protocol):
-    """What a march takes its first guesses from: a March, or what has the fields of one."""
+    """Source of the initial guesses of a march: a March, or an object with the same `fields`."""
 
     @property
     def fields(self) -> np.ndarray | None:
@@ -85,8 +85,8 @@ class Contact(Protocol):
     edges : np.ndarray or None, shape (cells + 1,)
         Radii between the rings; None for contacts without rings.
     radius : float
-        Of the contact at its largest, over the reference one, where the normal load changes: 1 if
-        it is not there, and `bound` is that at the start of a period then.
+        Largest contact radius over the reference radius, where the normal load changes.  `bound` is
+        then that at the start of a period.  Contacts under constant load need no `radius`: it is 1.
     """
 
     angles: int

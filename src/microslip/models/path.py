@@ -32,9 +32,9 @@ class Integrator:
     Attributes
     ----------
     name : str
-        As it is spoken of.
+        Name for tables and messages.
     order : int
-        Of convergence.
+        Order of convergence.
     times : tuple of float
         Stage times c, over the step.
     carried : tuple of tuple of float
@@ -103,7 +103,7 @@ class Path:
     positions : np.ndarray, shape (steps + 1, 3)
         Displacement at every phase: forward, lateral, angle.
     stages : np.ndarray, shape (steps, stages, 3)
-        The same at every stage.
+        Displacement at every stage: forward, lateral, angle.
     carry : np.ndarray, shape (stages, stages)
         See `Integrator.carry_matrix`.
     end : float
@@ -146,8 +146,8 @@ class BodyPath(Path):
     Attributes
     ----------
     each : tuple of path.Path
-        Of every contact, relative to that of the body and cut into the same steps; they alone tell
-        an indentation.
+        Path of every contact relative to the path of the body, cut into the same steps.  Only these
+        paths have an indentation.
     """
 
     each: tuple[Path, ...] = ()

@@ -84,7 +84,7 @@ def _refuse_other_loads(problem: Problem) -> str:
 
 
 def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
-    """What the first refusal says that says something."""
+    """A check that returns the first refusal that is not empty, or an empty text."""
     return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 

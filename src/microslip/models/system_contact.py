@@ -22,7 +22,7 @@ from microslip.models.pull import Body, PulledMarch
 
 
 class Layout(NamedTuple):
-    """Where the points of states, (2, rows, columns), are in the fields of compiled code.
+    """Positions of the points of a state, (2, rows, columns), in the fields of compiled code.
 
     States have the contacts of a body side by side, fields one after the other.
 
@@ -151,7 +151,7 @@ class SystemContact:
         return self.layout.pack(np.atleast_2d(self.bound))[None]
 
     def loading(self, path: Path) -> Loading:
-        """What a path imposes on the contact."""
+        """The motion and the friction bounds that a path imposes on the contact."""
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:

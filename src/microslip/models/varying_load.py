@@ -36,7 +36,7 @@ class Growth(NamedTuple):
     Attributes
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     edges : np.ndarray, shape (n + 1,)
         From 0 to 1.
     load_within : callable

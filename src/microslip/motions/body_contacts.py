@@ -17,9 +17,9 @@ EXAMPLE = "phase=0;phase=180"
 MEANT = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
 LIGHTEST, HEAVIEST = 1e-3, 1e3
-"""Of a load over another: what is less or more is a slip."""
+"""Allowed range of the ratio of two loads; values outside are taken for typing errors."""
 LARGEST_SHARE = 1e3
-"""Of the amplitude likewise."""
+"""Largest allowed amplitude of a contact over that of the motion; larger ones are typing errors."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
 
 
 def _numbers(number: int, part: str, text: str) -> dict[str, float]:
-    """What is said of a contact; what is wrong is told with its number."""
+    """Numbers of one contact from its text; error messages name the number of the contact."""
     try:
         given = spec.numbers_in(part, text, "contacts", EXAMPLE)
         spec.refuse_unknown(text, "contacts", given, asdict(BodyContact()))

@@ -71,11 +71,11 @@ class Spring(Drive):
     Parameters
     ----------
     stiffness : float
-        Over mu F_z / u_lim, above 0.
+        Stiffness of the spring, over mu F_z / u_lim, above 0.
     mass : float
-        Over mu F_z / (u_lim omega^2).
+        Mass of the body, over mu F_z / (u_lim omega^2).
     damping : float
-        Of a dashpot beside the spring, over mu F_z / (u_lim omega).
+        Damping of a dashpot parallel to the spring, over mu F_z / (u_lim omega).
 
     Raises
     ------

@@ -316,7 +316,7 @@ def _part(body: Problem, one: BodyContact) -> Part:
 
 
 def contacts_refusal(problem: Problem) -> str:
-    """What is allowed where a motion or a pressure does not go with several contacts; else ""."""
+    """The allowed values, where a motion or a pressure excludes several contacts; else ""."""
     motion = problem.motion
     if not motion.periodic:
         return f"allowed is none: {motion.name} does not oscillate"

@@ -18,7 +18,7 @@ def of_corner_loads(load: np.ndarray) -> np.ndarray:
 
 
 def of_loads(loads: np.ndarray) -> np.ndarray:
-    """The same from loads of cells that rounding has touched."""
+    """Loads of cells, sum 1, from loads with rounding errors; those near 0 become 0."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 

@@ -12,8 +12,8 @@ from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""What the values on a grid may be: means over cells of its own step, centred on the points, or
-values at the points, with bilinear ones between them.  Outside of either the pressure is 0."""
+"""Meanings of the values on a grid.  "cells": means over cells of one step, centred on the points.
+"samples": values at the points, interpolated bilinearly.  Outside the pressure is 0."""
 FINE = 256
 """Parts along a side at which the largest displacement under full slip and the torque are found."""
 FINEST = 1024
@@ -151,7 +151,7 @@ class _Axis:
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
     def coarsened(self) -> tuple[_Axis, np.ndarray]:
-        """The same side with half as many steps, and the matrix of means that fills it."""
+        """A coarser axis with half as many steps, and the matrix of means onto it."""
         steps = -(-self.steps // 2)
         points = edges = np.linspace(self.low, self.high, steps + 1)
         middles = 0.5 * (edges[1:] + edges[:-1])

@@ -1,4 +1,4 @@
-"""What grids of pressures in files have in common: columns, units, and even distances."""
+"""Columns, units and even spacing of pressure grids in files."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
 EXAMPLES = {"forward": "mm", "lateral": "mm", "pressure": "MPa"}
 MOST_POINTS = 1_000_000
 LONGEST = 24
-"""Characters of a unit."""
+"""Largest number of characters of a unit."""
 
 
 def factors(units: list[str | None]) -> list[float]:
-    """What to multiply each of COLUMNS with, so that both coordinates have one unit.
+    """Factors on each of COLUMNS that bring both coordinates to the same unit.
 
-    The unit of the pressure does not matter, but is none that does not exist.
+    The unit of the pressure does not matter, but it must exist.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def first_uneven(axis: np.ndarray) -> int | None:
 
 
 def uneven(name: str, axis: np.ndarray, index: int) -> str:
-    """What is wrong with a coordinate that is not where an even grid has it."""
+    """Error message for a coordinate that is off the even grid."""
     before = f" after {axis[index - 1]:g}" if index else ""
     return (
         f"{name} {axis[index]:g}{before}: not evenly spaced; allowed: two coordinates or more, at "

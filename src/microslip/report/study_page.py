@@ -7,7 +7,7 @@ import xarray as xr
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
-"""Those that have a page of their own."""
+"""Studies that have a page of their own."""
 
 
 def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:

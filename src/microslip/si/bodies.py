@@ -54,7 +54,7 @@ class TwoBodies:
             raise InputError("counterbody", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:
-        """The same bodies under another load, N."""
+        """A copy of the bodies under another load, N."""
         return replace(self, load=load)
 
     @property

@@ -158,16 +158,16 @@ def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
 
 @dataclass(frozen=True)
 class RealDrive:
-    """What pulls a contact, in SI units.
+    """The drive of a contact, in SI units.
 
     Attributes
     ----------
     force : float or None
-        Constant, N; None: it does not pull.
+        Constant force, N; None: no force is prescribed.
     stiffness : float or None
-        Of a spring whose far end has the speed of the motion, N/m; None: there is no spring.
+        Stiffness of a spring whose far end has the speed of the motion, N/m; None: no spring.
     mass, damping : float or None
-        Of the body that is pulled, kg, and of a dashpot on it, N s/m.
+        Mass of the driven body, kg, and damping of a dashpot on it, N s/m.
     """
 
     force: float | None = None

@@ -1,4 +1,4 @@
-"""What pulls a contact, in SI units: what is asked of it."""
+"""The drive of a contact in SI units: reading and checking its arguments."""
 
 from __future__ import annotations
 

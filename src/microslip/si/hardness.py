@@ -17,10 +17,10 @@ PROJECTED = 0.9272
 pressure is the Vickers number over it."""
 ROCKWELL = np.array([20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 68.0])
 VICKERS = np.array([238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0])
-"""Of the same steels (ASTM E140, Table 1)."""
+"""Vickers hardness of the steels with these Rockwell C numbers (ASTM E140, Table 1)."""
 
 VICKERS_OVER_BRINELL = 1.0 / 0.95
-"""Of unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
+"""Ratio for unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
 ALLOWED = (
     "allowed are Vickers and Rockwell C, as in '200 HV' and '60 HRC', and pressures, as '7 GPa'"
 )

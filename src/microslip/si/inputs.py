@@ -1,4 +1,4 @@
-"""What a prediction is asked: bodies, contact and motion, with what was understood of each."""
+"""Inputs of a prediction: bodies, contact and motion, and how each was understood."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from microslip.si.validity import SENSELESS
 LARGEST_MU = 10.0
 """No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""
 SHAPES = ("radius", "counter_radius", "radius_across", "contact_radius", "pressure")
-"""What tells where two bodies touch."""
+"""Arguments that describe the shape of the contact."""
 LARGEST_PHASE = 1e3
 """rad; what is larger is a slip, too."""
 OUT_OF_RANGE = (
@@ -38,7 +38,7 @@ class Body:
     material : Material
         Its properties, in SI units.
     text : str
-        The same as it was given.
+        The properties as they were given.
     """
 
     material: Material

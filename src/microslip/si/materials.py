@@ -123,7 +123,7 @@ MATERIALS = {
     "rigid": RIGID,
 }
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
-"""What the materials are called as well, in lower case, for hints."""
+"""Other names of the materials, in lower case, for hints."""
 
 
 def material_named(name: object) -> Material:

@@ -46,7 +46,7 @@ MOTIONS = {
 }
 """Motions of this module, and what the sphere does in each."""
 ALONG_THE_PULL = ("longitudinal", "elliptic", "normal")
-"""Those that vibrate along the pull, or may; or whose load, and so the force, oscillates."""
+"""Motions that can vibrate along the drive, or whose load and so friction force oscillates."""
 SAME = 1e-3
 """Relative difference of two angles, one of them from 721 phases, that are equal."""
 
@@ -85,7 +85,7 @@ def is_along_the_pull(motion: str) -> bool:
 
 
 def description(motion: str) -> str:
-    """What the sphere does, in words."""
+    """The motion of the sphere, in words."""
     return MOTIONS.get(motion) or f"is {_record(motion).summary}"
 
 

@@ -110,12 +110,13 @@ def predict(
         is spread over it, as microslip.solve takes it: "ring:inner=0.5", "file:pad.csv"; "hertz" if
         not given.
     amplitude : quantity
-        Half stroke of the oscillation: a length, or for a bore an angle; of motions that oscillate
-        in several ways the one across.
+        Half stroke of the oscillation: a length, or for a bore an angle.  For motions that
+        oscillate in several ways it is the half stroke across.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
-        Of such motions: half strokes along, m, in spin, rad, and of the load, N; and a phase, rad:
-        elliptic moves by sin(omega t + phase) forward, transverse-bore turns by it, normal does all
-        but the load by it, and the rest goes with sin(omega t).
+        For motions that oscillate in several ways: half strokes along, m, in spin, rad, and of the
+        load, N; and a phase, rad.  These follow sin(omega t + phase): the forward motion of
+        elliptic, the rotation of transverse-bore, and all of normal except its load.  All others
+        follow sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps), or angular (rad/s, deg/s, rpm, turn/s),
         which is converted, 2 pi rad/s being 1 Hz.  A number is in Hz.
@@ -126,17 +127,17 @@ def predict(
         to 1 or in per cent: the least amplitude, the largest speed or the largest load at which
         vibration does it is looked for.  A speed alone pulls then.
     drive_stiffness, mass, damping : quantity, optional
-        Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
-        on it, N s/m.  A mass may be under a force, too.
+        Stiffness of a spring that pulls the body at the speed, N/m, mass of the body, kg, and
+        damping of a dashpot on it, N s/m.  A mass is also allowed under a force.
     contacts : str, optional
-        Of a body that several contacts of the same bodies carry, as microslip.solve takes them:
-        "phase=0;phase=180".  The load is that of all of them, which share it by their `load`;
-        force, drive_stiffness, mass and damping are those of the body; amplitudes are of a contact
-        whose share of them is 1.  What is said of one contact is said of one that carries the mean
-        load, and warnings are about the one that carries most.
+        The contacts of a body that rests on several equal ones, as for microslip.solve:
+        "phase=0;phase=180".  `load` is the sum over all contacts, divided in proportion to the
+        `load` of each; force, drive_stiffness, mass and damping are those of the body; amplitudes
+        are those of a contact whose `amplitude` is 1.  Results for a single contact refer to one
+        that carries the mean load, and warnings to the one that carries most.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and kg/m^3, for the
-        warnings alone.
+        Hardness and density of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and
+        kg/m^3.  Only the warnings use them.
     tolerance : quantity
         Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
         relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or

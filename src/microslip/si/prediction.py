@@ -69,9 +69,9 @@ class Prediction:
     not_checked : tuple of str
         What was not looked at, and why.
     force_N, drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        What pulls, where it is not the speed alone.
+        The drive, where it is not the speed alone.
     force, stiffness, mass, damping : float or None
-        The same as dimensionless groups, as microslip.solve takes them.
+        The drive as dimensionless groups, as for microslip.solve.
     outcome : str or None
         Under a force "moves", "stays", "runs away", or "undecided" where the error does not tell
         whether it moves; None where a speed was given, or the solver has no answer.
@@ -109,15 +109,16 @@ class Prediction:
     regime : str or None
         A key of regimes.REGIMES, of what is pulled through a spring or has a mass; else None.
     natural_frequency : float or None
-        Of that mass on its spring and the contact that sticks, over the frequency; None without
-        either.
+        Natural frequency of the mass on its spring and the sticking contact, over the frequency of
+        the oscillation; None without either.
     pressure : str
         How the load is spread, as microslip.solve takes it.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
-        Of motions that oscillate in several ways: further half strokes, and a phase.
+        Further half strokes, and a phase, of motions that oscillate in several ways.
     contacts : str or None
-        Those that carry the body, as microslip.solve writes them; None where it is one.  Forces and
-        powers are those of the body then, and sizes and groups of a contact with the mean load.
+        The contacts that carry the body, as microslip.solve writes them; None for a single one.
+        For several contacts, forces and powers are those of the body, and sizes and groups those of
+        a contact with the mean load.
     torque_N_m, torque_error_N_m : float or None
         Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
     drag_power_W, drag_power_error_W : float or None
@@ -139,8 +140,8 @@ class Prediction:
     mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
         Standard uncertainties that follow from those of what was given; None where none was.
     sought_spread : float or None
-        The same of what was looked for, in its SI unit.  Infinite, as the others, where within the
-        spreads nothing has the wanted reduction.
+        Standard uncertainty of the sought quantity, in its SI unit.  Like the others it is
+        infinite where inputs within their uncertainty give no solution for the reduction.
     """
 
     motion: str
@@ -251,7 +252,7 @@ class Prediction:
 
     @property
     def sought_value(self) -> float | None:
-        """What was looked for, in its SI unit; NaN where there is none, None where nothing was."""
+        """The sought quantity in its SI unit; NaN without a solution, None if there is none."""
         fields: dict[str | None, float | None]
         fields = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
         return fields.get(self.sought)

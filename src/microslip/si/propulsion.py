@@ -1,4 +1,4 @@
-"""What a self-propelled motion pulls with, in newtons, metres a second and watts."""
+"""Force, speed and power of a self-propelled motion in SI units."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class RealPropulsionLine:
     motion : str
         The motion.
     contact_radius_m, u_lim_m : float
-        Of Hertz's contact, and the displacement at which all of it slides, m.
+        Radius of Hertz's contact, and the displacement at which all of it slides, m.
     amplitude_m, frequency_Hz : float
-        Of the oscillation.
+        Amplitude and frequency of the oscillation.
     amplitude : float
-        The same over u_lim.
+        Amplitude of the oscillation over u_lim.
     stall_force_N, stall_force_error_N : float
         Load that stops the motion, N.
     no_load_speed_m_s, no_load_speed_error_m_s : float
@@ -125,7 +125,7 @@ def predict_propulsion(
     tolerance: object = TOLERANCE,
     points: int = POINTS,
 ) -> RealPropulsionLine:
-    """What a sphere on a flat (or on a second sphere) pulls with whose motion drives.
+    """Force, speed and power of a sphere that propels itself on a flat or on a second sphere.
 
     Parameters
     ----------

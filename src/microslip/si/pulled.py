@@ -31,7 +31,7 @@ from microslip.si.static_limit import equals_static_limit, largest_force
 SLOWEST = 1e-3
 """Velocity, in the unit of the motion, below which the accepted error is no longer relative."""
 MARGIN = 0.8
-"""Of the accepted error that a second answer is asked for with: its velocity may be less."""
+"""Safety factor on the accepted error of a second run, since its velocity may be smaller."""
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
 """The outcome, and the beginning of the solver's reason for it."""
@@ -44,12 +44,12 @@ def answer_of(
     tolerance: float,
     carriers: Carriers,
 ) -> Result:
-    """What microslip.solve says of a motion.
+    """The result of microslip.solve for a motion in SI units.
 
     Parameters
     ----------
     pulling : dict of float
-        What dimensionless.drive_groups gives.
+        The drive as dimensionless groups, from dimensionless.drive_groups.
     tolerance : float
         Accepted error: of mu_macro, or under a force of the velocity, relative down to SLOWEST.
     carriers : several.Carriers
@@ -190,7 +190,7 @@ def _threshold(
 
 
 def _walk(contact: TwoBodies, motion: RealMotion, force: float, answer: Result) -> dict[str, Any]:
-    """What a force makes of the contact."""
+    """Fields of the prediction for a contact under a force."""
     unit = speed_unit(motion, contact)
     velocity, error = answer.velocity, answer.velocity_error
     assert error is not None  # as under all forces

@@ -44,7 +44,7 @@ EXAMPLES = {
     "N*s/m": "5 N*s/m",
     "": "0.3",
 }
-"""What a value in each unit may look like."""
+"""Example of a value in each unit."""
 RATES = ("Hz", "rad/s")
 """Units of what may be given by periods or by angles."""
 

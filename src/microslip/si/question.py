@@ -1,4 +1,4 @@
-"""What is asked of a prediction, read and checked before anything is solved."""
+"""The request for a prediction, read and checked before anything is solved."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from microslip.si.reduction import sought_by
 from microslip.si.several import Carriers, read_carriers
 
 LARGEST_TOLERANCE = 0.1
-"""Of mu_macro, and relative of a speed; what is larger is no answer."""
+"""Largest accepted tolerance, absolute for mu_macro and relative for a speed."""
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Unless told otherwise: of mu_macro, and under a force of the speed."""
 ANY_LOAD = 1e-12
@@ -41,7 +41,7 @@ MOVED: tuple[str, ...] = (
 MOVED += ("load_amplitude", "phase")
 """Arguments of predict that tell the motion, besides the speed."""
 PULLED = ("speed", "force", "drive_stiffness", "mass", "damping")
-"""What pulls."""
+"""Arguments of predict that describe the drive."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,15 +53,15 @@ class Question:
     given : Mapping
         Arguments of predict, as they were given.
     contact, motion, drive : TwoBodies, RealMotion, RealDrive
-        Without what is looked for.
+        Contact, motion and drive without the sought quantity.
     bodies : tuple of Body
-        Those of the contact.
+        Bodies of the contact.
     carriers : several.Carriers
         The contact, or several like it, of which it carries the mean load.
     sought, share : str or None, float or None
-        What a reduction looks for, and the share of friction to be taken away.
+        Name of the quantity sought by a reduction, and the reduction of friction, 0 to 1.
     tolerance : float
-        Of mu_macro, or relative of the speed.
+        Accepted error of mu_macro, or relative error of the speed.
     about : dict of str
         What was understood.
     """
@@ -152,7 +152,7 @@ def _is_sequence(value: object) -> bool:
 
 
 def _share(reduction: object, pulls: dict) -> Given:
-    """What is to be taken away; raises InputError."""
+    """The reduction of friction, 0 to 1; raises InputError."""
     if pulls:
         allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
         raise InputError("reduction", reduction, allowed)

@@ -21,9 +21,9 @@ SMALLEST_AMPLITUDE = 1e-6
 SPEEDS = 1e-9, 1e6
 """Dimensionless velocities between which a speed is looked for, over 1 and the amplitude."""
 STRIDE = 0.05
-"""Of the logarithm of what is looked for, over which the slope of friction is taken."""
+"""Step in the logarithm of the sought quantity, over which the slope of friction is taken."""
 SOUGHT = ("amplitude", "speed", "load")
-"""What can be looked for."""
+"""Quantities that a reduction can determine."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class _NoAnswerError(Exception):
 def friction_of(
     contact: TwoBodies, motion: RealMotion, tolerance: float, **contacts: Any
 ) -> Result:
-    """What microslip.solve says of a motion; contacts: what it is told of several, if anything."""
+    """The result of microslip.solve for a motion; contacts: the `contacts` argument, if any."""
     velocity, size = groups(motion, contact)
     assert velocity is not None  # as of all that have a speed
     fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
@@ -91,7 +91,7 @@ def friction_of(
 
 
 def sought_by(motion: str, reduction: object, given: Mapping[str, object]) -> str | None:
-    """What a reduction looks for, which is what was not given; None without a reduction.
+    """Name of the quantity to be found for a reduction: the missing one; None without a reduction.
 
     Raises InputError for a motion that is none or has no such thing, and where more than one thing
     or nothing is left to look for.

@@ -21,9 +21,9 @@ from microslip.motions.drive import Drive
 from microslip.si.motions import is_along_the_pull
 
 SAME = 0.01
-"""Of mu_macro: two drives with less between them are as good as one."""
+"""Difference of mu_macro below which two drives are equivalent."""
 CONTACT_STIFFNESS = 1.5
-"""Of Hertz's contact that sticks, 2 G* a over mu F_z / u_lim."""
+"""Stiffness of a sticking Hertz contact, 2 G* a over mu F_z / u_lim."""
 STIFFER = 10.0
 """Than the contact: how stiff a body hardly moves."""
 LEAST_FORCE = 0.03
@@ -37,7 +37,7 @@ REGIMES = {
     "force": "soft and light: the force is as good as constant",
     "between": "neither stiff nor soft: it swings with the vibration, and may resonate",
 }
-"""What the regimes are, in words."""
+"""Descriptions of the regimes."""
 
 
 def regime(motion: str, amplitude: float, drive: Drive) -> str:
@@ -64,8 +64,8 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
 
 
 def natural_frequency(drive: Drive) -> float | None:
-    """Of the body on its spring and on the contact that sticks, over the vibration's; None without
-    a mass."""
+    """Natural frequency of the body on its spring and the sticking contact, over the frequency of
+    the vibration; None without a mass."""
     if drive.mass == 0.0:
         return None
     return math.sqrt((drive.stiffness + CONTACT_STIFFNESS) / drive.mass)

@@ -41,11 +41,11 @@ class Carriers:
 
     @property
     def settings(self) -> dict[str, str]:
-        """What microslip.solve is to be told of them."""
+        """Arguments of microslip.solve for several contacts."""
         return {} if self.text is None else {"contacts": self.text}
 
     def share_of(self, drive: RealDrive) -> RealDrive:
-        """What a drive has for each contact."""
+        """The drive of the body divided by the number of contacts."""
         parts = {name: value for name, value in vars(drive).items() if value is not None}
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
@@ -61,8 +61,10 @@ class Carriers:
         return replace(contact, load=load, size=contact.size * grown)
 
     def problem(self, motion: RealMotion, contact: TwoBodies) -> Problem:
-        """What the solver makes of a motion at a vanishing speed; raises InputError about
-        `contacts` where these do not go with the motion or the pressure."""
+        """The Problem of a motion at a vanishing speed.
+
+        Raises InputError about `contacts` where the motion or the pressure excludes them.
+        """
         _, size = groups(motion, contact)
         settings: dict[str, Any] = {"pressure": contact.pressure, "poisson": contact.poisson}
         name = solver_motion(motion, contact)

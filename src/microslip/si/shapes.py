@@ -32,7 +32,7 @@ class ShapedContact(TwoBodies):
     size: float = 0.0
 
     def with_load(self, load: float) -> TwoBodies:
-        """The same bodies under another load, N; a size that was given stays as it is."""
+        """A copy under another load, N; a contact size that was given stays as it is."""
         over = load / self.load
         if self.radii:  # of the bodies, which Hertz's ellipse follows from
             return replace(self, load=load, size=self.size * over ** (1.0 / 3.0))
@@ -40,7 +40,7 @@ class ShapedContact(TwoBodies):
 
     @property
     def contact_radius(self) -> float:
-        """As given, m."""
+        """Contact radius, m, as it was given."""
         return self.size
 
     @cached_property

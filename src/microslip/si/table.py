@@ -103,9 +103,9 @@ def predictions(
     motion, cases, shared
         As for predict_table, the cases as lists.
     names : sequence of str, optional
-        Of the cases, for messages.
+        Names of the cases, for messages.
     errors : mapping, optional
-        What is known to be wrong with cases, by their numbers.
+        Errors already found in cases, by the numbers of the cases.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def _prediction(motion: str, given: Mapping[str, object]) -> Prediction | NoPred
 
 
 def _question(motion: str, **given: Any) -> Question:
-    """What is asked; raises what predict would raise before it solves anything."""
+    """The checked request; raises the errors that predict raises before it solves anything."""
     plain, _ = without_spreads(motion, given)
     every = dict.fromkeys(signature(predict).parameters) | {"power": False}
     strange = [name for name in plain if name not in every]
@@ -181,7 +181,7 @@ def number_of(cases: Mapping[str, Any], shared: Mapping[str, object]) -> int:
 def as_dataset(
     motion: str, cases: Mapping[str, Any], found: Sequence[Prediction | NoPrediction]
 ) -> xr.Dataset:
-    """What predict_table returns, of the predictions of all cases."""
+    """The Dataset that predict_table returns, from the predictions of all cases."""
     import xarray as xr
 
     variables: dict[str, tuple] = {}
@@ -222,7 +222,7 @@ def as_dataset(
 
 
 def _unit(name: str) -> str:
-    """Of a field, in the SI; "1" for what has none, and for errors that of what they are of."""
+    """SI unit of a field, "1" without one; an error has the unit of its quantity."""
     if name in OTHER_UNITS:
         return OTHER_UNITS[name]
     return next((unit for end, unit in UNITS if name.endswith(end)), "1")

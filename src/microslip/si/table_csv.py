@@ -18,7 +18,7 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.user_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
-"""What is meant to be a number; whether it is one is decided where it is read."""
+"""Text that looks like a number; whether it is valid is decided when it is read."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
 """Columns whose cells are no quantities."""
 

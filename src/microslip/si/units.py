@@ -48,7 +48,7 @@ TURN_RATE = {"radian": 1, "second": -1}
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 _FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
-"""What follows the numerator of a fraction."""
+"""Text after the numerator of a fraction."""
 _NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
 _POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
 _SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
@@ -222,7 +222,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 
 def stopped(read_so_far: str, rest: str) -> str:
-    """Where reading stopped, with a hint at what may be meant."""
+    """Message with the position where reading stopped, and a hint at the likely meaning."""
     hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:

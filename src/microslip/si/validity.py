@@ -1,8 +1,7 @@
-"""Where an assumption of the theory breaks at a real contact: one sentence each.
+"""Warnings about assumptions of the theory that a real contact breaks, one sentence each.
 
-What is looked at are measures of the contact, numbers by their names; when they break which
-assumption, and what is said then, are rules.  Whoever evaluates the measures elsewhere, as the
-explorer's page does, takes the rules from here.
+The measures of a contact are numbers by name.  A rule has the limit of a measure, and the sentence
+for a contact beyond it.  The explorer's page evaluates the measures itself with the same rules.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ ADHESION = 0.05
 """Work of adhesion of clean smooth surfaces that only van der Waals forces hold, N/m, of that order
 (J. N. Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
-"""Of these forces, m; and the distance of atoms, of that order."""
+"""Range of van der Waals forces, m, which is of the order of the distance of atoms."""
 SHORT, LONG = 5.0, 0.1
 """Tabor's numbers above which JKR's theory holds, and below which DMT's does (K. L. Johnson and
 J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
@@ -166,7 +165,7 @@ CHECKS = (
 )
 """Rules in the order in which they are told; of those that stand together the first that holds."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
-"""What a body may come without, and what cannot be checked then."""
+"""Optional properties of a body, and the check that needs each of them."""
 NOT_GIVEN = "{what} (no {name} given for {whose})"
 SIDES = ("the body", "the counterbody")
 """How the two bodies are called in sentences."""
@@ -190,7 +189,7 @@ def _holds(rule: Rule, known: dict[str, float | None]) -> bool:
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
-    """What could not be checked, for want of which property of which body: list of texts."""
+    """Checks that were not possible, each with the missing property and its body: list of texts."""
     sides, found = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
@@ -200,7 +199,7 @@ def unchecked(contact: TwoBodies) -> list[str]:
 
 
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """What the rules look at, by name; None: there is no such thing, or it is not known."""
+    """Measures that the rules check, by name; None: does not apply, or is not known."""
     return _of_bodies(contact) | _of_adhesion(contact) | _of_motion(contact, motion)
 
 
@@ -244,7 +243,7 @@ def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
 
 
 def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """What the motion is beside the contact, and beside waves where a density is known."""
+    """Measures of the motion against the contact, and wave speeds where a density is known."""
     steady, along = motion.frequency is None, motion.swing[0]
     found: dict[str, float | None]
     found = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}

@@ -22,8 +22,8 @@ DEPTH = 12
 NOISE = 0.1
 """Share of a period's change that its steps may leave unsolved."""
 LOOSEST_NEAR, QUIET = 1e-5, 0.25
-"""The same from a start that is near, and the share of NOISE that steps are to leave there after
-the next march: with many steps each has to be solved better, or the march counts for nothing."""
+"""For a start near the periodic state: loosest tolerance of a step, and share of NOISE allowed to
+the steps of the next march.  With many steps each must be solved better, or the march is wasted."""
 FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 

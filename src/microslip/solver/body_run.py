@@ -16,7 +16,7 @@ from microslip.solver.simulate import simulate
 LEAD_STEPS = 8
 """Steps in which a contact is marched to the phase at which the others begin."""
 LEAD_TOLERANCE = 1e-6
-"""Of each of them, a force over mu F_z."""
+"""Tolerance of each of the LEAD_STEPS, a force over mu F_z."""
 
 
 def simulate_each(
@@ -26,11 +26,11 @@ def simulate_each(
     tolerance: float,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """As simulate.simulate, of a body on several contacts, too.
+    """Run a model at one resolution, for one contact or for a body on several contacts.
 
-    Its forces are the means of those of the contacts, weighted with their loads; its state has the
-    tractions of all of them where the path of the body begins, side by side, and is None where one
-    was not found.
+    The arguments are those of simulate.simulate.  The forces of a body are the means of the forces
+    of its contacts, weighted with their loads.  Its state has the tractions of all contacts side by
+    side, at the start of the body's path.  The state is None if one contact has none.
     """
     if not problem.parts:
         return simulate(problem, model, resolution, tolerance, settings=settings)

@@ -1,4 +1,4 @@
-"""What a point may take: a bound on its work, the same on every machine, and one on its time.
+"""Budget of a point: a bound on its work, the same on every machine, and one on its time.
 
 Both are looked at after every march, wherever it belongs to, so that no search, however long, goes
 on beyond them.  What the work allows follows from the request alone; what the time allows depends
@@ -62,7 +62,7 @@ class Budget:
         solves, iterations : int
             Step solves and step-solver iterations of the march.
         unknowns : int
-            Of each step.
+            Number of unknowns of each step.
         """
         self.taken += Effort.of(solves, iterations, unknowns)
         if self.taken.work > self.most_work:

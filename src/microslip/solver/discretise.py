@@ -106,7 +106,7 @@ def build_contact(
     model : str
         Name in models.registry.MODELS.
     resolution : Resolution
-        Of the model.
+        Resolution of the model.
     focus : mesh.Focus or None
         Grading of the rings; None: towards the radius where the slip starts.
     start : float or None
@@ -121,7 +121,7 @@ def build_contact(
 
 
 class Graded(Protocol):
-    """What tells how steps are graded: a contact, or what stands for one."""
+    """An object with a `grading` of the steps: a contact, or a substitute for one."""
 
     @property
     def grading(self) -> float | None:

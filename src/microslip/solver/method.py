@@ -27,7 +27,7 @@ class Method:
     integrator : path.Integrator
         Where the stages of a step sit, and what they carry on.
     dress : callable or None
-        Of a contact and `parameters`: a contact that solves its steps in another way.
+        Takes a contact and `parameters`; returns a contact that solves its steps in another way.
     parameters : mapping of str to float
         Numbers that `dress` takes, with their defaults.
     search : callable or None

@@ -123,7 +123,7 @@ def _parameters(name: str) -> tuple[str, ...]:
 
 @cache
 def declared(name: str, field: str) -> Any:
-    """What a method's file gives for a field of METHOD, read without running it; None: nothing.
+    """Value of a field of METHOD in a method's file, read without running it; None: not set.
 
     name: without numbers; the value has to be a literal.
     """

@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from microslip.states.search import Inertia
 
 MOST_MARCHES = 200
-"""Of a search, unless told otherwise."""
+"""Largest number of marches in a search, by default."""
 
 
 class Goal(NamedTuple):
-    """What a search for the periodic state is to reach, and what it may take for it.
+    """Tolerances of a search for the periodic state, and its largest number of marches.
 
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, forces over mu F_z.
     most_marches : int
         Marches to try.
     near : bool
@@ -61,11 +61,11 @@ class PeriodicState:
     marches : int
         Maps marched.
     iterations, solves : int
-        Of the step solver, over all of them.
+        Iterations and stages of the step solver, over all marches.
     converged : bool
         Whether the distance is within the tolerance.
     body : np.ndarray or None, shape (steps + 1, 2)
-        Of a contact that is pulled, over the last (half) period, see pull.PulledMarch.
+        x and x' of a driven contact over the last (half) period, see pull.PulledMarch.
     fields : np.ndarray or None
         contact.March.fields of the last (half) period: the initial guess of a march from `start`.
     """
@@ -203,7 +203,7 @@ class PeriodMap:
         return energy_norm(self.contact, change)
 
     def image(self, state: np.ndarray) -> np.ndarray:
-        """Where the next interval begins, for tractions at the end of one; linear."""
+        """Tractions at the start of the next interval, from those at the end of one; linear."""
         return self.contact.mirrored(state) if self.mirror else state
 
     def admissible(self, state: np.ndarray) -> np.ndarray:

@@ -117,7 +117,7 @@ class PulledMap(PeriodMap):
         return state[: self._points].reshape(self._shape), moved
 
     def inertia(self) -> Inertia:
-        """The same for compiled code."""
+        """Stiffness, mass and acceleration factors of the driven body, for compiled code."""
         return Inertia(
             self.body.along(self.path, np.zeros(2)),
             float(self._haste[0]),

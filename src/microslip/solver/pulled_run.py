@@ -28,7 +28,7 @@ from microslip.solver.run import Run, Settings, failed_run, unsolved
 from microslip.solver.simulate import mean_forces, periods_of, stages_of, step_share
 
 MARCHES = 2 * MOST_MARCHES
-"""Of a search: a body may swing."""
+"""Largest number of marches in a search: twice the default, since a body may swing."""
 LOOSEST_MOVED = 1e-4
 """Force over mu F_z to which the state of a contact that is moved is found at least."""
 COARSENING, PREPARED_FROM = 6, 96
@@ -44,7 +44,7 @@ class Accuracy(NamedTuple):
     Attributes
     ----------
     tolerance : float
-        Of the answer: a force over mu F_z, or under a force the mean velocity.
+        Tolerance of the result: a force over mu F_z, or under a force the mean velocity.
     slope : float
         About how much friction rises with the velocity, over mu times the mean normal load: what
         an unbalanced force does to the velocity.
@@ -72,13 +72,13 @@ def simulate_pulled(
     model : str
         Name in models.registry.MODELS, of a contact that may be pulled.
     resolution : discretise.Resolution
-        Of the model.
+        Resolution of the model.
     accuracy : Accuracy
-        Of the periodic state.
+        Accuracy of the periodic state.
     settings : run.Settings
         How it is done; of the method the integrator counts.
     guess : run.Run or None
-        Of the same point under the same drive; of use if cells and angles are the same, too.
+        Run of the same point under the same drive; used if it has the same cells and angles.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What a run is done with, and what it comes to."""
+"""Settings of a run, and its result."""
 
 from __future__ import annotations
 
@@ -103,11 +103,11 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
     Parameters
     ----------
     residual : float
-        Sum over the stages of what the step solver left, a force over mu F_z.
+        Residual force of the step solver over mu F_z, summed over the stages.
     solves : int
         Number of these stages.
     step_tolerance : float
-        Of each stage, likewise.
+        Tolerance of each stage, a force over mu F_z.
     """
     if residual <= solves * step_tolerance:
         return ""

@@ -29,26 +29,27 @@ FIRST_LOOK, MOST_INTERVALS = 16, 16384
 LOOKS = 1.5, 4.0 / 3.0
 """From one such number to the next, in turns: multiples of four."""
 STEP_SHARE = 1e-4
-"""Of that tolerance, as a force over mu F_z: what a step may leave unsolved."""
+"""Tolerance of a step, a force over mu F_z, divided by the tolerance of the displacement."""
 SLOWEST_RATIO = 0.9
-"""Of distances gone while the number of periods doubles: a larger ratio tells of no end."""
+"""Largest ratio of the distances gone in two successive doublings of the number of periods; above
+it the remaining distance cannot be extrapolated."""
 LONG, DRIFTING = 200, 1.8
 """(Half) periods from which on such a ratio, of 2 if it never slowed down, tells that the contact
 drifts: the threshold of so coarse a contact is another."""
 MOST_SHARE = 0.9
-"""Of the way that the oscillation adds, after which `most_after` looks."""
+"""Share of the displacement added by the oscillation after which `most_after` is counted."""
 
 
 @dataclass(frozen=True)
 class ShakedownRun(Run):
-    """A Run that tells how far the contact goes; `distance` is what may be left of the way.
+    """A Run with the displacement of the contact; `distance` bounds the remaining displacement.
 
     Attributes
     ----------
     displacement : float
-        Of the contact from where nothing pulled it, in u_lim, at the end.
+        Displacement of the contact at the end, from its position without a force, in u_lim.
     pushed : float
-        Part of it that the force alone makes.
+        Part of the displacement that the force alone causes.
     most_after : float
         Periods after which MOST_SHARE of the rest is gone.
     """
@@ -77,9 +78,9 @@ def run_to_rest(
     model : str
         Name in models.registry.MODELS, of a contact that may be pulled.
     resolution : discretise.Resolution
-        Of the model.
+        Resolution of the model.
     tolerance : float
-        Of what may be left of the way, in u_lim.
+        Tolerance of the remaining displacement, in u_lim.
     settings : run.Settings
         How it is done.
 

@@ -43,7 +43,8 @@ the friction itself does with the drift in a radian, so that every point slips f
 From there an accelerated search finds its way down; below, points would only drift."""
 
 MARCHES_FROM_COARSER = 50
-"""Of a search from tractions on other points; one that takes longer does better from the start."""
+"""Largest number of marches in a search that starts from tractions on other points.  If it needs
+more, a search from the usual start is faster."""
 
 
 def simulate(
@@ -63,12 +64,13 @@ def simulate(
     model : str
         Name in models.registry.MODELS.
     resolution : discretise.Resolution
-        Of the model.
+        Resolution of the model.
     tolerance : float
-        Of the periodic state, a force over mu F_z; steps are solved a hundred times tighter.
+        Tolerance of the periodic state, a force over mu F_z; that of a step is at least 100 times
+        smaller.
     guess : Run or None
-        Of the same point; of use if cells and angles are the same, too, or where the contact can
-        bring tractions to its own.
+        Run of the same point; used if it has the same cells and angles, or if the contact can
+        interpolate its tractions.
     settings : Settings
         How it is done.
 
@@ -105,7 +107,7 @@ def _run(
     guess: Run | None,
     settings: Settings,
 ) -> Run:
-    """As `simulate`, but that the tolerance is that of a force over mu F_z, and failures raise."""
+    """Like `simulate` with a tolerance that is a force over mu F_z; raises on failure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)

@@ -51,7 +51,7 @@ def frames(
     state : np.ndarray
         Tractions at the first phase.
     tolerance : float
-        Of a step, a force over mu F_z.
+        Tolerance of a step, a force over mu F_z.
     previous : contact.March or None
         See contact.Contact.march.
 

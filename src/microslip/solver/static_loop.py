@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 HALVINGS = 50
-"""Of the interval in which the largest shift is looked for: to rounding."""
+"""Halvings of the interval with the largest shift: enough to reach rounding."""
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:

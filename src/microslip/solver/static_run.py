@@ -29,12 +29,13 @@ LOOP_STEP_SHARE = 1e-4
 """Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
 its distance from the bound."""
 MARCHES, MOST_ROUNDS = 120, 3
-"""Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
+"""Largest number of marches in a search for the periodic state, and largest number of searches: an
+accelerated search can stall on rounding, and then starts again."""
 ENOUGH = 4.0
-"""Times the distance that was asked for, which does where rounding leaves no more to be had."""
+"""Factor on the requested distance that is still accepted where rounding limits the search."""
 MOST_PASSES = 4
 MOST_EDGES = 4
-"""Of what never slips, beyond which they are taken for scatter."""
+"""Largest number of edges of the stick zone; more are taken for scatter."""
 SLIVER = 1e-3
 """Width, over the contact radius, of what is taken for scatter between two edges: where little
 slips, rings next to an edge have almost nothing left on either side of it."""

@@ -19,7 +19,7 @@ MAX_STRETCHES = 200
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
-    """Where a steady motion settles.
+    """The steady state that a steady motion reaches.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class SteadyState:
     distance : float
         Estimated distance from the steady state, a force over mu F_z.
     solver_residual : float
-        Summed over the last stretch.
+        Residual force of the step solver over mu F_z, summed over the last stretch.
     stretches, iterations, solves : int
-        Marched, and the effort (see run.Run).
+        Number of stretches marched, and the effort (see run.Run).
     converged : bool
         Whether the distance is within the tolerance and every step was solved.
     """
@@ -65,7 +65,7 @@ def steady_state(
     velocity : float
         Dimensionless, for the length of a step.
     tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, forces over mu F_z.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Where slow slip starts, found by a coarse run of the static limit where no number is at hand.
+"""Radius of the slip front of slow motions, by a coarse run of the static limit.
 
-Of indenters that turn there is an integral to search for a root (indenters.torsion_stick_radius);
-the run serves any pressure, and a test holds the two against each other."""
+The run serves pressures without a closed form.  For rotating indenters the radius is also the root
+of an integral (indenters.torsion_stick_radius); a test compares the two."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ def found_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Where the rings of a slow motion should gather: at the edges of what never slips in the limit
-    of vanishing velocity.
+    """Radii that the rings of a slow motion are graded towards: the edges of the stick zone in the
+    limit of vanishing velocity.
 
-    Of a circle in the plane the edge lies further in than that of a line which is as long, since
-    the slip never comes to rest; a contact with a hole sticks on a ring, which has two edges.
-    Under a load that oscillates they are found for the limit alone.
+    For a circular motion in the plane the edge lies further inside than for a motion of the same
+    amplitude along a line, since the slip never comes to rest.  A contact with a hole sticks on a
+    ring, which has two edges.  Under an oscillating load the edges are computed for the limit only.
 
     Parameters
     ----------

@@ -40,12 +40,12 @@ FORGETFUL = 0.2
 
 
 class Goal(NamedTuple):
-    """What a search is to reach.
+    """The goal of a search: tolerances and properties of the periodic state.
 
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, forces over mu F_z.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     near : bool
@@ -94,7 +94,7 @@ class Inertia(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What a search carries from one call to the next, all of it changed by the search.
+    """Data that a search carries from one call to the next; the search changes all of it.
 
     Attributes
     ----------

@@ -1,1 +1,1 @@
-"""What accuracy costs, where methods fail, which of the paper's claims hold."""
+"""Studies of accuracy and cost, of the stability of methods, and of the paper's claims."""

@@ -41,7 +41,7 @@ _ASKED = {
 
 
 def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
-    """What one job each answers: two lists of lists of requests, those that take long first."""
+    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     return _ASKED[study].pieces(getattr(configuration, study))
 
 
@@ -59,8 +59,7 @@ def build(study: str, configuration: Configuration, answer: Callable) -> object:
 
 
 def groups(study: str) -> dict:
-    """What of the dataset of a study goes to groups of its file, as for netcdf.divided: dims by
-    the name of a group, each with its title."""
+    """Groups in the file of a study's dataset, as for netcdf.divided: title and dims by name."""
     return _dataset_of(study).GROUPS
 
 

@@ -17,7 +17,7 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Of references: with rings alone, which are cheap, and with angular points."""
+"""Tolerances of references: with rings only, which are cheap, and with angular points."""
 MOST_WORK = 5_000_000
 """Step solves x unknowns that a probe may take: several times what the shipped method needs."""
 
@@ -79,6 +79,6 @@ def reference(point: StudyPoint, tolerance: float | None = None) -> dict:
 
 
 def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
-    """What a step costs with so many cells and angles, over a period of `steps` steps."""
+    """Request for the cost of a step at a resolution, over a period of `steps` steps."""
     sizes = {"cells": cells, "angles": angles, "steps": steps}
     return {"kind": "scaling", "cpu": cpu_model(), "model": model, "poisson": "0"} | sizes

@@ -105,7 +105,7 @@ def with_checksum(content: bytes, final: bool = True) -> bytes:
 
 
 def without_checksum(text: bytes) -> tuple[bytes, bool]:
-    """What `with_checksum` was given: lines, bytes, none if they are damaged; and `final`."""
+    """The arguments of `with_checksum`: lines as bytes, empty if damaged, and `final`."""
     end = text.rfind(b"\n", 0, -1) + 1
     final = not text.endswith(NOT_FINAL)
     return (text[:end], final) if with_checksum(text[:end], final) == text else (b"", False)

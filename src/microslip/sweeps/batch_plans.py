@@ -43,7 +43,7 @@ class Folder:
         self.folder, self.forgets = Path(folder), forgets
 
     def read(self, file: str) -> bytes:
-        """What a file holds, nothing if it is not there; raises CacheError."""
+        """Content of a file, empty if it does not exist; raises CacheError."""
         try:
             return (self.folder / file).read_bytes()
         except FileNotFoundError:
@@ -92,7 +92,7 @@ def _identity(request: dict) -> tuple:
 
 
 def text_of(planned: Mapping[str, list[dict]]) -> bytes:
-    """What the file of a plan holds."""
+    """Content of the file of a plan."""
     lines = (canonical_json({"batch": name, **packed(cut)}) for name, cut in planned.items())
     return batch_files.with_checksum("".join(f"{line}\n" for line in lines).encode())
 

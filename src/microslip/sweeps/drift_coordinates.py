@@ -47,7 +47,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def degrees(self) -> tuple[int, ...]:
-        """Of the polynomials in a cell, by direction."""
+        """Degrees of the polynomials in a cell, by direction."""
         return 4, 4
 
     @property
@@ -62,7 +62,7 @@ class DriftCoordinates(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str) -> DriftCoordinates:
-        """What `to_json` made a text of."""
+        """The coordinates from a text that `to_json` made."""
         given = json.loads(text)
         return cls(given["motion"], given["force"], tuple(given["amplitude"]))
 
@@ -109,7 +109,7 @@ def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarr
 
 
 def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
-    """What a map of drift interpolates, of a velocity and the bound of its error."""
+    """The values that a map of drift interpolates: asinh of the velocity, and its error bound."""
     low, middle, high = np.arcsinh([velocity - error, velocity, velocity + error]).tolist()
     return middle, max(high - middle, middle - low)
 

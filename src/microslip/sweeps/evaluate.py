@@ -118,7 +118,7 @@ def _trial(request: dict) -> dict:
 
 
 def _choice(request: dict) -> dict:
-    """What `solve` does when only a tolerance is given."""
+    """A timed `solve` with a tolerance and automatic settings."""
     return _timed(lambda: _solved(request), request["repeats"])
 
 
@@ -157,7 +157,7 @@ def _run(request: dict) -> dict:
 
 
 def _patches(request: dict) -> dict:
-    """Where the contact sticks over a period."""
+    """The stick zone over a period."""
     from microslip.adaptive.stick_area import patches
 
     return _found(lambda: patches(**_at(request)))
@@ -233,7 +233,7 @@ def _at(request: dict) -> dict:
 
 
 def _found(look: Callable[[], dict]) -> dict:
-    """What `look` sees in a period, or why there is none."""
+    """The result of `look` at a period, or the reason why there is no period."""
     from microslip.adaptive.period import NoPeriodicState
 
     try:

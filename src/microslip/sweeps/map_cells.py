@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
-"""Of the surplus of a cell: what the polynomial may miss.  Measured by benchmarks/certified.py."""
+"""Error of the polynomial in a cell over the surplus.  Measured by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
-"""Of the third differences, which count where fourth ones happen to cancel."""
+"""Factor on third differences, which count where fourth ones happen to cancel."""
 LOW_DEGREE = 2.0
 """Factor of second differences: of degree 2 a polynomial misses a larger share of what it adds."""
 RESOLVED = 0.05
@@ -70,7 +70,7 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Refinement:
-    """Where a map stands.
+    """The state of a refinement: cells, their errors, and the points that are missing.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ def refined(
     Parameters
     ----------
     coordinates : MapCoordinates or DriftCoordinates
-        Of the map.
+        Coordinates of the map.
     known : mapping of Node to (float, float)
         All answers so far.
     error : float
@@ -131,7 +131,7 @@ def refined(
 
 
 def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
-    """What one degree less misses along each direction; values: 5 along one, or 3."""
+    """Error of polynomials of one degree less, by direction; values: 5 along each, or 3."""
     return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 

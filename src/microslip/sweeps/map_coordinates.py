@@ -24,7 +24,7 @@ DIGITS = 9
 CLEAR = 2.0
 """A kink of the velocity is a border where it is this factor within the range."""
 SLOW_POWER = 1.0 / 3.0
-"""Of the velocity, below its kink."""
+"""Power of the velocity in the scaled coordinate, below its kink."""
 FAST = 2.0
 """Scaled velocity where what is faster than the kink begins: 1 is where what is slower ends."""
 FAST_PATCHES = 2
@@ -32,9 +32,9 @@ FAST_PATCHES = 2
 AT_KINKS = 2.0
 """Power with which places gather at kinks of the amplitude."""
 SPREAD = 2.0
-"""Where there are no kinks, amplitudes are even in log(1 + SPREAD A)."""
+"""Amplitudes without kinks are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
-"""Of the polynomials in a cell; friction is nearly straight over Poisson's ratio."""
+"""Degrees of the polynomials in a cell; friction is nearly straight over Poisson's ratio."""
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a box in scaled coordinates, by direction."""
@@ -52,7 +52,7 @@ class MapCoordinates(NamedTuple):
     amplitude : tuple of float
         Smallest and largest, >= 0.
     kinks : theory.kinks.Kinks
-        Of the motion.
+        Kinks of the motion.
     poisson : tuple of float
         Smallest and largest Poisson's ratio; () where it is no direction of the map.
     """
@@ -69,7 +69,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def degrees(self) -> tuple[int, ...]:
-        """Of the polynomials in a cell, by direction."""
+        """Degrees of the polynomials in a cell, by direction."""
         return tuple(DEGREES[name] for name in self.directions)
 
     @property
@@ -86,7 +86,7 @@ class MapCoordinates(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str) -> MapCoordinates:
-        """What `to_json` made a text of."""
+        """The coordinates from a text that `to_json` made."""
         given = json.loads(text)
         kinks = Kinks(*(tuple(given[name]) for name in ("kink_amplitudes", "kink_velocity")))
         low, high = given["amplitude"]
@@ -119,7 +119,7 @@ class MapCoordinates(NamedTuple):
         return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """What the directions are at scaled coordinates, in DIGITS digits."""
+        """The values of the directions at scaled coordinates, rounded to DIGITS digits."""
         *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
@@ -197,7 +197,7 @@ class MapCoordinates(NamedTuple):
 
 
 def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
-    """Where a value lies between two ends, 0 to 1 whatever rounding does."""
+    """Position of a value between two ends, clipped to 0 to 1 against rounding."""
     return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 
@@ -206,7 +206,7 @@ def _between(share: float, ends: Ends) -> float:
 
 
 def _spread_share(amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-    """Where an amplitude lies between two in the logarithm of 1 + SPREAD A, 0 to 1."""
+    """Position of an amplitude between two ends in log(1 + SPREAD A), 0 to 1."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return _share(np.log1p(SPREAD * amplitude), (low, high))
 

@@ -24,7 +24,7 @@ from microslip.sweeps.sealed_files import CacheError, advice
 from microslip.theory.kinks import kinks_of
 
 LEAST_PARTS = 4
-"""Of a round, so that several cores have something to do."""
+"""Fewest parts of a round, so that several cores can work on it."""
 SMALLEST_PART = 18
 """Points for which a process is worth its start, and more where jobs are asked to be large."""
 OF_A_JOB = 6
@@ -43,7 +43,7 @@ def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
 
 
 def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
-    """What to solve next, a round.
+    """The next round: nodes to solve, their requests and the number of parts.
 
     known: answers of all rounds so far by node; points_per_job: at most so many are a part.
     """
@@ -98,7 +98,7 @@ def _answer(request: dict, result: dict) -> tuple[float, float]:
 
 
 def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:
-    """Where a certified map stands with these answers."""
+    """The Refinement of a certified map with these answers."""
     return refined(coordinates_of(map_), known, map_.error)
 
 

@@ -27,7 +27,7 @@ HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lat
 def packed(period: Period, angles: int) -> dict:
     """A period.Period as a dict of plain values and texts; angles: points on half a ring.
 
-    Of a motion whose second half of a period is the mirror image of the first.
+    The second half of the period has to be the mirror image of the first.
 
     radius, bound: of the rings, lists of (cells,); the names in HISTORIES: lists of (steps + 1,);
     tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, over bound/127;

@@ -107,7 +107,7 @@ def _unique_beside(path: Path) -> Path:
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """What keeps files from being written beside one, if anything does, else the error itself.
+    """The error that prevents writing next to a file, if there is one, else the given error.
 
     HDF5 says "Permission denied" and "HDF error" on a full disk.
     """

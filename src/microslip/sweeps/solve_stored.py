@@ -126,6 +126,6 @@ def solve_stored(
 
 
 def _drives(**given: float | None) -> tuple:
-    """What pulls as a Sweep has it."""
+    """The drive in the format of a Sweep."""
     values = ((name, given[name]) for name in DRIVES)
     return tuple((name, (float(value),), False) for name, value in values if value is not None)

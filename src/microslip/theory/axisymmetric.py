@@ -20,9 +20,9 @@ def static_stick_zone_of(
     Parameters
     ----------
     pressure : callable
-        Of a float radius over the contact radius, 0 to 1; in any unit.
+        Takes a radius over the contact radius, a float from 0 to 1; returns any unit.
     stick_radius : array_like
-        Likewise, any shape.
+        Stick radius over the contact radius, 0 to 1, any shape.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def bore_of(
     Parameters
     ----------
     pressure : callable
-        Of a float radius over the contact radius, 0 to 1; in any unit.
+        Takes a radius over the contact radius, a float from 0 to 1; returns any unit.
     velocity : array_like
         Over omega a, above 0, any shape.
 

@@ -28,7 +28,7 @@ class ClosedForm:
     motion, name : str
         Name of the motion, and of the variable that holds the formula in a dataset.
     function : callable
-        Of arrays of the ``arguments``, dimensionless; returns such an array.
+        Takes arrays of the ``arguments``, dimensionless; returns such an array.
     arguments : tuple of str
         "velocity", "amplitude" or both.
     limit : str

@@ -1,4 +1,4 @@
-"""What is known exactly of a motion under Hertz's pressure, by its name: points need no marching.
+"""Closed forms of motions under Hertz's pressure, by name: their points need no marching.
 
 Stored results depend on this file and on the functions in it.  What formulas are called and which
 others there are is in catalogue.py, on which no stored result depends.
@@ -18,7 +18,7 @@ class StaticLimit(NamedTuple):
     Attributes
     ----------
     function : callable
-        Of the amplitude, an array, dimensionless.
+        Takes an array of amplitudes, dimensionless.
     any_poisson : bool
         Whether it holds for every Poisson's ratio, else for 0.
     """

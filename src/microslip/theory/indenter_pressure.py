@@ -1,4 +1,4 @@
-"""What closed forms ask of the pressure under an axisymmetric indenter."""
+"""The interface of closed forms to the pressure under an axisymmetric indenter."""
 
 from __future__ import annotations
 

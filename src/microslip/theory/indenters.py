@@ -26,7 +26,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     amplitude : float
         In u_lim, >= 0.
 
@@ -52,7 +52,7 @@ def static_stick_zone(pressure: IndenterPressure, stick_radius: np.ndarray | flo
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     stick_radius : array_like
         Over the contact radius, 0 to 1, any shape.
     """
@@ -68,7 +68,7 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     stick_radius : float
         Over the contact radius, above 0 and at most 1.
     poisson : float
@@ -92,7 +92,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     angle : float
         In u_lim / a, >= 0.
     poisson : float
@@ -123,11 +123,11 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     r : array_like
         Radii below the stick radius, over the contact radius, any shape.
     stick_radius : float
-        Likewise.
+        Stick radius over the contact radius.
 
     Returns
     -------
@@ -151,7 +151,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     Parameters
     ----------
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     angle : float
         Half stroke of the oscillation in u_lim / a, >= 0.
     poisson : float

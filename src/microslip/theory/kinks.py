@@ -1,4 +1,4 @@
-"""Where the friction of a motion is not smooth: borders for whoever interpolates it.
+"""Kinks in the friction of a motion: borders for its interpolation.
 
 Across an amplitude that stops all sticking in the limit of slow sliding, and across the velocity
 above which nothing sticks at any time, friction goes on, and its slope or its curvature does not.
@@ -21,14 +21,14 @@ LOAD = "normal"
 
 
 class Kinks(NamedTuple):
-    """Where the friction of a motion has kinks; all dimensionless.
+    """The amplitudes and the velocity at which friction has kinks; all dimensionless.
 
     Attributes
     ----------
     amplitudes : tuple of float
-        Below the velocity of the kink, sharpest at slow ones.
+        Amplitudes of kinks below the velocity of the kink, sharpest at low velocities.
     velocity : tuple of float
-        Of a kink at this velocity: () there is none; (v,) the same at all amplitudes;
+        Velocity of the kink: () there is none; (v,) the same at all amplitudes;
         (n0, n1, c0, c1, c2) at (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) of the amplitude A.
     """
 
@@ -58,19 +58,18 @@ UNDER_ANY = {
     # The same of springs that are pressed deeper; at the amplitude 1 contact is lost.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Under any pressure, in its own units."""
+"""Kinks under any pressure, in the units of that pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """What is known of a motion under a pressure, by the names that the solver writes; none of
-    most."""
+    """Known kinks of a motion under a pressure, both by the solver's names; most have none."""
     of_hertz = KINKS if pressure == "hertz" else {}
     known = UNDER_ANY | of_hertz
     return known[motion] if motion in known else _of_family(motion)
 
 
 def _of_family(motion: str) -> Kinks:
-    """Of a loop, and of a load that oscillates together with something else.
+    """Kinks of a loop, and of a load that oscillates together with another component.
 
     Above the velocity that goes with its largest one forward, a loop never goes back.  There is no
     kink there, but what slower velocities feel is over that, however small the amplitude; under a

@@ -56,7 +56,7 @@ def longitudinal(
 
 
 def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
-    """The same where 0 < v < x, shape (n,)."""
+    """Mean force where 0 < v < x, so that the motion turns back, shape (n,)."""
 
     def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
@@ -87,7 +87,7 @@ def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
 
 
 def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Where a rising function passes 0 between low and high, high if it does not; shape (n,)."""
+    """Root of a rising function between low and high, high if there is none; shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -36,11 +36,11 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     Parameters
     ----------
     amplitude : float
-        Of the load or of the indentation, over its mean, >= 0.
+        Amplitude of the load or of the indentation, over its mean, >= 0.
     by_load : bool
         Whether it is the load that oscillates, else the indentation.
     pressure : pressure.Pressure
-        Of an axisymmetric indenter.
+        Pressure of an axisymmetric indenter.
     """
     motion = _Motion(0.0, amplitude, by_load, pressure)
     loss = np.pi - motion.touch
@@ -107,7 +107,7 @@ class _Motion:
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """Of the sign of phi', and finite where contact begins."""
+        """A function with the sign of phi' that is finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the load grows by the stiffness of the contact as it is
             radius = self.pressure.radius(self.pressure.of_load(height))
@@ -163,7 +163,7 @@ class _Motion:
 def _first_not(
     holds: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Where a condition that holds at `low` ceases to before `high`, shape (n,)."""
+    """Point before `high` where a condition that is true at `low` becomes false, shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -18,7 +18,7 @@ SOURCES = (
     "closed form",
     "solver",
 )
-"""Where an answer comes from, by its code in the variable `source`."""
+"""Sources of an answer, by their code in the variable `source`."""
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
 OUTSIDE = (STATIC, SLOWER, FASTER, WIDER, NARROWER)
 """Sources of answers outside the tabulated range."""

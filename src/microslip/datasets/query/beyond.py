@@ -58,7 +58,7 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """What is proved about a motion, functions of arrays of velocity and amplitude.
+    """Proved limits and bounds of a motion, functions of arrays of velocity and amplitude.
 
     Attributes
     ----------

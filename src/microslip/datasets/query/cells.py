@@ -42,9 +42,9 @@ class CellTable:
         Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio; asinh of the
         velocity of drift.
     bounds : numpy.ndarray, shape (k,)
-        Of the error in each.
+        Bound of the error in each cell.
     poisson : float, optional
-        At which a map over Poisson's ratio is asked.
+        Poisson's ratio at which a map over Poisson's ratio is evaluated.
     """
 
     coordinates: MapCoordinates | DriftCoordinates
@@ -103,7 +103,7 @@ class CellTable:
         return self.at_scaled(self.coordinates.scaled(*place))
 
     def at_scaled(self, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same at scaled coordinates, shape (n, directions)."""
+        """Values and bounds of their errors at scaled coordinates, shape (n, directions)."""
         value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
         for (begin, end), nodes, bound in zip(
             self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
@@ -162,7 +162,7 @@ class CellNodes:
 
     @property
     def fingerprint(self) -> bytes:
-        """What tells this map from others."""
+        """Digest of the map, different for different maps."""
         parts = self.poisson, self.cells.borders, self.cells.nodes, self.cells.bounds
         said = self.cells.coordinates.to_json().encode()
         return hashlib.sha256(b"|".join([said, *(part.tobytes() for part in parts)])).digest()

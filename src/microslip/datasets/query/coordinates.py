@@ -1,4 +1,4 @@
-"""What a question is asked at: velocities and amplitudes as labelled arrays of floats."""
+"""Points of a request: velocities and amplitudes as labelled arrays of floats."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def labelled(name: str, given: object) -> xr.DataArray:
 
 
 def _array(name: str, given: Any) -> np.ndarray:
-    """What is given as an array: of floats, where it holds numbers.
+    """An argument as an array, of floats if all of its values are plain numbers.
 
-    NumPy makes floats of texts, times, masked places and quantities, too, without a word.
+    NumPy also converts texts, times, masked values and quantities to floats without a warning.
     """
     if hasattr(given, "units"):
         raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")

@@ -15,11 +15,11 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
 
 STATES = ("stays", "drifts", "undecided", "runs away")
-"""What becomes of a contact, by its code in the variable `state`; undecided: the force is that of
-the threshold, to within the error of this."""
+"""States of a contact, by their code in the variable `state`; undecided: the force equals the
+threshold within the error of the threshold."""
 (STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
 THRESHOLD_ERROR = 1e-12
-"""Of the closed forms that thresholds are known by."""
+"""Error of the closed forms for thresholds."""
 
 
 class Drift:

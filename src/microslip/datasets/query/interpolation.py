@@ -104,7 +104,7 @@ class Table:
 
     @cached_property
     def _miss(self) -> tuple[np.ndarray, np.ndarray]:
-        """What leaving nodes out misses along each axis: the largest at a node and around it."""
+        """Error from leaving nodes out along each axis: the largest at a node and around it."""
         along_rows = self.rows.misses(self.values)
         along_columns = self.columns.misses(self.values.T).T
         return largest_around(along_rows), largest_around(along_columns)

@@ -1,8 +1,8 @@
-"""Where a map has a wanted friction: `dataset.microslip.solve_for(...)`.
+"""Places of a map with a requested friction: `dataset.microslip.solve_for(...)`.
 
-A map is known to within its error, so what it answers is an interval: all places whose friction may
-be the wanted one, and in it the place where the map's own value is.  Friction may be the same at
-several places, and then there are as many intervals.
+A map is known to within its error, so that the result is an interval: all places whose friction may
+be the requested one, with the place where the map's own value equals it.  Friction may be the same
+at several places, and then there are as many intervals.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ OUTCOMES = (
     "friction is larger everywhere",
     "friction is smaller everywhere",
 )
-"""What comes of a question, by its code in the variable `outcome`; possible: within the error, but
-the map's own value is nowhere the wanted one."""
+"""Outcomes of a search, by their code in the variable `outcome`; possible: within the error, but
+the map's own value nowhere equals the requested friction."""
 (FOUND, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
 """Places that are looked at first, in equal steps and in equal ratios; between two of them friction
 is taken to cross what is wanted once at most."""
 DECADES = 6
-"""That the smallest of the latter is below the largest."""
+"""Decades from the smallest to the largest of the GEOMETRIC places."""
 AT_A_TIME = 1000
 """Questions, which bounds the memory."""
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
@@ -226,7 +226,7 @@ def _roots(
 def _end(
     asked: _Questions, outer: np.ndarray, inner: np.ndarray, row: np.ndarray, skip: np.ndarray
 ) -> np.ndarray:
-    """Where friction comes within the error, between a place outside and one inside."""
+    """End of the interval within the error, between a place outside of it and one inside."""
     from scipy.optimize.elementwise import find_root
 
     end = np.where(np.isnan(inner), outer, inner)

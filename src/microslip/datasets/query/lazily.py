@@ -19,14 +19,14 @@ def answered(
     asked: dict[str, xr.DataArray | None],
     **settings: float | None,
 ) -> xr.Dataset:
-    """What `at` says, a Dataset in the chunks of the question.
+    """Evaluate `at` lazily: a Dataset in the chunks of the request.
 
     Parameters
     ----------
     at : callable
         Friction.at or Drift.at, for what is in memory.
     dataset : xarray.Dataset
-        Which it is asked of.
+        Dataset to evaluate.
     asked : dict of xarray.DataArray
         The question by the names of the arguments of `at`, in the order of the dimensions of an
         answer; None for the amplitude of a steady motion.

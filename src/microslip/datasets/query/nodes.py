@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from microslip.datasets.query.cells import CellNodes
 
 READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
-"""Of a dataset: what its nodes are made of, beside the attribute `tolerance`."""
+"""Variables of a dataset that its nodes are made of, besides the attribute `tolerance`."""
 SAME = 1e-12
 """Poisson's ratios that differ by less are one."""
 
@@ -47,7 +47,7 @@ class Nodes:
 
     @property
     def fingerprint(self) -> bytes:
-        """What tells these nodes from others."""
+        """Digest of the nodes, different for different nodes."""
         parts = self.poisson, self.amplitude, self.velocity, self.values, self.errors
         return hashlib.sha256(b"|".join(part.tobytes() for part in parts)).digest()
 
@@ -149,7 +149,7 @@ def _refuse_no_numbers(dataset: xr.Dataset, names: tuple[str, ...]) -> None:
 
 
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
-    """Of nodes that are there twice, as after a join, one is taken: they have to be the same."""
+    """Raise InputError if nodes that occur twice, as after a join, contradict each other."""
     for axis in axes:
         values = chosen[axis].values
         _, first = np.unique(values, return_index=True)

@@ -11,11 +11,11 @@ from microslip.datasets.query.nodes import READ, Nodes, nodes_of
 
 
 class NodesOnce:
-    """What `nodes_of` made of a dataset last.
+    """A cache of the last result of `nodes_of`.
 
-    To read the nodes takes ten times as long as to interpolate between them, and who fits or
-    searches asks a hundred times.  A dataset may be changed in place, so that all that the nodes
-    are made of is compared by its digest.
+    Reading the nodes takes ten times as long as interpolating between them, and a fit or a search
+    does so a hundred times.  A dataset may be changed in place, so that the digest of all data of
+    the nodes is compared.
     """
 
     def __init__(self) -> None:

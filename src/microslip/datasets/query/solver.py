@@ -1,4 +1,4 @@
-"""What the solver says where a map is not good enough, kept beside the map if that is possible."""
+"""Solver results where a map is not accurate enough, stored next to the map if possible."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from microslip.sweeps.solve_stored import solve_stored
 
 
 def solved(folder: str, *point: Any, **settings: Any) -> Result:
-    """What solve_stored says, kept in the folder, or for now where that takes nothing."""
+    """The result of solve_stored, kept in the folder, or in a temporary one if that fails."""
     try:
         return solve_stored(*point, results=folder, **settings)
     except CacheError as error:
@@ -25,9 +25,9 @@ def solved(folder: str, *point: Any, **settings: Any) -> Result:
 
 
 def pulled_by(dataset: xr.Dataset) -> dict[str, object]:
-    """What moves the contacts of a dataset, as microslip.solve takes it; {} for a velocity.
+    """The drive and the contacts of a dataset, as for microslip.solve; {} for a velocity.
 
-    Raises InputError for what the dataset has lost of it, or has several values of.
+    Raises InputError if the dataset has none or several values of an argument of its drive.
     """
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
     for name in names:

@@ -58,7 +58,7 @@ class Modes(NamedTuple):
     images: np.ndarray
 
     def own(self) -> Modes:
-        """The same with scratch of its own."""
+        """A copy of these operators with its own scratch arrays."""
         return self._replace(
             amplitudes=np.empty_like(self.amplitudes), images=np.empty_like(self.images)
         )

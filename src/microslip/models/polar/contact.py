@@ -107,8 +107,10 @@ class PolarContact(SystemContact):
         return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
-        """The same points spread over the contact at its `deepest`, with the bound at `start`;
-        see RadialContact.at_indentation."""
+        """A contact with these points spread over the largest contact area of a period.
+
+        The arguments are those of RadialContact.at_indentation.
+        """
         out = self.unprepared()
         out.loaded = loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
         out.radius = radius = loaded.radius

@@ -31,9 +31,9 @@ class RadialContact(SystemContact):
     bound, weight : np.ndarray, shape (cells,)
         Friction bound and area of each ring.
     stiffness : float or None
-        Of the whole, see models.contact.Contact; None: that of the matrix.
+        Stiffness of the whole contact, see models.contact.Contact; None: that of the matrix.
     growth : varying_load.Growth or None
-        Of the rings; without it the normal load cannot change.
+        Growth of the rings with the depth; without it the normal load cannot change.
 
     Attributes
     ----------
@@ -90,9 +90,10 @@ class RadialContact(SystemContact):
         return self.growth
 
     def at_indentation(self, deepest: float, start: float) -> RadialContact:
-        """The same rings spread over the contact at its `deepest`, with the bound at `start`.
+        """A contact with these rings spread over the largest contact area of a period.
 
-        Both are depths (see varying_load.py), deepest > 0.
+        deepest: largest depth (see varying_load.py), above 0.  start: depth at the start of the
+        period, at which the friction bound is taken.
         """
         growth = self._known_growth
         radius = float(growth.pressure.radius(deepest))

@@ -103,8 +103,10 @@ def _close_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.
 
 @kernel
 def _pair_apart(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """As `_close_pair` for rings with a gap between them, and also adds to far[:, j, i]: the
-    kernels are smooth there."""
+    """Add the kernels of two rings with a gap between them, where the kernels are smooth.
+
+    Like `_close_pair`, and the coupling kernel is also added to far[:, j, i].
+    """
     psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
     x, w = averaging.apart
     n_modes = len(near)

@@ -7,7 +7,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 MOST_GROWTH = 2.5
-"""Of a rounding error in an upward recurrence, as half the exponent: e^5 times."""
+"""Half the exponent of the largest growth of rounding errors in an upward recurrence, e^5."""
 
 
 @kernel

@@ -47,9 +47,9 @@ class Convolution(NamedTuple):
     images : int
         Squares that one of them stands for, itself included: 1, of a half 2, of a quarter 4.
     folding : quarter.Folding
-        Of a quarter.
+        Tables for the convolution of a quarter of the squares.
     halving : half.Halving
-        Of a half.
+        Tables for the convolution of a half of the squares.
     """
 
     radices: np.ndarray
@@ -194,7 +194,7 @@ class Convolved(NamedTuple):
     Attributes
     ----------
     convolution : Convolution
-        Of each.
+        The convolution of each contact.
     extents : np.ndarray, shape (contacts,)
         u_lim of each over that of the body.
     first, second : np.ndarray
@@ -211,7 +211,7 @@ class Convolved(NamedTuple):
     displacement: np.ndarray
 
     def own(self) -> Convolved:
-        """The same with scratch of its own."""
+        """A copy of this operator with its own scratch arrays."""
         return convolved(self.convolution, *self.traction.shape[1:])._replace(extents=self.extents)
 
     @staticmethod

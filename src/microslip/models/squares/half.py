@@ -60,9 +60,12 @@ def halving(order: np.ndarray, opposite: np.ndarray, cells: int, symmetry: str) 
 def halved_filter(
     transforms: Sequence[np.ndarray], order: np.ndarray, rows: np.ndarray, cells: int, symmetry: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What multiplies a transform, (P, H), and what its conjugate, or in the mirror image the
-    opposite row of it, from the transforms of the influence coefficients, (P, P), forward frequency
-    first."""
+    """The two factors of a convolution of half the squares, shape (P, H) each.
+
+    The first one multiplies the transform.  The second one multiplies the conjugate of the
+    transform, or in the mirror image the opposite row of the transform.  transforms: those of the
+    influence coefficients, (P, P), forward frequency first.
+    """
     direct, cross = (part[np.ix_(order, order[rows])] for part in transforms)
     forward, lateral = (_turn(part, cells, len(order)) for part in (order, order[rows]))
     return direct, cross * forward[:, None] * (-1.0 if symmetry == MIRROR else lateral)

@@ -23,7 +23,7 @@ from microslip.foundation.compiled import kernel
 
 
 class Folding(NamedTuple):
-    """Where cells and frequencies of a quarter are, padded to L rows.
+    """Rows of the cells and of the frequencies of a quarter, padded to L rows.
 
     Attributes
     ----------
@@ -50,9 +50,12 @@ def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
 
 
 def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
-    """What `apply_filter` takes, from the cosine transform of the coefficients, rows the second
-    axis, (L, L), without the factor that `fold` leaves out: half the sum of two opposite rows in
-    the first of them, half their difference in the other."""
+    """The filter for `apply_filter`: half sums and half differences of opposite rows.
+
+    Half the sum of two opposite rows stands in the first of them, half their difference in the
+    other.  transform: the cosine transform of the coefficients, (L, L), with the rows along the
+    second axis, without the factor that `fold` leaves out.
+    """
     rows = np.arange(len(transform))[:, None]
     near, far = 0.5 * transform, 0.5 * transform[opposite]
     pairs = np.where(rows < opposite[:, None], near + far, far - near)

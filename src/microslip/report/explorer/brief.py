@@ -1,7 +1,7 @@
-"""What the page holds of sweeps that have no periods: maps and lines, a value and an error a point.
+"""Data of sweeps without periods on the page: maps and lines, with a value and an error per point.
 
-A sweep over velocities and amplitudes is a map, one for each Poisson's ratio.  Any other one, and
-what is pulled, is lines over its longest axis, a line for each place on the others.
+A sweep over velocities and amplitudes is a map, one for each Poisson's ratio.  Any other sweep, and
+a sweep with a drive, is lines over its longest axis, a line for each place on the other axes.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
-    """What a map and a set of lines say of themselves; of the paper's sweeps the group is None."""
+    """Description of a map or a set of lines; the group of the paper's sweeps is None."""
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,

@@ -1,4 +1,4 @@
-"""What the page holds of a certified map: its cells, and how its coordinates are made."""
+"""Data of a certified map on the page: its cells, and the formulas of its coordinates."""
 
 from __future__ import annotations
 

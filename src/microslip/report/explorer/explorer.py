@@ -59,7 +59,7 @@ ASSETS += (
     "link.js",
     "page.js",
 )
-"""What the page is made of besides numbers and plotly.js, in the order in which scripts run."""
+"""Parts of the page besides numbers and plotly.js, in the order in which scripts run."""
 
 
 def digest() -> str:

@@ -1,4 +1,4 @@
-"""What the page holds: maps, lines, limits and periods as one value that JSON can hold.
+"""Data of the page: maps, lines, limits and periods as one value that JSON can hold.
 
 Numbers of datasets are kept as they are. Those of periods are whole numbers of steps in base64:
 tractions in steps of bound/127, phases in steps of 2 pi/65535, radii and bounds in steps of
@@ -165,7 +165,7 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
 
 
 def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
-    """What made a map and its periods, as a list of pairs of texts."""
+    """Provenance of a map and its periods, as a list of pairs of texts."""
     found = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
     if "configuration" in found:
         found["configuration"] = json.dumps(json.loads(found["configuration"]), indent=1)

@@ -1,4 +1,4 @@
-"""What a page needs: sweeps, certified maps, and a period for every point that moves and vibrates.
+"""Requests of a page: sweeps, certified maps, and a period for every point that moves and vibrates.
 
 There are two pages.  That of the paper's sweeps is made in a few minutes; the other one shows every
 sweep of the configuration.

@@ -1,4 +1,4 @@
-"""What the page's form for a real contact knows: fields, units, materials, rules and sentences.
+"""Data of the page's form for a real contact: fields, units, materials, rules and sentences.
 
 All are those of microslip.predict, so that the page asks, warns and refuses as it does.
 """
@@ -72,7 +72,7 @@ SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_
 """Both bodies, and the fields that take the place of a name."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
 CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
-"""What the form holds at first besides numbers."""
+"""Initial choices of the form besides numbers."""
 
 
 def packed() -> dict:

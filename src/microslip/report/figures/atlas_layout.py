@@ -1,4 +1,4 @@
-"""Where everything goes on the page of the atlas, in millimetres."""
+"""Layout of the page of the atlas, in millimetres."""
 
 from __future__ import annotations
 

@@ -40,8 +40,8 @@ STAYS: dict[str, Any] = {"facecolor": look.PALE, "edgecolor": "none"}
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map with its cells and points, and beside it the bound of the error in each cell.
 
-    Of a map over Poisson's ratio, too, the part at the smallest one is shown; one of the static
-    limit is a line.
+    A map that also covers Poisson's ratios is shown at the smallest one.  A map of the static limit
+    is a line.
     """
     if certified_map.is_of_drift(dataset):
         require(name, name, dataset, OF_DRIFT)
@@ -183,6 +183,6 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
 
 
 def _axis(dataset: xr.Dataset, dim: str) -> str:
-    """What is written at an axis."""
+    """Label of an axis."""
     quantity = {"velocity": "forward velocity"}.get(dim, dim)
     return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"

@@ -1,4 +1,4 @@
-"""Where the oscillating bore sticks: patches that alternate, and their areas over a period."""
+"""Stick zones of the oscillating bore: alternating patches, and their areas over a period."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """What sticks, shaded by the share of the bound in use; what slips is left white."""
+    """Draw sticking points shaded by the share of the bound in use, and slipping points white."""
     x, y, share = (at[f"patch_{n}"].values for n in ("lateral", "forward", "share"))
     line = np.linspace(-1.0, 1.0, PIXELS)
     pixels = np.stack(np.meshgrid(line, line), axis=-1)

@@ -100,7 +100,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, column: tuple) -> None:
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
-    """What the oscillation uses at its turning points, solid, and what is left, dashed."""
+    """Draw the share of the bound that the oscillation uses, solid, and the rest, dashed."""
     radius = dataset["share_radius"].values
     dim = f"{motion}_share_amplitude"
     amplitudes = dataset[dim].values

@@ -1,4 +1,4 @@
-"""What the figures ask of a dataset: checks, one Poisson ratio, curves along one dimension."""
+"""Access of figures to a dataset: checks, one Poisson ratio, curves along one dimension."""
 
 from __future__ import annotations
 

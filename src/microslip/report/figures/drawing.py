@@ -57,9 +57,9 @@ SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswi
 """Figures of the paper by their numbers: fig1 to fig6."""
 
 ON_DEMAND = {"fit": ("fit",)}
-"""Figures that commands draw of answers of their own, and no workflow makes; likewise."""
+"""Figures that commands draw from their own results, not the workflow, and their datasets."""
 CERTIFIED = "certified_"
-"""What names of certified maps begin with; a figure of one has the name of its dataset."""
+"""Prefix of the names of certified maps; a figure of one has the name of its dataset."""
 MOST_POISSONS = 4
 """Lines that the figure of Poisson's ratios can tell apart."""
 
@@ -148,7 +148,7 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
-    """What made datasets, as JSON: a list of those of their attributes that say so."""
+    """Provenance of datasets, as JSON: a list of their attributes in PROVENANCE."""
     found = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
     return json.dumps(found, sort_keys=True)
 
@@ -174,7 +174,7 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 
 
 def _write(figure: Figure, kind: str, path: Path, metadata: Mapping[str, str | None]) -> None:
-    """What `savefig` does, but that it lays out a second time what has its place."""
+    """Write a figure as `savefig` does, but without a second layout."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
 

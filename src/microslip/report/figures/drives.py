@@ -1,4 +1,4 @@
-"""What pulls the contact: friction over velocity by each drive, and a mass on a spring."""
+"""Drives of a contact: friction over velocity under each drive, and a mass on a spring."""
 
 from __future__ import annotations
 

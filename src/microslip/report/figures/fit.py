@@ -22,7 +22,7 @@ CONDITIONS = {
     "row_load_N": ("load", "N"),
     "frequency_Hz": ("frequency", "Hz"),
 }
-"""What may differ from row to row: its name and its unit in the SI."""
+"""Conditions that can differ from row to row: name and SI unit."""
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 VARIABLES = ("measured", "measured_error", "fitted", "fitted_error", "residual", *CONDITIONS)
@@ -122,9 +122,9 @@ def _model(
 
 
 def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
-    """Titles and rows of what differs in another condition than the abscissa.
+    """Titles and rows of the series that differ in another condition than the abscissa.
 
-    Of more than there are looks all rows are one series.
+    If there are more series than line styles, all rows are one series.
     """
     others = [
         each for each in CONDITIONS if each != abscissa and len(np.unique(dataset[each].values)) > 1
@@ -145,7 +145,7 @@ def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
 
 
 def _unit(condition: str, dataset: xr.Dataset) -> str:
-    """Of a condition in the SI; the amplitude may be an angle."""
+    """SI unit of a condition; the amplitude may be an angle."""
     if condition == "amplitude_si" and dataset.attrs.get("motion") == "bore":
         return "rad"
     return CONDITIONS[condition][1]

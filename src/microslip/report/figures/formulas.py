@@ -13,7 +13,7 @@ LETTERS = {
     **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
     **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
 }
-"""The same as characters."""
+"""Names of Greek letters, and their Unicode characters."""
 
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 

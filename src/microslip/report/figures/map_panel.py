@@ -102,12 +102,12 @@ def shows_points(axes: Axes) -> bool:
 
 
 def computed_points() -> Line2D:
-    """What a legend shows for the points of a map."""
+    """Legend entry of the points of a map."""
     return Line2D([], [], label="computed points", **POINTS)
 
 
 def unconverged(label: str) -> Patch:
-    """What a legend shows for hatched cells."""
+    """Legend entry of hatched cells."""
     return Patch(label=label, **_HATCHED)
 
 

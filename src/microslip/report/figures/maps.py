@@ -59,7 +59,7 @@ def form(motion: str, name: str, color: str, linestyle: Any, linewidth: float = 
 
 @dataclass(frozen=True)
 class Map:
-    """What one map figure shows: a motion, its curves over the amplitude and over the velocity."""
+    """Content of one map figure: a motion, its curves over the amplitude and over the velocity."""
 
     key: str
     static: tuple[Overlay, ...]

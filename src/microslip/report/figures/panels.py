@@ -64,7 +64,7 @@ class Scale:
         return inner[:: max(1, -(-inner.size // 5))], decades
 
     def shown(self, values: np.ndarray) -> np.ndarray:
-        """Where values are drawn: in the strips where they are too small, or not numbers."""
+        """Positions at which values are drawn; small values and NaN are drawn in the strips."""
         values = np.asarray(values, dtype=float)
         inside = np.where(values < self.low, self.below, np.minimum(values, self.last))
         return np.where(np.isfinite(values), inside, self.above)

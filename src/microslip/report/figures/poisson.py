@@ -1,4 +1,4 @@
-"""What Poisson's ratio changes: both maps at several of its values, and by how much they differ."""
+"""Effect of Poisson's ratio: both maps at several of its values, and their differences."""
 
 from __future__ import annotations
 

@@ -14,10 +14,10 @@ from microslip.report.figures.lines import LOOKS
 
 VARIABLES = ("competitor", "competitor_contest", "profile_ratio", "map_tolerance")
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
-"""What the ones with a name of their own are called."""
+"""Labels of the competitors that have a name of their own."""
 COLUMNS, ROW = 2, 3.1
 LEAST_RANGE = 10.0
-"""Where the axis ends if nothing is dearer than the best."""
+"""End of the axis if nothing is more expensive than the best."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

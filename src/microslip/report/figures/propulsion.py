@@ -25,7 +25,7 @@ ROWS = (
     ("force", r"force  $F/(\mu F_z)$"),
     ("efficiency", "efficiency  (dimensionless)"),
 )
-"""What the rows show, and their labels."""
+"""Quantities of the rows, and their labels."""
 WIDTH, HEIGHT = 2.36, 5.2
 VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 

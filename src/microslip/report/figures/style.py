@@ -136,7 +136,7 @@ def number(value: float) -> str:
 
 
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:
-    """What holds in a panel: pairs of a symbol for LaTeX and its value, as mathtext."""
+    """Conditions of a panel as mathtext; pairs: a symbol for LaTeX and its value."""
     return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
 
 
@@ -254,7 +254,7 @@ def after_layout(figure: Figure | SubFigure, finish: Callable[[], None]) -> None
 
 
 def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 0.04) -> None:
-    """The same vertical range, with a margin, for every panel that shows shares of mu F_z."""
+    """Set the vertical range, with a margin, of a panel that shows shares of mu F_z."""
     span = (high - low) * margin
     axes.set_ylim(low - span, high + span)
     axes.set_yticks([i / 5 for i in range(round(5 * low), round(5 * high) + 1)])

@@ -44,7 +44,7 @@ COSTS = {
         "effort: iterations $\\times$ unknowns\n(dimensionless)",
     ),
 }
-"""What each figure has along x: the variable, the front in it, the label."""
+"""Abscissa of each figure: the variable, the front in it, the label."""
 POINT: tuple[str, ...] = (
     "point",
     "point_title",

@@ -1,4 +1,4 @@
-"""What measured friction tells about a contact: its coefficient of friction, and u_lim or G.
+"""Fit of a contact's coefficient of friction, and of u_lim or G, to measured friction.
 
 `measured_csv` and `measured` read and check the table, `scales` turns its rows into dimensionless
 points for a guess of both numbers, `friction_models` answers for the points, `estimate` is the

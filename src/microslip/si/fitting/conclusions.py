@@ -56,7 +56,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     Parameters
     ----------
     confidence : float
-        Of the intervals, 0 to 1.
+        Confidence level of the intervals, 0 to 1.
     texts : dict of str
         What was asked.
     """

@@ -85,7 +85,7 @@ def best_near(rows: Rows, theta: np.ndarray) -> Best:
 
 
 def starts(rows: Rows) -> list[np.ndarray]:
-    """Where to start from: the best places of a scan over all scales, the best one first."""
+    """Initial guesses: the best places of a scan over all scales, the best one first."""
     thetas = np.empty((SCANNED, 2))
     thetas[:, 0] = np.clip(np.log(GUESSED_MU), rows.lower[0], rows.upper[0])
     thetas[:, 1] = np.linspace(rows.lower[1], rows.upper[1], SCANNED)

@@ -26,7 +26,7 @@ from microslip.si.quantities import read
 
 SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
-"""Of mu_macro, where the solver answers."""
+"""Default and largest accepted error of mu_macro, where the solver computes it."""
 CONFIDENCE = 0.95
 MOST_PASSES = 6
 SETTLED = 5e-4
@@ -50,11 +50,11 @@ def fit(
     decimal: str = ".",
     encoding: str = "utf-8",
 ) -> Fit:
-    """What measured friction tells: mu, and u_lim or the shear modulus.
+    """Fit mu, and u_lim or the shear modulus, to measured friction.
 
-    Without a radius u_lim is looked for, and nothing need be known of the bodies but Poisson's
-    ratio.  With one it is the shear modulus, by Hertz's theory.  Rows under several loads are
-    brought together by Hertz's theory in both cases.
+    Without a radius u_lim is fitted, and Poisson's ratio is the only property of the bodies that is
+    needed.  With a radius the shear modulus is fitted, by Hertz's theory.  In both cases Hertz's
+    theory brings rows under several loads together.
 
     Parameters
     ----------
@@ -66,7 +66,8 @@ def fit(
         friction (the mean forward force) or mu (the same over the load); friction_error or
         mu_error, standard errors, if known; texts named label, name, id, sample or comment.
     map : xarray.Dataset, optional
-        Of a sweep of this motion, see open_map: it answers at once.  Without it the solver does.
+        Dataset of a sweep of this motion, see open_map.  Interpolating it is fast; without it the
+        solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
         What all rows have in common, in place of a column.
     nu : quantity, optional
@@ -77,7 +78,7 @@ def fit(
     counterbody : str, optional
         Beside a radius "rigid", which it is if not given, or "same": as the first body.
     confidence : quantity, optional
-        Of the intervals, 0.95 if not given.
+        Confidence level of the intervals, 0.95 if not given.
     tolerance : quantity, optional
         Largest accepted error of mu_macro where the solver answers, 1e-3 if not given.
     decimal, encoding : str
@@ -166,10 +167,10 @@ def _scale(
 def _rows(
     rows: Measured, scale: Displacement | Modulus, model: FrictionModel, ends: tuple[float, float]
 ) -> estimate.Rows:
-    """What the least squares is asked."""
+    """The rows, weights and limits for the least squares."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
-        """Of all guesses at once, for a map takes as long for one."""
+        """Ratios of all guesses in one call, which takes a map as long as a single guess."""
         parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
         return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
 

@@ -1,4 +1,4 @@
-"""What a fit has found."""
+"""The result of a fit."""
 
 from __future__ import annotations
 
@@ -32,19 +32,20 @@ class Fit:
         Displacement that lets the whole contact slide under the mean load, m, and its interval;
         None where the rows do not tell it, or leave it open to that side.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
-        Of the bodies, Pa, likewise; None unless their radius was given.
+        Shear modulus of the bodies, Pa, and its interval; None unless their radius was given.
     load_N : float
         The mean load, N.
     confidence : float
-        Of the intervals, 0 to 1.
+        Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
         How far errors of the model can move mu, and u_lim or the shear modulus: the relative part
         of the intervals that is not scatter.
     standard_error : float or None
-        Of one row, from what the fit leaves, in the unit of the rows; None where the rows have
-        errors of their own.
+        Standard error of one row, from the residuals of the fit, in the unit of the rows; None
+        where the rows have errors of their own.
     chi_square, p_value : float or None
-        Of rows with errors of their own: sum of squares, and how likely a larger one is by chance.
+        Weighted sum of squares of rows with errors of their own, and the probability that chance
+        makes it larger.
     degrees_of_freedom : int
         Rows less two.
     told : tuple of str
@@ -62,7 +63,8 @@ class Fit:
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
         Conditions of each row; the amplitude in m, or rad for a bore.
     velocity, amplitude : np.ndarray, shape (rows,)
-        The same as dimensionless groups at the best fit, as microslip.solve takes them.
+        Speed and amplitude of each row as dimensionless groups at the best fit, as for
+        microslip.solve.
     measured, measured_error : np.ndarray, shape (rows,)
         N or dimensionless; the error NaN where none was given.
     fitted, fitted_error : np.ndarray, shape (rows,)

@@ -1,4 +1,4 @@
-"""What answers for the rows of a fit: a finished map, or the solver by way of a coarse map.
+"""Friction of the rows of a fit: from a finished map, or from the solver and a coarse map.
 
 A fit asks for the same rows hundreds of times, at other guesses of both unknowns.  The solver
 answers once for a coarse map, which tells how friction changes from guess to guess, and then for
@@ -22,18 +22,18 @@ LEAST, MOST = 0.03, 20.0
 """Amplitudes beyond which more or less of it tells nothing: nearly all of the contact sticks, and
 nearly all of it slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Likewise of the velocity over the amplitude, or of the velocity of a bore."""
+"""Velocities over the amplitude, or velocities of a bore, outside which friction tells nothing."""
 PROVED = ("transverse", "bore")
 """Motions that a map answers for beyond its own range, for Poisson's ratio 0."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Of the coarse map: a Poisson's ratio costs time, and hardly changes how friction changes."""
+"""Settings of the coarse map.  Poisson's ratio is 0 to save time: it hardly changes the slopes."""
 MOST_SOLVED = 200
 """Rows that the solver answers for one by one."""
 
 
 class FrictionModel(Protocol):
-    """What answers for rows: mu_macro and the largest error it may have, shape (n,) each."""
+    """A model that gives mu_macro of the rows and its estimated error, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
         """mu_macro of all rows for one guess after the other.
@@ -57,7 +57,7 @@ class MapFriction:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of the motion that is asked for.
+        Dataset of a sweep of the requested motion.
     poisson : float
         Poisson's ratio.
 

@@ -17,7 +17,7 @@ from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
-"""What has to be known of every row."""
+"""Conditions that every row needs."""
 ABOVE_ZERO = ("amplitude", "frequency", "load")
 
 
@@ -30,7 +30,7 @@ class Measured:
     speed, amplitude, frequency, load : np.ndarray
         m/s, m (rad for a bore), Hz and N.
     value, error : np.ndarray
-        What was measured, N or dimensionless, and its standard error; NaN where none was given.
+        Measured friction, N or dimensionless, and its standard error; NaN where none was given.
     quantity : str
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
@@ -58,7 +58,7 @@ class Measured:
 
     @property
     def weight(self) -> np.ndarray:
-        """What a coefficient of friction is multiplied with to be what was measured, (n,)."""
+        """Factor from a coefficient of friction to the measured quantity, (n,)."""
         return self.load if self.quantity == "friction" else np.ones_like(self.load)
 
     @property
@@ -204,5 +204,5 @@ def _quantity(table: Mapping[str, np.ndarray], given: object) -> str:
 
 
 def named(given: Any) -> str | list:
-    """What messages show of a table: its path, or the names of its columns."""
+    """A table as messages show it: its path, or the names of its columns."""
     return str(given) if isinstance(given, str | os.PathLike) else list(given)

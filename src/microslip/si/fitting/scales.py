@@ -20,7 +20,7 @@ from microslip.theory import hertz
 
 
 class Points(NamedTuple):
-    """Where microslip.solve is asked, shape (n,) each: velocity and amplitude."""
+    """Points for microslip.solve: velocity and amplitude, shape (n,) each."""
 
     velocity: np.ndarray
     amplitude: np.ndarray
@@ -35,9 +35,9 @@ class Displacement:
     rows : Measured
         The measurements.
     poisson : float
-        Of the one half-space that stands for both bodies, dimensionless.
+        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
     unit : str
-        Of the second unknown.
+        Unit of the second unknown.
     """
 
     rows: Measured
@@ -81,11 +81,11 @@ class Modulus:
     spin : bool
         Whether the amplitude is an angle, of a bore.
     poisson : float
-        Of the bodies, dimensionless.
+        Poisson's ratio of the bodies, dimensionless.
     alike : bool
         Whether both bodies have that modulus; else the second one is rigid.
     radius : float
-        Of relative curvature, m.
+        Radius of relative curvature, m.
     """
 
     rows: Measured
@@ -129,4 +129,4 @@ class Modulus:
 
 
 SOFTEST, HARDEST = 1e2, 1e13
-"""Of a weak gel, and beyond diamond, Pa."""
+"""Smallest and largest shear modulus, Pa: that of a weak gel, and one above diamond."""

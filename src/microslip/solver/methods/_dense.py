@@ -129,7 +129,7 @@ class DenseContact:
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
-    """What a Method's `dress` is: a contact and parameters to a DenseContact."""
+    """A function for `Method.dress` that turns a contact and parameters into a DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 

@@ -13,7 +13,7 @@ from microslip.solver.methods._dense import dense, descend
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
-    """What would take the slip of a point away if it were alone, times the damping."""
+    """Length of the step that would remove the slip of a single point, times the damping."""
     return damping / scale
 
 

@@ -1,1 +1,1 @@
-"""What accuracy costs, method by method."""
+"""Study of the cost of accuracy, method by method."""

@@ -92,7 +92,7 @@ def scaling(study: Accuracy, model: str) -> list[dict]:
 
 
 def pieces(study: Accuracy) -> tuple[list, list]:
-    """What one job each answers: two lists of lists of requests, those that take long first."""
+    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     points = list(study.points.values())
     long = [[request] for request in map(truth, points) if request is not None]
     for model in SCALING_SIZES:

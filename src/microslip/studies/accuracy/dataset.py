@@ -38,7 +38,7 @@ GROUPS["profile"] = (
     "How much dearer than the best a model or a method is",
     ("competitor", "map_tolerance", "point"),
 )
-"""What is not a column of the table of trials."""
+"""Groups of the dataset besides the table of trials: titles and dims."""
 
 # Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
 TRIAL_VARIABLES = {

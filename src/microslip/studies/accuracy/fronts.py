@@ -1,4 +1,4 @@
-"""What is picked from trials, and what is fitted to them: fronts, the cheapest, exponents."""
+"""Fronts and cheapest trials, and exponents fitted to trials."""
 
 import numpy as np
 from numpy.typing import ArrayLike

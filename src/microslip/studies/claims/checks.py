@@ -1,4 +1,4 @@
-"""What the runs say about each part of the paper's statements: checks with margins and errors.
+"""Checks of each part of the paper's statements by the runs, with margins and errors.
 
 One function for each name in statements.PARTS: (study, runs) -> list of verdicts.Check.
 study: records.Claims; runs(request) -> tables of results, see runs.Runs.

@@ -1,4 +1,4 @@
-"""What the runs say about static friction: checks of the parts about Eqs 7, 11 and 33.
+"""Checks of static friction by the runs: the parts about Eqs 7, 11 and 33.
 
 As in checks.py: one function for each part, (study, runs) -> list of verdicts.Check.
 """

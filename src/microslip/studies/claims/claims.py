@@ -26,7 +26,7 @@ TRAVEL = 10.0
 CELLS = {"fine": 32, "coarse": 16}
 """Rings of transients and of steady tractions; the difference of the two is their error."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Of steady tractions: the centre of rotation lies inside the contact, but for the last one."""
+"""Velocities of steady tractions: all but the last have the centre of rotation in the contact."""
 
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
@@ -128,7 +128,7 @@ def steady(study: Claims) -> list[dict]:
 
 
 def pieces(study: Claims) -> tuple[list, list]:
-    """What one job each answers: two lists of lists of requests, those that take long first."""
+    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
     long = [of_paper[i : i + FEW] for i in range(0, len(of_paper), FEW)]

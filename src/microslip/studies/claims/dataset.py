@@ -41,7 +41,7 @@ for _motion in static_limits.FORMULAS:
             (f"{_motion}_share_amplitude", "share_radius"),
         ),
     }
-"""What is not over statements: titles and dims by the name of a group."""
+"""Groups of the dataset besides the statements: titles and dims by the name of a group."""
 BOUNDARY = 181
 """Angles at which the edge of the alternating patches is given."""
 

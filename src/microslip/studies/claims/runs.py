@@ -82,7 +82,7 @@ _CALLS = {
         "microslip.adaptive.single_run run_trial(...)['mu_macro']",
     ),
 }
-"""What of a request is an argument, and what is called, by kind."""
+"""Names of the arguments in a request, and the function that takes them, by kind."""
 
 
 def _shown(value: str | float) -> str:
@@ -95,7 +95,7 @@ def _shown(value: str | float) -> str:
 
 
 def made_by(request: dict) -> str:
-    """What computed a run, in a few words."""
+    """Short description of how a run was computed."""
     kinds = {
         "point": "certified point",
         "history": f"transient from {request.get('start')}",

@@ -59,7 +59,7 @@ class Part:
     claim : int
         Number of the statement.
     name : str
-        Of the function in `checks` or `checks_static` that collects the checks, and of the part.
+        Name of the part, and of the function in `checks` or `checks_static` for its checks.
     text : str
         What is asked, with its criterion.
     counts : bool

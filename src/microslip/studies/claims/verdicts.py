@@ -80,7 +80,7 @@ def decisive(checks: list, outcome: int) -> Check | None:
 
 
 def tightest(checks: list) -> Check | None:
-    """Of the checks that hold the one with the least margin, None without any."""
+    """The check with the least margin among those that hold; None if none does."""
     found = [check for check in checks if check.outcome == HOLDS]
     return min(found, key=lambda check: check.margin, default=None)
 
@@ -133,7 +133,7 @@ def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
 
 
 def _within(group: list[Check]) -> str:
-    """Where the checks of a group fail, by the second name of their places."""
+    """Text with the places where checks of a group fail, by the second name of their places."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:
         return "for some"

@@ -1,1 +1,1 @@
-"""What motions drive."""
+"""Study of self-propelled motions."""

@@ -23,7 +23,7 @@ def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
 
 
 def pieces(study: Propulsion) -> tuple[list, list]:
-    """What one job each answers: two lists of lists of requests, those that take long first."""
+    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     asked = [line(study, motion) for motion in study.motions.values()]
     distinct = [request for i, request in enumerate(asked) if request not in asked[:i]]
     return [], [distinct[i : i + LINES_TOGETHER] for i in range(0, len(distinct), LINES_TOGETHER)]

@@ -1,1 +1,1 @@
-"""Where methods fail."""
+"""Study of the failures of methods."""

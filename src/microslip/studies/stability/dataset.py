@@ -16,7 +16,7 @@ OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
 GROUPS = {"axes": ("What is varied in the blocks of cases", ("axis",))}
-"""What is not over methods and cases."""
+"""Groups of the dataset that are not over methods and cases."""
 
 NUMBERS = {
     "mu_macro": ("mu_macro", MU_MACRO.description),

@@ -17,7 +17,7 @@ from microslip.studies import requests
 
 @dataclass(frozen=True)
 class Axis:
-    """What is varied.
+    """A quantity that is varied.
 
     Attributes
     ----------
@@ -182,7 +182,7 @@ def reference(study: Stability, overrides: dict) -> dict:
 
 
 def pieces(study: Stability) -> tuple[list, list]:
-    """What one job each answers: two lists of lists of requests, those that take long first."""
+    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
     known: set[str] = set()
     long: list[list[dict]] = []
