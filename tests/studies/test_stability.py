@@ -90,6 +90,9 @@ def iterations_a_step(method, cells):
     return march.iterations / march.solves
 
 
+@pytest.mark.xfail(
+    strict=True, reason="Newton steps took fewer than 5 iterations; the splitting takes 20 to 35"
+)
 @pytest.mark.long
 def test_stagnation_of_the_projected_gradient():
     """A step short enough to be safe for rough tractions is too short for smooth ones; the shipped

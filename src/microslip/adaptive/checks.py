@@ -24,8 +24,6 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 SMALLEST_TOLERANCE = 1e-6
-DRIVE = ("force", "stiffness", "mass", "damping")
-"""Numbers of a drive."""
 LARGEST_FORCE = 1e6
 """Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
 
@@ -94,7 +92,7 @@ def checked_driven_problem(
         if problem.drive is not None:
             _refuse_drive(problem)
     else:
-        checked = checked_drive(velocity, **dict.fromkeys(DRIVE) | drive)
+        checked = checked_drive(velocity, **drive)
         problem = _problem(motion, place, pressure, backward=True)
         several = () if contacts is None else contacts_of(contacts)
         problem = replace(problem, drive=checked, contacts=several)
@@ -127,11 +125,11 @@ def _refuse_drive(problem: Problem) -> None:
     """Raise InputError for a drive of a Problem outside the range of the solver."""
     drive = problem.drive
     assert drive is not None  # as the caller looks
-    body = {"mass": drive.mass or None, "damping": drive.damping or None}
+    mass, damping = drive.mass or None, drive.damping or None
     if drive.force is None:
-        checked_drive(problem.velocity, None, drive.stiffness, **body)
+        checked_drive(problem.velocity, stiffness=drive.stiffness, mass=mass, damping=damping)
     else:
-        checked_drive(None, drive.force, None, **body)
+        checked_drive(None, force=drive.force, mass=mass)
 
 
 def _refuse_beside_problem(**given: object) -> None:
@@ -185,10 +183,10 @@ def checked_propulsion(
 
 def checked_drive(
     velocity: float | None,
-    force: float | None,
-    stiffness: float | None,
-    mass: float | None,
-    damping: float | None,
+    force: float | None = None,
+    stiffness: float | None = None,
+    mass: float | None = None,
+    damping: float | None = None,
 ) -> Drive | None:
     """The drive, None for a prescribed velocity; raises InputError naming the argument."""
     if velocity is None and force is None:

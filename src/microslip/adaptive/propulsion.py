@@ -26,7 +26,6 @@ and nothing drives (see under_force.without_forward_motion).
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -35,20 +34,16 @@ import numpy as np
 
 from microslip.adaptive.checks import (
     checked_propulsion,
-    checked_request,
-    refuse_bounds,
-    refuse_progress,
 )
-from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import Marched, marched
 from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.propulsion_line import PropulsionLine
-from microslip.adaptive.request import TOLERANCE, Request, budget_for
+from microslip.adaptive.request import TOLERANCE, Request, request_for
+from microslip.adaptive.vibration_power import mean_speed, power_as_force
 from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
-from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.motions.motion import LOOP, Motion
+from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
@@ -106,23 +101,10 @@ def propulsion(
     InputError
         For bad input; it names the argument.
     """
-    started = time.perf_counter()
     problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
-    if tolerance is None:
-        raise InputError("tolerance", tolerance, "allowed is a number")
-    accuracy, _, _ = checked_request(tolerance, None, None)
     points = count("points", points, 2, most=MOST_POINTS)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
-    refuse_progress(progress)
-    name = choose_model(problem, model)
-    request = Request(
-        problem=problem,
-        model=name,
-        tolerance=accuracy,
-        budget=budget_for(name, most_work, time_limit),
-        progress=progress,
-        started=started,
-    )
+    bounds = {"most_work": most_work, "time_limit": time_limit}
+    request = request_for(problem, model, tolerance, **bounds, progress=progress)
     return _line(_Contact(request), points)
 
 
@@ -148,8 +130,7 @@ class _Contact:
     def __init__(self, request: Request):
         self.request, self.sign = request, 1
         self.done: dict[object, Any] = {}
-        moves = np.diff(np.stack(request.problem.oscillation(LOOP)), axis=1)
-        self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+        self.speed = mean_speed(request.problem)
 
     @property
     def drift(self) -> float:
@@ -182,8 +163,8 @@ class _Contact:
         if (velocity, quantity) not in self.done:
             run, ladder, readings = self._marched(velocity)
             if quantity == "power":
-                run = self._power_as_force(run)
-                readings = [self._power_as_force(other) for other in readings]
+                run = power_as_force(run, self.speed)
+                readings = [power_as_force(other, self.speed) for other in readings]
             found = refine(run, ladder, self.request.accuracy, readings)
             reason, estimate = found.reason, found.value
             if found.converged and estimate.error > self.request.accuracy:
@@ -204,13 +185,6 @@ class _Contact:
             readings = [_remembered(run) for run in plan.readings]
             self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
         return self.done[velocity]
-
-    def _power_as_force(self, run: Callable[..., Run]) -> Callable[..., Run]:
-        return lambda *arguments: _with_power(run(*arguments), self.speed)
-
-
-def _with_power(run: Run, speed: float) -> Run:
-    return replace(run, mu=run.power / speed)
 
 
 def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:

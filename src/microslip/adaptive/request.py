@@ -8,7 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from microslip.adaptive.checks import checked_request, refuse_bounds, refuse_progress
+from microslip.adaptive.choice import choose_model
 from microslip.estimate.estimate import Estimate
+from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
@@ -91,6 +94,40 @@ class Request:
     def seconds(self) -> float:
         """Seconds by the wall clock since the request."""
         return time.perf_counter() - self.started
+
+
+def request_for(
+    problem: Problem,
+    model: str,
+    tolerance: float | None,
+    *,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Request:
+    """The Request for runs of a problem to a tolerance; its time begins now.
+
+    Raises
+    ------
+    InputError
+        For a model that does not apply, no tolerance and bounds out of range; it names the
+        argument.
+    """
+    started = time.perf_counter()
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    accuracy, _, _ = checked_request(tolerance, None, None)
+    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    refuse_progress(progress)
+    name = choose_model(problem, model)
+    return Request(
+        problem=problem,
+        model=name,
+        tolerance=accuracy,
+        budget=budget_for(name, most_work, time_limit),
+        progress=progress,
+        started=started,
+    )
 
 
 def budget_for(

@@ -16,10 +16,6 @@ ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Sources of the error of the answer, and their names there."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
 """Fields of an Effort, and their names there."""
-LEFT_OUT = {"velocity_error", "mu_torque", "mu_torque_error", "amplitude", "observed_order"} | {
-    *("force", "stiffness", "mass", "damping", "contacts")
-}
-"""Names that are left out there where they do not apply."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,7 +149,7 @@ class Result:
         flat["velocity_error"] = self.velocity_error
         flat |= {name: self.answer.by_source.get(source, 0.0) for source, name in ERRORS.items()}
         flat |= {name: getattr(self.effort, field) for field, name in EFFORT.items()}
-        return {k: v for k, v in flat.items() if v is not None or k not in LEFT_OUT}
+        return {k: v for k, v in flat.items() if v is not None or k == "tolerance"}
 
     @staticmethod
     def from_dict(flat: Mapping[str, Any]) -> Result:

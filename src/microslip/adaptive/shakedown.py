@@ -9,20 +9,15 @@ contact that nothing has pulled before, and then the vibration, at its mean posi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from microslip.adaptive.checks import (
     checked_problem,
-    checked_request,
-    refuse_bounds,
-    refuse_progress,
 )
-from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
-from microslip.adaptive.request import Request, budget_for, verdict
+from microslip.adaptive.request import Request, request_for, verdict
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -157,32 +152,19 @@ def shakedown(
     InputError
         For bad input, and for motions of which no force is known to be held: it names the argument.
     """
-    started = time.perf_counter()
     if isinstance(motion, Problem) and isinstance(motion.drive, Force) and force is None:
         force, motion = motion.drive.force, replace(motion, drive=None)
     problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
-    if tolerance is None:
-        raise InputError("tolerance", tolerance, "allowed is a number")
-    accuracy, _, _ = checked_request(tolerance, None, None)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
-    refuse_progress(progress)
     problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
-    name = choose_model(problem, model)
-    refuse_drive(problem, name)
+    bounds = {"most_work": most_work, "time_limit": time_limit}
+    request = request_for(problem, model, tolerance, **bounds, progress=progress)
+    refuse_drive(problem, request.model)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
         raise InputError("motion", problem.motion.name, allowed)
-    request = Request(
-        problem=problem,
-        model=name,
-        tolerance=accuracy,
-        budget=budget_for(name, most_work, time_limit),
-        progress=progress,
-        started=started,
-    )
     return _answer(request, force)
 
 

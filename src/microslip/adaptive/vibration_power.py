@@ -6,17 +6,15 @@ friction dissipates the sum of both.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.checks import checked_problem, checked_request
-from microslip.adaptive.choice import choose_model
+from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.moved import marched
-from microslip.adaptive.request import TOLERANCE, Request, budget_for
+from microslip.adaptive.request import TOLERANCE, request_for
 from microslip.estimate.refine import refine
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import LOOP, Motion
@@ -75,33 +73,27 @@ def vibration_power(
     for name, value in (("velocity", problem.velocity), ("amplitude", problem.amplitude)):
         if not value:
             raise InputError(name, value, "allowed is a number above 0, for work to be done")
-    if tolerance is None:
-        raise InputError("tolerance", tolerance, "allowed is a number")
-    accuracy, _, _ = checked_request(tolerance, None, None)
-    name = choose_model(problem)
-    request = Request(
-        problem=problem,
-        model=name,
-        tolerance=accuracy,
-        budget=budget_for(name),
-        started=time.perf_counter(),
-    )
-    moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
-    speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
-
-    def power_as_force(run: Callable[..., Run]) -> Callable[..., Run]:
-        """Runs whose friction is their power over the mean speed: what is certified is that."""
-
-        def of_resolution(*resolution: Any) -> Run:
-            found = run(*resolution)
-            return replace(found, mu=found.power / speed)
-
-        return of_resolution
-
+    request, speed = request_for(problem, "auto", tolerance), mean_speed(problem)
     plan = marched(request)
-    readings = [power_as_force(one) for one in plan.readings]
-    found = refine(power_as_force(plan.run), plan.ladder, request.accuracy, readings)
+    readings = [power_as_force(one, speed) for one in plan.readings]
+    found = refine(power_as_force(plan.run, speed), plan.ladder, request.accuracy, readings)
     reason, power = found.reason, speed * found.value
     if found.converged and found.value.error > request.accuracy:
         reason = f"the estimated error of the power is {power.error:.1e}"
     return VibrationPower(power.value, power.error, reason)
+
+
+def mean_speed(problem: Problem) -> float:
+    """Mean speed of the oscillation: its way in a radian, u_lim."""
+    moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
+    return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+
+
+def power_as_force(run: Callable[..., Run], speed: float) -> Callable[..., Run]:
+    """The runs with their power over a speed in place of their friction, so that it is refined."""
+
+    def of_resolution(*resolution: Any) -> Run:
+        found = run(*resolution)
+        return replace(found, mu=found.power / speed)
+
+    return of_resolution

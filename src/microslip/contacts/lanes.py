@@ -40,7 +40,7 @@ def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 @kernel(inline="always")
-def added(a: tuple, b: tuple) -> tuple:
+def plus(a: tuple, b: tuple) -> tuple:
     """a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
 
@@ -52,19 +52,19 @@ def minus(a: tuple, b: tuple) -> tuple:
 
 
 @kernel(inline="always")
-def product(a: tuple, b: tuple) -> tuple:
+def times(a: tuple, b: tuple) -> tuple:
     """a b."""
     return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]
 
 
 @kernel(inline="always")
-def total_of(a: tuple) -> float:
+def sum_of(a: tuple) -> float:
     """Sum of the four."""
     return (a[0] + a[1]) + (a[2] + a[3])
 
 
 @kernel(inline="always")
-def plus(total: tuple, numbers: tuple, factor: float) -> tuple:
+def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
     """total + factor numbers."""
     return (
         fused(numbers[0], factor, total[0]),

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from microslip.contacts.lanes import LANES, NOTHING, four, plus, put
+from microslip.contacts.lanes import LANES, NOTHING, four, plus_multiple, put
 from microslip.foundation.compiled import kernel
 
 _KERNELS: dict[type, Callable] = {}
@@ -103,13 +103,13 @@ def multiply_rows(operators: Matrices, number: int, field: np.ndarray, image: np
             for k in range(columns):
                 x, y = forward[k], lateral[k]
                 m = four(blocks[chunk, k], 0)
-                a, e = plus(a, m, x), plus(e, m, y)
+                a, e = plus_multiple(a, m, x), plus_multiple(e, m, y)
                 m = four(blocks[chunk, k], 4)
-                b, f = plus(b, m, x), plus(f, m, y)
+                b, f = plus_multiple(b, m, x), plus_multiple(f, m, y)
                 m = four(blocks[chunk, k], 8)
-                c, g = plus(c, m, x), plus(g, m, y)
+                c, g = plus_multiple(c, m, x), plus_multiple(g, m, y)
                 m = four(blocks[chunk, k], 12)
-                d, h = plus(d, m, x), plus(h, m, y)
+                d, h = plus_multiple(d, m, x), plus_multiple(h, m, y)
             first = at + start(chunk, width)
             put(image[0, first : first + LANES], a, b, c, d)
             put(image[1, first : first + LANES], e, f, g, h)

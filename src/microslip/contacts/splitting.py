@@ -24,7 +24,7 @@ import numpy as np
 
 from microslip.contacts.coulomb import shrink
 from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.contacts.lanes import NOTHING, added, four, minus, product, total_of
+from microslip.contacts.lanes import NOTHING, four, minus, plus, sum_of, times
 from microslip.contacts.operators import multiply
 from microslip.contacts.step import LEVELS, Balance, Fields, Step, step_solver
 from microslip.contacts.system import System, add, forward_force
@@ -94,13 +94,13 @@ def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
     """Sum weight |a - b|^2 of two fields."""
     totals, points = NOTHING, len(weight)
     forward, lateral, other_forward, other_lateral = a[0], a[1], b[0], b[1]
-    for quarter in range(points // 4):
-        at = 4 * quarter
+    for group in range(points // 4):
+        at = 4 * group
         ahead = minus(four(forward, at), four(other_forward, at))
         aside = minus(four(lateral, at), four(other_lateral, at))
-        squares = added(product(ahead, ahead), product(aside, aside))
-        totals = added(totals, product(four(weight, at), squares))
-    total = total_of(totals)
+        squares = plus(times(ahead, ahead), times(aside, aside))
+        totals = plus(totals, times(four(weight, at), squares))
+    total = sum_of(totals)
     for i in range(points - points % 4, points):
         ahead, aside = a[0, i] - b[0, i], a[1, i] - b[1, i]
         total += weight[i] * (ahead * ahead + aside * aside)

@@ -76,6 +76,7 @@ class Refined:
 
 
 UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
+"""The estimate of a quantity of which nothing is known."""
 
 
 def unknown(reason: str) -> Refined:

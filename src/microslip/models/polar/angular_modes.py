@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contacts.lanes import LANES, NOTHING, four, plus, put
+from microslip.contacts.lanes import LANES, NOTHING, four, plus_multiple, put
 from microslip.contacts.operators import Matrices, multiply_rows, operator, packed, scaled, start
 from microslip.contacts.splitting import PENALTIES, best_penalty
 from microslip.foundation.compiled import kernel
@@ -132,13 +132,13 @@ def combine(
             for k in range(len(columns)):
                 x, y, values = first[k], second[k], source[columns[k], at : at + LANES]
                 m = four(values, 0)
-                a, e = plus(a, m, x), plus(e, m, y)
+                a, e = plus_multiple(a, m, x), plus_multiple(e, m, y)
                 m = four(values, 4)
-                b, f = plus(b, m, x), plus(f, m, y)
+                b, f = plus_multiple(b, m, x), plus_multiple(f, m, y)
                 m = four(values, 8)
-                c, g = plus(c, m, x), plus(g, m, y)
+                c, g = plus_multiple(c, m, x), plus_multiple(g, m, y)
                 m = four(values, 12)
-                d, h = plus(d, m, x), plus(h, m, y)
+                d, h = plus_multiple(d, m, x), plus_multiple(h, m, y)
             put(target[rows[one], at : at + LANES], a, b, c, d)
             put(target[rows[one + 1], at : at + LANES], e, f, g, h)
 
@@ -155,8 +155,8 @@ def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: n
             a = b = c = d = NOTHING
             for k in range(columns):
                 x, m = values[k], blocks[chunk, k]
-                a, b = plus(a, four(m, 0), x), plus(b, four(m, 4), x)
-                c, d = plus(c, four(m, 8), x), plus(d, four(m, 12), x)
+                a, b = plus_multiple(a, four(m, 0), x), plus_multiple(b, four(m, 4), x)
+                c, d = plus_multiple(c, four(m, 8), x), plus_multiple(d, four(m, 12), x)
             first = at + start(chunk, width)
             put(image[0, first : first + LANES], a, b, c, d)
 

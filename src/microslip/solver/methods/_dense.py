@@ -2,10 +2,9 @@
 
 The solver is a compiled function
 
-    solve(points, b, q, slip, tolerance, settings) -> (iterations, residual)
+    solve(points: Points, stage: Stage, settings) -> (iterations, residual)
 
-points: Points; b: imposed displacement, (2, K); q: first guess and result, (2, K); slip: receives
-b - A q; settings: what `prepare(matrix, scale, **parameters)` returned.  The residual is that of
+settings: the return value of `prepare(matrix, scale, **parameters)`.  The residual is that of
 coulomb.coulomb_residual.
 """
 
@@ -43,6 +42,27 @@ class Points(NamedTuple):
     scale: np.ndarray
     bound: np.ndarray
     weight: np.ndarray
+
+
+class Stage(NamedTuple):
+    """One step to be solved, for compiled code.
+
+    Attributes
+    ----------
+    b : np.ndarray, shape (2, K)
+        Imposed displacement.
+    q : np.ndarray, shape (2, K)
+        Tractions: initial guess, and solution.
+    slip : np.ndarray, shape (2, K)
+        Receives b - A q.
+    tolerance : float
+        Largest accepted residual, a force over mu F_z.
+    """
+
+    b: np.ndarray
+    q: np.ndarray
+    slip: np.ndarray
+    tolerance: float
 
 
 def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
@@ -104,7 +124,7 @@ class DenseContact:
         self, b: np.ndarray, q: np.ndarray, slip: np.ndarray, tolerance: float
     ) -> tuple[int, float]:
         try:
-            count, residual = self.solve(self.points, b, q, slip, tolerance, self.settings)
+            count, residual = self.solve(self.points, Stage(b, q, slip, tolerance), self.settings)
         except np.linalg.LinAlgError as error:
             raise StepFailure(f"diverged: {error}") from error
         if not residual <= tolerance:  # NaN is not, either
@@ -172,16 +192,10 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 
 @kernel
-def descend(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    length: np.ndarray,
-) -> tuple[int, float]:
+def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
     """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
     (K,); see the module's docstring."""
+    b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):
         if residual <= tolerance:

@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, dense, judge, project_in_place
+from microslip.solver.methods._dense import Points, Stage, dense, judge, project_in_place
 
 MAX_ITERATIONS = 2000
 
@@ -25,13 +25,9 @@ def _inverse(
 
 @kernel
 def _solve(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    settings: tuple[np.ndarray, np.ndarray, float],
+    points: Points, stage: Stage, settings: tuple[np.ndarray, np.ndarray, float]
 ) -> tuple[int, float]:
+    b, q, slip, tolerance = stage
     inverse, penalty, relaxation = settings
     residual = judge(points, b, q, slip)
     dual = slip / penalty

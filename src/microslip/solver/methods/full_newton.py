@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, dense, judge, project_in_place
+from microslip.solver.methods._dense import Points, Stage, dense, judge, project_in_place
 
 MAX_ITERATIONS = 60
 
@@ -24,14 +24,8 @@ def _copy(out: np.ndarray, values: np.ndarray) -> None:
 
 
 @kernel
-def _solve(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    settings: float,
-) -> tuple[int, float]:
+def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
+    b, q, slip, tolerance = stage
     matrix, scale, bound = points.matrix, points.scale, points.bound
     n = q.shape[1]
     system, right = np.empty_like(matrix), np.empty(2 * n)

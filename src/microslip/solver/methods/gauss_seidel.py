@@ -10,7 +10,7 @@ import numpy as np
 from microslip.contacts.coulomb import shrink
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, dense, judge
+from microslip.solver.methods._dense import Points, Stage, dense, judge
 
 MAX_ITERATIONS = 1000
 
@@ -21,14 +21,8 @@ def _columns(matrix: np.ndarray, scale: np.ndarray, relaxation: float) -> tuple[
 
 
 @kernel
-def _solve(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    settings: tuple[np.ndarray, float],
-) -> tuple[int, float]:
+def _solve(points: Points, stage: Stage, settings: tuple[np.ndarray, float]) -> tuple[int, float]:
+    b, q, slip, tolerance = stage
     columns, relaxation = settings
     scale, bound = points.scale, points.bound
     n = q.shape[1]

@@ -9,7 +9,14 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, dense, judge, project_in_place, safe_length
+from microslip.solver.methods._dense import (
+    Points,
+    Stage,
+    dense,
+    judge,
+    project_in_place,
+    safe_length,
+)
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
@@ -21,14 +28,8 @@ def _shortest(matrix: np.ndarray, scale: np.ndarray) -> float:
 
 
 @kernel
-def _solve(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    shortest: float,
-) -> tuple[int, float]:
+def _solve(points: Points, stage: Stage, shortest: float) -> tuple[int, float]:
+    b, q, slip, tolerance = stage
     bound, weight = points.bound, points.weight
     residual = judge(points, b, q, slip)
     length, best, best_at = shortest, residual, 0

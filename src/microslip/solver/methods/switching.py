@@ -11,20 +11,14 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import Points, dense, judge
+from microslip.solver.methods._dense import Points, Stage, dense, judge
 
 MAX_ITERATIONS = 200
 
 
 @kernel
-def _solve(
-    points: Points,
-    b: np.ndarray,
-    q: np.ndarray,
-    slip: np.ndarray,
-    tolerance: float,
-    settings: float,
-) -> tuple[int, float]:
+def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
+    b, q, slip, tolerance = stage
     matrix, bound = points.matrix, points.bound
     n = q.shape[1]
     residual = judge(points, b, q, slip)
