@@ -52,7 +52,7 @@ from microslip.pressures.by_name import pressure_named
 TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
 """Tolerance of a first reference over that of the point: 1e-5 is too expensive for rotations."""
 TWICE = 20
-"""One point in this many has a second reference, whatever the first one shows."""
+"""Every point whose number is a multiple of this has a second reference."""
 MOST_WORK = 3e7
 """Work of a first reference where `finer.py` can make one: about six seconds."""
 NOT_FINER = {"force", "stiffness", "contacts"}
@@ -71,7 +71,7 @@ DOCS = Path(__file__).parents[1] / "docs/measured"
 START_TOLERANCE = ladder.START_TOLERANCE
 """Tolerance for first levels as they are: where it is larger, all first levels are."""
 KEPT = "all_references"
-"""Name of the list of all references of a line."""
+"""Key of all references of a point in its line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
 """Parts of the error estimate."""
 

@@ -9,6 +9,7 @@ import pytest
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
@@ -154,3 +155,10 @@ def test_in_si_units_it_is_told_of_a_joint_that_stays():
     moving = microslip.predict("transverse", **joint, force="100 N")
     assert moving.displacement_m is None
     assert np.isfinite(found.displacement_m)
+
+
+def test_a_force_beside_a_problem_that_has_one_is_refused_by_its_name():
+    problem = Problem(motion_named("transverse"), 0.0, 0.5, drive=Force(0.2))
+    with pytest.raises(InputError) as raised:
+        microslip.shakedown(problem, force=0.1)
+    assert raised.value.argument == "force"

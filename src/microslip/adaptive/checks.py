@@ -36,7 +36,7 @@ def checked_problem(
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
 ) -> Problem:
-    """The problem of one contact at a prescribed velocity; texts are parsed here.
+    """Check the arguments of one contact at a prescribed velocity, and parse texts.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def checked_problem(
     Raises
     ------
     InputError
-        For an argument out of range, others beside a Problem, and a Problem with a drive or
-        several contacts; it names the argument.
+        If an argument is out of range, if there are others beside a Problem, or if the Problem has
+        a drive or several contacts.  It names the argument.
     """
     problem = _problem(motion, (velocity, amplitude, poisson), pressure)
     if problem.drive is not None:
@@ -71,7 +71,7 @@ def checked_driven_problem(
     contacts: str | None = None,
     **drive: float | None,
 ) -> Problem:
-    """The problem of one contact or several, with any drive; texts are parsed here.
+    """Check the arguments of one contact or several, with any drive, and parse texts.
 
     Parameters
     ----------
@@ -83,7 +83,8 @@ def checked_driven_problem(
     Raises
     ------
     InputError
-        For an argument out of range, and others beside a Problem; it names the argument.
+        If an argument is out of range, or if there are others beside a Problem.  It names the
+        argument.
     """
     place = (velocity, amplitude, poisson)
     if isinstance(motion, Problem):
@@ -108,7 +109,7 @@ def _problem(
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """The Problem of a motion at (velocity, amplitude, poisson), or a Problem in their place."""
+    """The Problem of a motion at (velocity, amplitude, poisson); a Problem is checked as it is."""
     if isinstance(motion, Problem):
         velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}

@@ -90,7 +90,7 @@ def solve(
     most_work : float or None
         Largest number of step solves times unknowns, over all runs; None: MOST_WORK.
     time_limit : float or None
-        Largest time in seconds by the wall clock, compared between marches; None: no limit.
+        Limit of the wall-clock time in seconds, checked between marches; None: no limit.
     progress : callable or None
         Called with the Resolution of every run before it starts.
 

@@ -13,7 +13,7 @@ class PropulsionLine:
 
     All values except the time are dimensionless.  Forces are divided by mu times the mean normal
     load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the unit of
-    the motion's own velocity.  Every error is the estimated error of the number before it.
+    the motion's own velocity.  Every error estimate belongs to the field before it.
 
     Attributes
     ----------

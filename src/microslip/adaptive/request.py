@@ -105,7 +105,7 @@ def request_for(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Request:
-    """The Request for runs of a problem to a tolerance; its time begins now.
+    """Build the Request for a problem and a tolerance; its time limit starts now.
 
     Raises
     ------

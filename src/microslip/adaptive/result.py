@@ -30,8 +30,8 @@ class Result:
     motion, pressure : str
         The motion and the pressure, with their numbers.
     mean_velocity : Estimate
-        Forward velocity, the dimensionless group of the motion.  Its error is 0 where the velocity
-        is prescribed; NaN where the contact runs away.
+        Forward velocity, dimensionless as in the paper.  Its error is 0 where the velocity is
+        prescribed.  The velocity is NaN if the contact runs away.
     amplitude : float or None
         The dimensionless group of the motion; None for steady motions.
     poisson : float

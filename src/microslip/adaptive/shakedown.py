@@ -44,8 +44,8 @@ from microslip.solver.stick_edge import found_focus
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
-"""Tolerance of a run over that of a periodic state: what its steps leave unsolved adds up over all
-periods, up to some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
+"""Tolerance of a run divided by that of a periodic state.  The residuals of its steps add up over
+all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the steps are planned: at the static limit there would be none."""
 
@@ -152,7 +152,9 @@ def shakedown(
     InputError
         For bad input, and for motions of which no force is known to be held: it names the argument.
     """
-    if isinstance(motion, Problem) and isinstance(motion.drive, Force) and force is None:
+    if isinstance(motion, Problem) and isinstance(motion.drive, Force):
+        if force is not None:
+            raise InputError("force", force, "allowed is none beside a Problem that has one")
         force, motion = motion.drive.force, replace(motion, drive=None)
     problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:

@@ -84,13 +84,13 @@ def vibration_power(
 
 
 def mean_speed(problem: Problem) -> float:
-    """Mean speed of the oscillation: its way in a radian, u_lim."""
+    """Mean speed of the oscillation: distance in a radian of phase, in u_lim."""
     moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
     return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
 
 def power_as_force(run: Callable[..., Run], speed: float) -> Callable[..., Run]:
-    """The runs with their power over a speed in place of their friction, so that it is refined."""
+    """Runs whose friction is replaced by the power divided by the speed, to refine the power."""
 
     def of_resolution(*resolution: Any) -> Run:
         found = run(*resolution)

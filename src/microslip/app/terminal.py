@@ -20,7 +20,7 @@ CANNOT_WRITE = 74
 CLOSED_PIPE = 141
 """Exit code where nobody reads the answer any more: as of a program that SIGPIPE ends."""
 OF_SIGNAL = 128
-"""Exit code of a program ended by a signal, less the number of the signal, as in shells."""
+"""Shells add the number of a signal to this for the exit code of the program that it ended."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 GRACE = 0.4

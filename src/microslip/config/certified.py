@@ -6,7 +6,7 @@ from microslip.foundation.canonical import number
 EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
 """Models whose contact is the half-space, of which thresholds of drift are known."""
 SHARE_OF_POINTS = 0.3
-"""Default tolerance of the points of a map, as a share of the error of the map."""
+"""Default tolerance of the points of a map, over that of the map."""
 LOOSEST_POINTS = 1e-2
 """Largest tolerance of points: what looser ones may be off would be taken for bends of the map, and
 its cells halved for nothing."""

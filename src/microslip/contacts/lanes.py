@@ -1,8 +1,9 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
-The compiler makes vector instructions of tuples of four numbers, as long as it knows that their
-indices are not negative.  No kernel allows it to reorder or to fuse operations (fastmath), for then
-the bits of a result depend on the kernels that were compiled before.
+The compiler turns operations on tuples of four numbers into vector instructions, if it knows that
+their indices are not negative.  No kernel is compiled with fastmath, by which the compiler may
+reorder and fuse operations: then the last bits of a result would depend on which kernels were
+compiled before.
 """
 
 from __future__ import annotations

@@ -13,7 +13,8 @@ SOURCES = ("resolution", "periodicity", "solver", "model")
 class Estimate:
     """A quantity with its error estimate.
 
-    Estimates add up, and are multiplied by numbers: the errors of a sum are those of its terms.
+    Estimates can be added, and multiplied by numbers.  The errors of a sum are the sums of the
+    errors of its terms, source by source.
 
     Attributes
     ----------

@@ -95,8 +95,8 @@ class Ladder:
 # Starts are calibrated by benchmarks/error_estimates.py: of 5,712 points 3 fail, and 23 where
 # rotations, loads and squares start at 2/3 of these.
 TRANSLATION = Ladder(start=24, angles=0.25, steps=2)
-"""Tractions depend on the angle a little, and only at nu > 0.  From 16 on, levels next to full
-sliding agree by chance, see tests/adaptive/test_near_full_sliding.py."""
+"""Tractions depend on the angle a little, and only at nu > 0.  Next to full sliding, levels that
+start at 16 can agree by chance, see tests/adaptive/test_near_full_sliding.py."""
 LOOP = replace(TRANSLATION, start=32)
 """Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
 COUPLED = replace(LOOP, start=64, steps=4)

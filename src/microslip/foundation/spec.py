@@ -102,8 +102,10 @@ def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Itera
 
 
 def refuse_strange(record: Any, what: str) -> None:
-    """Raise InputError about `what` for a field of a dataclass whose default is a number, if it is
-    not a finite number."""
+    """Check that all fields of a dataclass whose defaults are numbers are finite numbers.
+
+    Else raise InputError; what: the argument that it names.
+    """
     for field in fields(record):
         value = getattr(record, field.name)
         if isinstance(field.default, int | float) and not (is_real(value) and math.isfinite(value)):

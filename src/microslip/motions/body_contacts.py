@@ -31,7 +31,7 @@ class BodyContact:
     load : float
         Normal load, over the mean load of the contacts, above 0.
     phase : float
-        Phase by which its oscillation leads, degrees.
+        Phase lead of its oscillation over that of the body, degrees.
     amplitude : float
         Its amplitude over that of the body, at least 0.
 

@@ -30,7 +30,8 @@ from microslip.pressures.pressure import Pressure
 RETURNED = 1e-12
 """Share of the amplitude below which an oscillation is rounding."""
 ROUNDING = 1e-9
-"""Largest deviation of the mean load of several contacts from 1: their texts have 12 digits."""
+"""Largest deviation from 1 of the mean load of several contacts, since loads are written with 12
+digits."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ class Prediction:
     u_lim_m : float
         Displacement at which the whole contact slides, m.
     poisson : float
-        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
+        Poisson's ratio of the half-space that is equivalent to both bodies, dimensionless.
     speed_m_s : float
         Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
     amplitude_si : float or None

@@ -20,7 +20,7 @@ class Effort:
     updates : int
         Iterations times unknowns.
     retried : int
-        Runs that found no periodic state at first, and were done again by safer steps.
+        Number of runs that found no periodic state at first and were repeated with safer steps.
     """
 
     solves: int = 0

@@ -107,7 +107,7 @@ def _run(
     guess: Run | None,
     settings: Settings,
 ) -> Run:
-    """Like `simulate` with a tolerance that is a force over mu F_z; raises on failure."""
+    """Like `simulate`, but the tolerance is a force over mu F_z, and failures raise StepFailure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)

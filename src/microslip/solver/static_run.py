@@ -35,7 +35,7 @@ ENOUGH = 4.0
 """Factor on the requested distance that is still accepted where rounding limits the search."""
 MOST_PASSES = 4
 MOST_EDGES = 4
-"""Largest number of edges of the stick zone; more are taken for scatter."""
+"""Largest number of edges of the stick zone; more edges count as scatter."""
 SLIVER = 1e-3
 """Width, over the contact radius, of what is taken for scatter between two edges: where little
 slips, rings next to an edge have almost nothing left on either side of it."""

@@ -33,7 +33,7 @@ class RadialContact(SystemContact):
     stiffness : float or None
         Stiffness of the whole contact, see models.contact.Contact; None: that of the matrix.
     growth : varying_load.Growth or None
-        Growth of the rings with the depth; without it the normal load cannot change.
+        Growth of the contact with the depth; None: the normal load is constant.
 
     Attributes
     ----------

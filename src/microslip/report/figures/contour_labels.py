@@ -50,7 +50,7 @@ def label(axes: Axes, contours: ContourSet, levels: Iterable[float], size: float
 
 def _lines(axes: Axes, contours: ContourSet, index: int) -> list[np.ndarray]:
     """The lines of a level in pixels, with points closer than a number is high."""
-    # In pixels already, since polygons lack the points that hardly bend a line in its own units.
+    # Transformed first: to_polygons leaves out points that differ by less than one unit.
     path = axes.transData.transform_path(contours.get_paths()[index])
     lines = []
     for polygon in path.to_polygons(closed_only=False):

@@ -22,7 +22,7 @@ CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Fewer than on a large map, and fewer with a number, which would hide the others."""
 LABELLED = np.array([0.1, 0.5, 0.9])
 BEYOND = 0.01
-"""Distance outside of 0 to 1 that exceeds the errors of points."""
+"""Friction below 0 or above 1 by more than this is no error of the points."""
 MOST = 12
 """Maps that a figure has room for, as `extended.MOST_PANELS`."""
 

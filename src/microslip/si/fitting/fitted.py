@@ -41,8 +41,8 @@ class Fit:
         How far errors of the model can move mu, and u_lim or the shear modulus: the relative part
         of the intervals that is not scatter.
     standard_error : float or None
-        Standard error of one row, from the residuals of the fit, in the unit of the rows; None
-        where the rows have errors of their own.
+        Standard error of one row, from the residuals of the fit, in the unit of the rows.  None if
+        the rows have errors of their own.
     chi_square, p_value : float or None
         Weighted sum of squares of rows with errors of their own, and the probability that chance
         makes it larger.
