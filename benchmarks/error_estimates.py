@@ -251,16 +251,13 @@ def _verdict(lines):
     farthest = max((_over_tolerance(line) for line in converged), default=0.0)
     twice = [line for line in lines if len(line.get(KEPT, ())) > 1]
     text = (
-        f"{len(lines)} points, {n} of them converged and with a reference. {x} estimates are too"
-        f" small beyond the uncertainty of the reference ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f}"
-        f" in 1,000). The largest error is {largest:.2f} times its estimate, and {farthest:.2f}"
-        " tolerances."
+        f"{len(lines)} points, {n} of them converged and with a reference. Too small beyond the"
+        f" uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000)."
+        f" Largest error: {largest:.2f} estimates, and {farthest:.2f} tolerances."
     )
     if twice:
-        text += (
-            f" {len(twice)} points have two references or more;"
-            f" {sum(map(contradict, twice))} of these pairs contradict each other."
-        )
+        text += f" Points with two references or more: {len(twice)};"
+        text += f" with references that contradict each other: {sum(map(contradict, twice))}."
     return text
 
 

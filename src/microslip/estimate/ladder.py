@@ -92,8 +92,7 @@ class Ladder:
         return tuple(level for level in levels if level > 0.999 * first) or (levels[-1],)
 
 
-# Starts are calibrated by benchmarks/error_estimates.py: of 5,712 points 3 fail, and 23 where
-# rotations, loads and squares start at 2/3 of these.
+# Starts are calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
 TRANSLATION = Ladder(start=24, angles=0.25, steps=2)
 """Tractions depend on the angle a little, and only at nu > 0.  Next to full sliding, levels that
 start at 16 can agree by chance, see tests/adaptive/test_near_full_sliding.py."""

@@ -18,7 +18,7 @@ ORDER = 2
 """Order of convergence of rings, angles and time steps."""
 SAFETY = 1.5
 """Safety factor on the correction.  2 covers convergence of first order; calibrated by
-benchmarks/error_estimates.py, where of 803 points 3 fail with 1.25, and 1 with 1.5 or 2."""
+`benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 
 
 WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
