@@ -67,13 +67,20 @@ class Terminal(io.StringIO):
         return True
 
 
-@pytest.mark.parametrize(("stream", "shown"), [(Terminal, True), (io.StringIO, False)])
-def test_the_elapsed_time_is_shown_on_a_terminal_alone_and_removed(monkeypatch, stream, shown):
-    monkeypatch.setattr(progress, "FIRST_LINE", 0.02)
-    monkeypatch.setattr(progress, "BETWEEN_LINES", 0.02)
-    monkeypatch.setattr(sys, "stderr", stream())
+def elapsed(monkeypatch, stream):
+    for name in ("FIRST_LINE", "BETWEEN_LINES", "BETWEEN_LINES_OF_A_FILE"):
+        monkeypatch.setattr(progress, name, 0.02)
+    monkeypatch.setattr(sys, "stderr", stream)
     with progress.Elapsed("microslip predict"):
         time.sleep(0.1)
-    text = sys.stderr.getvalue()
-    assert ("microslip predict: 0 s" in text) is shown
-    assert text.split("\r")[-1] == "" and (not shown or text.split("\r")[-2].isspace())
+    return stream.getvalue()
+
+
+def test_a_terminal_shows_the_elapsed_time_in_a_line_that_goes(monkeypatch):
+    text = elapsed(monkeypatch, Terminal())
+    assert "\rmicroslip predict: 0 s" in text
+    assert text.split("\r")[-1] == "" and text.split("\r")[-2].isspace()
+
+
+def test_a_file_gets_lines_of_the_elapsed_time(monkeypatch):
+    assert "microslip predict: 0 s\n" in elapsed(monkeypatch, io.StringIO())

@@ -31,8 +31,20 @@ def test_errors_of_other_orders_are_covered(power):
 
 
 def test_first_order_is_underestimated_by_two_over_the_safety_factor():
-    limit = extrapolate(sequence(1.0))
+    limit = extrapolate(sequence(1.0 + 1e-9))
     assert abs(limit.value - EXACT) / limit.error == pytest.approx(2.0 / SAFETY)
+
+
+@pytest.mark.parametrize("power", [0.7, 0.8, 0.99])
+def test_errors_below_first_order_are_covered(power):
+    limit = extrapolate(sequence(power))
+    assert limit.order == pytest.approx(power)
+    assert abs(limit.value - EXACT) <= limit.error
+
+
+def test_levels_that_swing_are_not_divided_by_three():
+    limit = extrapolate([EXACT + 0.01, EXACT - 0.04, EXACT])
+    assert limit.order < 1.0 and limit.error == pytest.approx(SAFETY * 0.04)
 
 
 def test_two_levels_that_agree_by_chance_are_judged_by_the_third():

@@ -186,6 +186,15 @@ def test_all_of_friction_and_more_runs_away(force):
     assert found.reason.startswith("runs away")
 
 
+def test_a_force_within_the_error_of_its_threshold_is_not_converged():
+    """A small relative error of so small a speed would take minutes."""
+    contact = SIDEWAYS | {"amplitude": stroke(0.5)}
+    held = microslip.predict("transverse", speed=0.0, **contact)
+    found = microslip.predict("transverse", force=held.force_threshold_N, **contact)
+    assert found.outcome == "undecided" and not found.converged
+    assert found.reason.startswith("the force is its threshold to within its error")
+
+
 @pytest.mark.slow
 def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
     """A force that is above the threshold by less than the drift can be told: it says so."""

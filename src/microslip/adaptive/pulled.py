@@ -56,7 +56,8 @@ runs; a slower run under the force is not resolved and is not used."""
 SCALE_SHARE = 0.9
 """Share of the coarse velocity that the relative tolerance refers to."""
 ROUGH_TOLERANCE = 3e-2
-"""Largest accepted error of a static limit that is far from the force."""
+"""Largest accepted error of a static limit that is far from the force; a tenth of it, and so on, of
+one that is closer."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of a static limit that a force is close to; the SI side asks for the same,
 so that both agree on what is below the threshold."""
@@ -220,10 +221,12 @@ def _surely_moving(static: Result) -> float:
 
 def _static(request: Request, force: float) -> Result:
     """The Result of the static limit, no more exactly than the force needs to be told from it."""
-    if request.tolerance is not None and request.tolerance < ROUGH_TOLERANCE:
-        rough = _at_rest(request, ROUGH_TOLERANCE)
-        if abs(force - rough.mu_macro) > rough.mu_macro_error:
-            return rough
+    rough = ROUGH_TOLERANCE
+    while request.tolerance is not None and request.tolerance < rough:
+        static = _at_rest(request, rough)
+        if abs(force - static.mu_macro) > static.mu_macro_error:
+            return static
+        rough *= 0.1
     return _at_rest(request, request.tolerance)
 
 

@@ -16,7 +16,10 @@ from pathlib import Path
 from tqdm import tqdm
 
 FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
-"""Seconds until the elapsed time is shown, and until it is shown again: most answers need none."""
+"""Seconds until a terminal shows the elapsed time, and until it shows it again: most answers need
+none."""
+BETWEEN_LINES_OF_A_FILE = 15.0
+"""Seconds between two lines about progress where standard error is no terminal."""
 
 
 def counted(items: Iterable, path: str | Path) -> Iterator:
@@ -73,7 +76,7 @@ class Watch:
 
     def _show(self, total: int | None) -> None:
         # A terminal gets a moving line, a file a line now and then.
-        pause = 0.5 if sys.stderr.isatty() else 15.0
+        pause = 0.5 if sys.stderr.isatty() else BETWEEN_LINES_OF_A_FILE
         with tqdm(desc="points", total=total, unit="point", mininterval=0.0) as bar:
             while not self.stopped.wait(pause):
                 bar.update(self.done() - bar.n)
@@ -81,9 +84,9 @@ class Watch:
 
 
 class Elapsed:
-    """The elapsed time in a line of the terminal on standard error, while a calculation lasts.
+    """The elapsed time on standard error, while a calculation lasts.
 
-    A context manager.  It shows nothing where standard error is no terminal.
+    A context manager.  A terminal gets one line that changes, a file a line now and then.
     """
 
     def __init__(self, title: str):
@@ -92,9 +95,9 @@ class Elapsed:
         self.thread: threading.Thread | None = None
 
     def __enter__(self) -> Elapsed:
-        if sys.stderr.isatty():
-            self.thread = threading.Thread(target=self._show, args=[time.monotonic()], daemon=True)
-            self.thread.start()
+        show = self._change_a_line if sys.stderr.isatty() else self._add_lines
+        self.thread = threading.Thread(target=show, args=[time.monotonic()], daemon=True)
+        self.thread.start()
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -102,7 +105,15 @@ class Elapsed:
             self.stopped.set()
             self.thread.join()
 
-    def _show(self, started: float) -> None:
+    def _add_lines(self, started: float) -> None:
+        try:
+            while not self.stopped.wait(BETWEEN_LINES_OF_A_FILE):
+                sys.stderr.write(f"{self.title}: {time.monotonic() - started:.0f} s\n")
+                sys.stderr.flush()
+        except (OSError, ValueError):  # it was closed
+            pass
+
+    def _change_a_line(self, started: float) -> None:
         text, pause = "", FIRST_LINE
         try:
             while not self.stopped.wait(pause):

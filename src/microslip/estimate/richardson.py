@@ -5,6 +5,9 @@ levels leaves a correction of D / 3.  The difference before it predicts a quarte
 for the last one.  The larger of both is used in the error estimate: two coarse levels may agree by
 chance, but then the third one differs.  This is the grid convergence index of Roache (J. Fluids
 Eng. 116, 1994), with the difference of both pairs of levels.
+
+Where the differences fall more slowly than at first order, the levels are too coarse for an order
+to show.  Then D counts as a whole, as the correction of first order.
 """
 
 from __future__ import annotations
@@ -52,7 +55,7 @@ def extrapolate(values: Sequence[float]) -> Extrapolation:
     coarse, middle, fine = values
     before, last = abs(middle - coarse), abs(fine - middle)
     difference = max(last, before / 2**ORDER)
-    error = SAFETY * difference / (2**ORDER - 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         order = float(np.log2(np.divide(before, last)))
+    error = SAFETY * difference / (2 ** (1 if order < 1.0 else ORDER) - 1)
     return Extrapolation(float(np.dot(WEIGHTS, values)), error, difference, order)

@@ -182,7 +182,7 @@ def _answered(question: Question) -> Prediction:
     answer = answer_at_rest((contact, carriers), motion, pulling, limit)
     if answer is None:
         try:
-            answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
+            answer = answer_of(contact, motion, pulling, question.tolerance, carriers, limit)
         except InputError as error:
             raise _in_si(error, given) from None
     pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)

@@ -43,8 +43,12 @@ def answer_of(
     pulling: dict[str, float],
     tolerance: float,
     carriers: Carriers,
+    limit: Result | None,
 ) -> Result:
     """The result of microslip.solve for a motion in SI units.
+
+    A force within the error of its threshold is not converged: a contact next to the threshold is
+    so slow that a small relative error of its speed takes minutes.
 
     Parameters
     ----------
@@ -54,6 +58,8 @@ def answer_of(
         Accepted error: of mu_macro, or under a force of the velocity, relative down to SLOWEST.
     carriers : several.Carriers
         The contact, or several like it.
+    limit : Result or None
+        Friction at a vanishing speed, None for a steady motion.
     """
     if not pulling:
         return friction_of(contact, motion, tolerance, **carriers.settings)
@@ -76,6 +82,12 @@ def answer_of(
     assert answer.velocity_error is not None  # as under all forces
     if answer.velocity_error <= accepted:
         return answer
+    mass = pulling.get("mass")
+    if limit is not None and equals_static_limit(contact, motion, carriers, mass) is True:
+        if abs(pulling["force"] - limit.mu_macro) <= limit.mu_macro_error:
+            reason = f"the force is its threshold to within its error, {limit.mu_macro_error:.1e}"
+            reason += " of mu times the load: a smaller tolerance may tell them apart"
+            return replace(answer, converged=False, reason=reason)
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 
