@@ -93,7 +93,6 @@ def test_the_softest_spring_is_a_force(place):
     assert fast.velocity - slow.velocity < 0.05 * velocity
 
 
-@pytest.mark.xfail(strict=True, reason="the step solver needs a larger penalty for soft springs")
 @pytest.mark.slow
 def test_a_fast_contact_on_the_softest_spring_is_solved():
     """Its friction hardly rises with the velocity, so that small forces move it far.

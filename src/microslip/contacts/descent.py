@@ -80,28 +80,13 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
     slope[0] = system.stiffness
 
 
-@step_solver(Descent, _respond)
 @kernel
-def descend(
+def descend_driven(
     system: System, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    """Solve a Coulomb step of a driven contact from fields.y on; see step.solve_driven_step."""
     copy(fields.q, fields.y)
     project(fields.q, step.bound)
-    displacement = 0.0
-    if len(balance.slope) == 0:
-        count, residual = _descend(system, step, fields)
-    else:
-        count, residual, displacement = _balanced(system, balance, step, fields)
-    copy(fields.y, fields.q)
-    return count, residual, displacement
-
-
-@kernel
-def _balanced(
-    system: System, balance: Balance, step: Step, fields: Fields
-) -> tuple[int, float, float]:
-    """Iterations, residual and displacement of a driven step."""
     steepest = balance.stiffness + balance.slope[0]
     b, place, slope = step.imposed.copy(), 0.0, steepest
     inner = Step(b, step.bound, INNER * step.tolerance)
@@ -129,7 +114,21 @@ def _balanced(
         place += gap / slope
         if not low < place < high:
             place = 0.5 * (low + high)
+    copy(fields.y, fields.q)
     return iterations, left, place
+
+
+@step_solver(Descent, descend_driven, _respond)
+@kernel
+def descend(
+    system: System, balance: Balance, step: Step, fields: Fields
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    copy(fields.q, fields.y)
+    project(fields.q, step.bound)
+    count, residual = _descend(system, step, fields)
+    copy(fields.y, fields.q)
+    return count, residual, 0.0
 
 
 @kernel

@@ -23,6 +23,7 @@ from microslip.contacts.step import (
     Fields,
     Step,
     response_to_drive,
+    solve_driven_step,
     solve_step,
 )
 from microslip.contacts.system import (
@@ -168,8 +169,10 @@ def march(
                 move_forward(past_place, b)
                 stiffness, load = stage_balance(drive, k, past_place, past_rate)
             balance = Balance(stiffness, load, response, slope)
-            count, residual, advances[s] = solve_step(system, balance, step, fields)
-            if drive is not None:
+            if drive is None:
+                count, residual, advances[s] = solve_step(system, balance, step, fields)
+            else:
+                count, residual, advances[s] = solve_driven_step(system, balance, step, fields)
                 gains[s] = advances[s] / drive.lengths[k] - past_rate
             spent += count * 100.0 * q.size
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):

@@ -7,7 +7,8 @@ With one field y as its state, P the projection on the discs |q| <= g and s the 
 until Sum weight |v - q|, a force, is within the tolerance.  Then b - A v = s (v - t): the slip
 comes without applying A.  Any relaxation below 2 converges (Lions and Mercier 1979; Eckstein and
 Bertsekas 1992).  With a driven body v answers to its displacement d by d times a field that is the
-same in every step, so that the equation of the body is a division.
+same in every step, so that the equation of the body is a division.  Every BETWEEN_BALANCES
+iterations the body is put into balance under the tractions P(y), see `rebalance`.
 
 Points that stick want a small penalty, points that slip a large one.  Let D be the mean derivative
 of the projection over the points and the two directions: 1 where all stick, and |q| / (2 |y|) for
@@ -33,6 +34,12 @@ from microslip.foundation.compiled import kernel
 MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Within 1.5 to 1.8, the usual range of over-relaxation (Eckstein and Bertsekas 1992)."""
+BETWEEN_BALANCES = 32
+"""Iterations of a driven step after which its body is put into balance: nearly all steps take
+fewer."""
+FIRST_WAY, LONGEST_WAY, HALVINGS = 1e-3, 1e6, 40
+"""The first way that is tried for that, four times as long every time, the longest one, and
+halvings of the last interval."""
 BALANCED_RINGS = 12
 """Rings at which the best penalty is the self-influence of a ring, where half of the points stick;
 calibrated by benchmarks/splitting.py."""
@@ -139,10 +146,52 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
         slope[level] = forward_force(system, response[level])
 
 
-@step_solver(Resolvent, _respond)
+@kernel
+def _lack(
+    system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, way: float
+) -> float:
+    """Force that holds the body back in excess of its load, after it goes a way from its
+    displacement: where points slip, their slip grows by the way."""
+    force = balance.stiffness * (displacement + way) - balance.load
+    for i in range(len(step.bound)):
+        forward = y[0, i] + way / system.solver.penalty[i]
+        f = shrink(forward, y[1, i], step.bound[i])
+        force += system.weight[i] * f * forward
+    return force
+
+
+@kernel
+def rebalance(
+    system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float
+) -> None:
+    """Change y, in place, as if the body had gone to where it is in balance.
+
+    Iterations take a body there slowly if nearly all points slip, and hardly anything but friction
+    holds it.
+    """
+    lack = _lack(system, balance, step, y, displacement, 0.0)
+    if not abs(lack) > step.tolerance:
+        return
+    near, far = 0.0, np.copysign(FIRST_WAY, -lack)
+    while lack * _lack(system, balance, step, y, displacement, far) > 0.0:
+        near, far = far, 4.0 * far
+        if abs(far) > LONGEST_WAY:
+            return
+    for _ in range(HALVINGS):
+        middle = 0.5 * (near + far)
+        if lack * _lack(system, balance, step, y, displacement, middle) > 0.0:
+            near = middle
+        else:
+            far = middle
+    for i in range(len(step.bound)):
+        y[0, i] += near / system.solver.penalty[i]
+
+
 @kernel(inline="always")
-def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on; see step.solve_step.
+def _iterate(
+    system: System, balance: Balance, step: Step, fields: Fields, most: int
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step from fields.y on, with at most so many iterations.
 
     fields.y is the y of the penalty `Resolvent.penalty`, whichever one the step is solved with.
     """
@@ -157,7 +206,7 @@ def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple
             y[c, i] = q[c, i] + inverse * (guess[c, i] - q[c, i])
         for i in range(points):
             right[c, i] = b[c, i] + factor * solver.penalty[i] * (2.0 * q[c, i] - y[c, i])
-    most = step.tolerance * step.tolerance / solver.area
+    accepted = step.tolerance * step.tolerance / solver.area
     displacement, residual, spent, iterations = 0.0, np.inf, 0.0, 0
     while True:
         multiply(system.operators, 1 + level, right, v)
@@ -167,7 +216,7 @@ def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple
             add(v, displacement, balance.response[level])
         iterations += 1
         residual = squared_distance(weight, v, q)  # by Schwarz's inequality
-        if not residual > most or iterations == MOST_ITERATIONS:
+        if not residual > accepted or iterations == most:
             break
         for i in range(points):
             forward = y[0, i] + RELAXATION * (v[0, i] - q[0, i])
@@ -188,3 +237,24 @@ def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple
         for i in range(points):
             guess[c, i] = q[c, i] + factor * (y[c, i] - q[c, i])
     return iterations, np.sqrt(solver.area * residual), displacement
+
+
+@kernel(inline="always")
+def split_driven(
+    system: System, balance: Balance, step: Step, fields: Fields
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step of a driven contact from fields.y on; see step.solve_driven_step."""
+    iterations = 0
+    while True:
+        count, residual, displacement = _iterate(system, balance, step, fields, BETWEEN_BALANCES)
+        iterations += count
+        if count < BETWEEN_BALANCES or iterations >= MOST_ITERATIONS:
+            return (iterations if count >= 0 else -1), residual, displacement
+        rebalance(system, balance, step, fields.y, displacement)
+
+
+@step_solver(Resolvent, split_driven, _respond)
+@kernel(inline="always")
+def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple[int, float, float]:
+    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    return _iterate(system, balance, step, fields, MOST_ITERATIONS)

@@ -80,16 +80,18 @@ class Fields(NamedTuple):
 SOLVER = 1
 """Place of the solver in a system.System."""
 
-_SOLVERS: dict[type, tuple[Callable, Callable]] = {}
-"""Class of a solver -> its kernels (solve, respond)."""
+_SOLVERS: dict[type, tuple[Callable, Callable, Callable]] = {}
+"""Class of a solver -> its kernels (solve, solve_driven, respond)."""
 
 
-def step_solver(of: type, respond: Callable) -> Callable:
-    """Decorator of the kernel that solves steps with a solver of a NamedTuple, see `solve_step`;
-    respond: the kernel behind `response_to_drive`."""
+def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable:
+    """Decorator of the kernel that solves steps with a solver of a NamedTuple, see `solve_step`.
+
+    solve_driven, respond: the kernels behind `solve_driven_step` and `response_to_drive`.
+    """
 
     def register(function: Callable) -> Callable:
-        _SOLVERS[of] = function, respond
+        _SOLVERS[of] = function, solve_driven, respond
         return function
 
     return register
@@ -98,7 +100,7 @@ def step_solver(of: type, respond: Callable) -> Callable:
 def solve_step(
     system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step in compiled code, by the solver of the system.
+    """Solve a Coulomb step in compiled code, by the solver of the system; `balance` is ignored.
 
     Returns
     -------
@@ -107,9 +109,17 @@ def solve_step(
     residual : float
         Force over mu F_z.
     displacement : float
-        d, 0 without a body.
+        0.
     """
     raise NotImplementedError("solve_step is for compiled code")
+
+
+def solve_driven_step(
+    system: NamedTuple, balance: Balance, step: Step, fields: Fields
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step of a driven contact, like `solve_step`; returns the displacement d of
+    the body, too."""
+    raise NotImplementedError("solve_driven_step is for compiled code")
 
 
 def response_to_drive(
@@ -122,12 +132,19 @@ def response_to_drive(
 # Numba compares the signature with that of the lambda: it may have no hints
 @overload(solve_step, inline="always")
 def _solve_step(system, balance, step, fields):  # type: ignore[no-untyped-def]
-    solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
+    solve, _, _ = _SOLVERS[system.types[SOLVER].instance_class]
+    return lambda system, balance, step, fields: solve(system, balance, step, fields)
+
+
+# Numba compares the signature with that of the lambda: it may have no hints
+@overload(solve_driven_step, inline="always")
+def _solve_driven_step(system, balance, step, fields):  # type: ignore[no-untyped-def]
+    _, solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, balance, step, fields: solve(system, balance, step, fields)
 
 
 # Numba compares the signature with that of the lambda: it may have no hints
 @overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
 def _response_to_drive(system, fields, response, slope):  # type: ignore[no-untyped-def]
-    _, respond = _SOLVERS[system.types[SOLVER].instance_class]
+    _, _, respond = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, fields, response, slope: respond(system, fields, response, slope)
