@@ -10,7 +10,7 @@ from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.solver import static_run
+from microslip.solver import static_loop
 from microslip.solver.discretise import Resolution
 from microslip.solver.snapshots import frames
 from microslip.solver.static_run import simulate_static
@@ -64,7 +64,7 @@ def test_the_static_limit_on_a_loop_does_not_converge(loose_steps, monkeypatch):
     def without_guess(contact, path, state, tolerance, previous):
         return frames(contact, path, state, tolerance)
 
-    monkeypatch.setattr(static_run, "frames", without_guess)
+    monkeypatch.setattr(static_loop, "frames", without_guess)
     problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
     run = simulate_static(problem, "radial", Resolution(12, 2, 16), 1e-4)
     assert not run.converged and run.solver_residual > 1e-4

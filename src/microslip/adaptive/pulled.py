@@ -273,8 +273,14 @@ def _moving(request: Request, marched: float) -> Result:
     except Spent as spent:
         return _given_up(original, str(spent))
     request = replace(request, problem=replace(request.problem, velocity=near.velocity))
-    accuracy = Accuracy(request.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
-    refined, ladder = _refined(request, accuracy)
+    scale = SCALE_SHARE * near.velocity
+    while True:
+        accuracy = Accuracy(request.accuracy * max(1.0, scale), near.slope)
+        refined, ladder = _refined(request, accuracy)
+        velocity = abs(refined.value.value)
+        if not refined.converged or scale <= max(1.0, velocity):
+            break
+        scale = SCALE_SHARE * velocity  # a small mass may be far from where it was expected
     found = refined.value
     if not request.problem.propels:
         found = replace(found, value=max(found.value, 0.0))  # below are rounding and error

@@ -25,7 +25,7 @@ from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.static_limit import at_turning_points
-from microslip.solver.stick_edge import SLOW_LOOP
+from microslip.solver.static_loop import SLOW_LOOP
 
 LEVELS = tuple(sorted(base * 2**k for k in range(9) for base in (2, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""

@@ -32,6 +32,7 @@ SLOWEST = 1e-3
 """Velocity, in the unit of the motion, below which the accepted error is no longer relative."""
 MARGIN = 0.8
 """Safety factor on the accepted error of a second run, since its velocity may be smaller."""
+UNKNOWN_THRESHOLD = Estimate(math.nan)
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
 """The outcome, and the beginning of the solver's reason for it."""
@@ -83,11 +84,12 @@ def answer_of(
     if answer.velocity_error <= accepted:
         return answer
     mass = pulling.get("mass")
-    if limit is not None and equals_static_limit(contact, motion, carriers, mass) is True:
-        if abs(pulling["force"] - limit.mu_macro) <= limit.mu_macro_error:
-            reason = f"the force is its threshold to within its error, {limit.mu_macro_error:.1e}"
-            reason += " of mu times the load: a smaller tolerance may tell them apart"
-            return replace(answer, converged=False, reason=reason)
+    known = equals_static_limit(contact, motion, carriers, mass) is True
+    threshold = limit.friction if limit is not None and known else UNKNOWN_THRESHOLD
+    if abs(pulling["force"] - threshold.value) <= threshold.error:
+        reason = f"the force is its threshold to within its error, {threshold.error:.1e}"
+        reason += " of mu times the load: a smaller tolerance may tell them apart"
+        return replace(answer, converged=False, reason=reason)
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 

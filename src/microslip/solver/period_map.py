@@ -99,11 +99,15 @@ class DriftRate:
         That of full slip, the largest that it can be.
     gain : float
         Force that a contact which does not slip gains in a march over a (half) period.
+    least : float
+        Mean forward force below which a state only drifts, about that of the static limit; NaN: it
+        is not known better than `static_force`.
     """
 
     static_force: float
     full: float
     gain: float
+    least: float = np.nan
 
     def force_error(self, residual: float, force: float) -> float:
         """Error of the mean forward force that a residual of the plain map stands for."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from microslip.models.contact import StepFailure
 from microslip.solver import anderson
-from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.solver.period_map import DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.states import search
 
 if TYPE_CHECKING:
@@ -47,17 +47,17 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         return anderson.search(period_map, start, goal)
     contact = cast("SystemContact", period_map.contact)  # or one that counts its marches
     path, rate = period_map.path, period_map.drift_rate
-    slow = (rate.static_force, rate.full, rate.gain) if rate else (0.0, 0.0, np.inf)
-    static_force, full, gain = map(float, slow)
+    slow = rate or DriftRate(0.0, 0.0, np.inf)
     target = search.Goal(
         float(goal.tolerance),
         float(goal.step_tolerance),
         bool(period_map.mirror),
         bool(goal.near),
         path.share,
-        static_force,
-        full,
-        gain,
+        float(slow.static_force),
+        float(slow.static_force if np.isnan(slow.least) else slow.least),
+        float(slow.full),
+        float(slow.gain),
     )
     tractions, place = period_map.parts(start)
     stages = path.stages.shape[1]

@@ -21,11 +21,12 @@ from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
+from microslip.solver.means import mean_forces
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import mean_forces, periods_of, stages_of, step_share
+from microslip.solver.simulate import periods_of, stages_of, step_share
 
 MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search: twice the default, since a body may swing."""

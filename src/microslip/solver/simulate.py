@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
@@ -11,7 +10,6 @@ from microslip.contacts.coulomb import project
 from microslip.models.contact import (
     FORWARD,
     Contact,
-    GrowingContact,
     StepFailure,
     forces,
     forward_slip,
@@ -20,12 +18,13 @@ from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
+from microslip.solver.means import mean_forces, oscillation_power
 from microslip.solver.method import Method
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.power import oscillation_power
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
 from microslip.solver.static_limit import static_state
+from microslip.solver.static_loop import SLOW_LOOP, loop_limit
 from microslip.solver.steady import steady_state
 
 STEP_SHARE = 1e-2
@@ -41,6 +40,9 @@ SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the drift in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
+LOOP_EXCESS, LIMIT_SHARE, LIMIT_STEP_SHARE = 1.0, 0.3, 1e-3
+"""Factor of that traction for a loop, tolerance of its static limit over the traction, and that of
+a step over the latter."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from tractions on other points.  If it needs
@@ -197,6 +199,8 @@ class _Search:
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
         """The static limit with all points pushed forward; also takes note of its force."""
         contact, drift = self.contact, self.problem.drift
+        if not self.problem.straight and contact.sticks and drift < SLOW_LOOP:
+            return self._start_near_a_loop(slipping)
         if not (contact.sticks and self.problem.straight):
             return slipping
         limit = static_state(contact, self.problem.oscillation, self.step_tolerance)
@@ -206,6 +210,17 @@ class _Search:
         excess = min(SLOW_EXCESS * drift ** (2.0 / 3.0), LARGEST_EXCESS)
         start = limit.residual + limit.oscillating + excess * slipping
         return project(start, contact.bound)
+
+    def _start_near_a_loop(self, slipping: np.ndarray) -> np.ndarray:
+        """Like `_start_near_the_limit`, for a slow loop; its force is known roughly."""
+        contact, rest = self.contact, replace(self.problem, velocity=0.0)
+        path = path_of(rest, contact, self.steps, self.method.integrator)
+        excess = LOOP_EXCESS * self.problem.drift ** (2.0 / 3.0)
+        tolerance = max(LIMIT_SHARE * excess, self.tolerance)
+        limit = loop_limit(contact, rest, path, tolerance, LIMIT_STEP_SHARE * tolerance)
+        self.done.append(limit.found)
+        self.drift_rate = replace(self.drift_rate, least=limit.force)
+        return project(limit.found.start + limit.shift + excess * slipping, contact.bound)
 
     def _find(self, start: np.ndarray, near: bool = False) -> PeriodicState:
         period_map = PeriodMap(
@@ -245,18 +260,6 @@ def periods_of(marches: int, problem: Problem) -> float:
     """Full periods in so many marches: each is half a period if the second half is the mirror image
     of the first."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)
-
-
-def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
-    """Means over a march of the forces at its phases, shape (3,)."""
-    if problem.depth is None:
-        return path.mean(forces)
-    # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
-    # and to how the rings in contact follow its edge
-    growing = cast(GrowingContact, contact)  # as its load changes
-    bounds = growing.bounds(problem.depth(path.phase))
-    full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
-    return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def stages_of(path: Path) -> int:

@@ -16,14 +16,99 @@ whatever the period began with, and the maximum makes up for it.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from microslip.models.contact import FORWARD, Contact
+from microslip.models.path import Path
+from microslip.motions.problem import Problem
+from microslip.solver.means import mean_forces
+from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.solver.periodic import find_periodic_state
+from microslip.solver.snapshots import bounds_at_phases, frames
+
+SLOW_LOOP = 0.02
+"""Drift in a radian, in u_lim, below which what never slips in the limit decides a motion on a
+loop."""
+MARCHES, MOST_ROUNDS = 120, 3
+"""Largest number of marches in a search for the periodic state, and largest number of searches: an
+accelerated search can stall on rounding, and then starts again."""
 HALVINGS = 50
 """Halvings of the interval with the largest shift: enough to reach rounding."""
 
 
+class LoopLimit(NamedTuple):
+    """The static limit of a contact, see the head of this module.
+
+    Attributes
+    ----------
+    found : period_map.PeriodicState
+        The periodic state of the oscillation alone.
+    shift : np.ndarray, shape (2, ...)
+        s at every point.
+    force : float
+        Mean forward force, over mu F_z.
+    solver_residual : float
+        Sum over the stages of the marches that tell, a force over mu F_z.
+    solves : int
+        Number of these stages.
+    """
+
+    found: PeriodicState
+    shift: np.ndarray
+    force: float
+    solver_residual: float
+    solves: int
+
+
+def loop_limit(
+    contact: Contact, problem: Problem, path: Path, tolerance: float, step_tolerance: float
+) -> LoopLimit:
+    """The static limit, by the periodic state of the oscillation alone.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    problem : problem.Problem
+        Its velocity is 0.
+    path : path.Path
+        A period of the problem, or half of one.
+    tolerance, step_tolerance : float
+        Tolerances of the state and of a step, forces over mu F_z.
+
+    Returns
+    -------
+    LoopLimit
+        Not converged where its state is not.
+    """
+    mirror = problem.half_period_mirror
+    period_map = PeriodMap(contact, path, mirror=mirror)
+    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
+    start = np.zeros((2, *shape))
+    for _ in range(MOST_ROUNDS):
+        goal = Goal(tolerance, step_tolerance, period_map.marches + MARCHES)
+        found = find_periodic_state(period_map, start, goal)
+        start = found.start
+        if found.converged:
+            break
+    force = float(mean_forces(contact, problem, path, found.forces)[FORWARD])
+    residual, solves = found.solver_residual, path.stages.shape[0] * path.stages.shape[1]
+    if not contact.sticks:
+        return LoopLimit(found, np.zeros((2, *shape)), force, residual, solves)
+    tractions, _, again, solved_again = frames(contact, path, start, step_tolerance, found)
+    bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
+    if mirror:
+        bounds = np.concatenate([bounds, bounds])
+        tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
+    shift = largest_shift(tractions, bounds)
+    force += float(np.sum(contact.weight * shift[FORWARD]))
+    return LoopLimit(found, shift, force, residual + again, solves + solved_again)
+
+
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Forward component of the furthest s with |q + s| <= g at all phases.
+    """The s that is furthest forward of those with |q + s| <= g at all phases.
 
     Where s = 0 fits, so does every smaller shift than the largest one: the discs |q + s| <= g are
     convex, and so is what they share.
@@ -37,17 +122,24 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    np.ndarray, shape (...)
-        At every point.
+    np.ndarray, shape (2, ...)
+        At every point; 0 where nothing is left.
     """
     forward, lateral = tractions[:, 0], tractions[:, 1]
     bounds = np.maximum(bounds, np.hypot(forward, lateral))  # s = 0 does fit
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
-    for _ in range(HALVINGS):
-        shift = 0.5 * (least + most)
+
+    def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Whether a forward shift fits each disc, and the ends of the lateral ones beside it."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
-        within = (across >= 0.0).all(axis=0)
-        within &= (-lateral - width).max(axis=0) <= (width - lateral).min(axis=0)
-        least, most = np.where(within, shift, least), np.where(within, most, shift)
-    return least
+        ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)
+        return (across >= 0.0).all(axis=0), *ends
+
+    for _ in range(HALVINGS):
+        shift = 0.5 * (least + most)
+        fits, low, high = reach(shift)
+        fits &= low <= high
+        least, most = np.where(fits, shift, least), np.where(fits, most, shift)
+    _, low, high = reach(least)
+    return np.array([least, np.where(least > 0.0, 0.5 * (low + high), 0.0)])

@@ -12,14 +12,12 @@ from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.period_map import Goal, PeriodMap
-from microslip.solver.periodic import find_periodic_state
-from microslip.solver.power import oscillation_power
+from microslip.solver.means import oscillation_power
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, mean_forces, periods_of, stages_of
-from microslip.solver.snapshots import bounds_at_phases, frames
+from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, periods_of
+from microslip.solver.snapshots import bounds_at_phases
 from microslip.solver.static_limit import at_turning_points, static_state
-from microslip.solver.static_loop import largest_shift
+from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
 """How much more than the distance from the periodic state of the oscillation alone the limit may
@@ -28,9 +26,6 @@ shift is left to them however far the state is from periodic."""
 LOOP_STEP_SHARE = 1e-4
 """Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
 its distance from the bound."""
-MARCHES, MOST_ROUNDS = 120, 3
-"""Largest number of marches in a search for the periodic state, and largest number of searches: an
-accelerated search can stall on rounding, and then starts again."""
 ENOUGH = 4.0
 """Factor on the requested distance that is still accepted where rounding limits the search."""
 MOST_PASSES = 4
@@ -203,39 +198,23 @@ def _on_these_points(
 ) -> tuple[Run, np.ndarray | None]:
     """The Run on one contact, and which points have something left to resist with, if any has."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
-    mirror = problem.half_period_mirror
     distance = tolerance / FELT
-    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
-    period_map = PeriodMap(contact, path, mirror=mirror)
-    start = np.zeros((2, *shape))
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
-    for _ in range(MOST_ROUNDS):
-        goal = Goal(distance, inner, period_map.marches + MARCHES)
-        found = find_periodic_state(period_map, start, goal)
-        start = found.start
-        if found.converged:
-            break
-    force, left = mean_forces(contact, problem, path, found.forces)[FORWARD], None
-    residual, solves = found.solver_residual, stages_of(path)
+    limit, left = loop_limit(contact, problem, path, distance, inner), None
+    found = limit.found
     if contact.sticks:
-        tractions, _, again, solved_again = frames(contact, path, found.start, inner, found)
-        residual, solves = residual + again, solves + solved_again
-        bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
-        if mirror:
-            bounds = np.concatenate([bounds, bounds])
-            tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
-        shift = largest_shift(tractions, bounds)
-        force += float(np.sum(contact.weight * shift))
-        left = shift > NOTHING_LEFT * bounds.max()
+        bounds = bounds_at_phases(contact, path)
+        left = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
-    periods, reason = periods_of(found.marches, problem), unsolved(residual, solves, inner)
+    periods = periods_of(found.marches, problem)
+    reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(
-        mu=float(force) / problem.mean_load,
+        mu=limit.force / problem.mean_load,
         torque=0.0,
         distance=FELT * found.distance / problem.mean_load,
-        solver_residual=residual / problem.mean_load,
+        solver_residual=limit.solver_residual / problem.mean_load,
         periods=periods,
         effort=Effort.of(found.solves, found.iterations, found.start.size),
         converged=not reason,

@@ -54,6 +54,9 @@ class Goal(NamedTuple):
         Duration of each step over that of the path.
     static_force : float
         Mean forward force of the static limit; NaN: unknown.
+    least : float
+        Mean forward force below which a state only drifts, about that of the static limit; NaN:
+        unknown.
     full : float
         Largest mean forward force, that of full slip.
     gain : float
@@ -66,6 +69,7 @@ class Goal(NamedTuple):
     near: bool
     share: np.ndarray
     static_force: float
+    least: float
     full: float
     gain: float
 
@@ -256,7 +260,7 @@ def search(
         mean = 0.0
         for k in range(steps):
             mean += 0.5 * goal.share[k] * (trace.forces[k, 0] + trace.forces[k + 1, 0])
-        stuck = counts[0] > 1 and mean < goal.static_force and residual > DRIFTING * goal.gain
+        stuck = counts[0] > 1 and mean < goal.least and residual > DRIFTING * goal.gain
         back = stuck and inertia is None and counts[4] < MOST_RETURNS
         if not stuck:
             copy(above, state)

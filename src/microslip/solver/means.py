@@ -1,12 +1,26 @@
-"""Work that the oscillation does on the contact, mean over a period."""
+"""Means over a period: forces, and the work that the oscillation does on the contact."""
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
-from microslip.models.contact import FORWARD
+from microslip.models.contact import FORWARD, Contact, GrowingContact
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
+
+
+def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
+    """Means over a march of the forces at its phases, shape (3,)."""
+    if problem.depth is None:
+        return path.mean(forces)
+    # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
+    # and to how the rings in contact follow its edge
+    growing = cast(GrowingContact, contact)  # as its load changes
+    bounds = growing.bounds(problem.depth(path.phase))
+    full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
+    return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float:
