@@ -21,6 +21,7 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.models.contact import Contact
+from microslip.models.path import LONG_STROKE
 from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
@@ -36,8 +37,6 @@ RATE = math.log10(2.0)
 Extrapolated errors fall with about the third power of the level."""
 FINEST = 12
 """Finest level over the start: one above that of the smallest tolerance, 1e-6."""
-LONGEST_STROKE = 16.0
-"""Stroke in u_lim beyond which the number of steps no longer grows."""
 LONGEST_NATURAL_STEP = 1.0
 """Longest step at the tolerance 1e-2, in radians of the natural oscillation of a mass against the
 contact: within about a radian second-order steps converge, and differences show their error."""
@@ -134,7 +133,7 @@ def ladder_for(
     """
     motion, refined = problem.motion, MODELS[model].axes(problem)
     kind = _kind(problem, model)
-    longer = min(max(problem.stroke, 1.0), LONGEST_STROKE) ** 0.5 * motion.cycles
+    longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** 0.5 * motion.cycles
     ladder = replace(
         kind,
         cells=kind.cells if "cells" in refined else 0.0,

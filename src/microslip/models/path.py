@@ -13,6 +13,7 @@ theirs before the end of the step and extrapolate to it, bound or no bound.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -75,6 +76,8 @@ def theta_method(theta: float) -> Integrator:
     return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((),), theta)
 
 
+LONG_STROKE = 16.0
+"""Stroke in u_lim beyond which steps gather at the turning points in place of growing in number."""
 STRONGEST_GRADING = 0.8
 GRADED_DRIFT = 0.02
 GRADED_STROKE = 2.0
@@ -90,6 +93,16 @@ def turning_point_grading(drift: float, stroke: float) -> float:
     slow = 1.0 / (1.0 + drift / GRADED_DRIFT)
     short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
     return STRONGEST_GRADING * slow * short
+
+
+def turning_point_width(drift: float, stroke: float) -> float:
+    """Phase about a turning point within which steps are equal; further away they are proportional
+    to the distance from it.  Infinite where all steps are equal, but for the grading.
+
+    A long stroke turns the slip round while the contact goes a way of u_lim, or of its drift in a
+    radian if that is longer.
+    """
+    return max(1.0, drift) / stroke if stroke > LONG_STROKE else math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,11 +212,17 @@ def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
     return phases_between(HALF_PERIOD, steps, grading)
 
 
-def phases_between(turns: Sequence[float], steps: int, grading: float = 0.0) -> np.ndarray:
+def phases_between(
+    turns: Sequence[float], steps: int, grading: float = 0.0, width: float = math.inf
+) -> np.ndarray:
     """Phases from the first turning point to the last, `steps` steps from each to the next, finer
     at both; shape ((len(turns) - 1) steps + 1,)."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
+    if width < math.inf:
+        away = 1.0 - np.abs(t) / (np.pi / 2)  # from the nearer end, 0 to 1
+        away = width * np.sinh(away * np.arcsinh(np.pi / 2 / width))
+        t = np.sign(t) * (np.pi / 2 - away)
     parts = [np.array(turns[:1])]
     for start, end in pairwise(turns):
         parts.append((0.5 * (start + end) + (end - start) / np.pi * t)[1:])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,6 +20,7 @@ from microslip.models.path import (
     make_path,
     phases_between,
     turning_point_grading,
+    turning_point_width,
 )
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
@@ -154,7 +156,9 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
 @lru_cache(maxsize=32)
 def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
     if not problem.contacts:
-        phases = phases_between(problem.turns, steps, grading)
+        turns = problem.straight and problem.motion.periodic  # a loop may turn anywhere
+        width = turning_point_width(problem.drift, problem.stroke) if turns else math.inf
+        phases = phases_between(problem.turns, steps, grading, width)
         return make_path(problem.displacement, phases, integrator, problem.depth)
     phases, drift = _body_phases(problem, steps, grading), problem.drift
 

@@ -1,0 +1,33 @@
+"""Strokes far beyond u_lim, where the contact slides but for a way of u_lim after each turn."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
+
+PLACES = [(115.0, 50000.0), (23.0, 10000.0), (0.5, 1000.0), (300.0, 3000.0)]
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize(("velocity", "amplitude"), PLACES)
+def test_a_zigzag_is_that_of_a_rigid_contact(velocity, amplitude, tolerance):
+    """Its direction is constant between turns; a contact that is late by u_lim at each of them
+    gains what that way is of the stroke at most."""
+    problem = Problem(motion_named("zigzag"), velocity, amplitude)
+    rigid = 1.0 / np.hypot(1.0, 2.0 / np.pi * problem.stroke / problem.drift)
+    found = microslip.solve("zigzag", velocity, amplitude, tolerance=tolerance)
+    assert found.converged
+    assert -found.mu_macro_error <= found.mu_macro - rigid <= 1.0 / amplitude + found.mu_macro_error
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), PLACES)
+def test_tolerances_agree(velocity, amplitude):
+    rough, finer, finest = (
+        microslip.solve("transverse", velocity, amplitude, tolerance=t) for t in (1e-3, 1e-4, 1e-5)
+    )
+    assert rough.converged and finer.converged and finest.converged
+    for one, other in ((rough, finest), (finer, finest)):
+        error = one.mu_macro_error + other.mu_macro_error
+        assert one.mu_macro == pytest.approx(other.mu_macro, abs=error)
