@@ -176,8 +176,7 @@ def test_a_run_that_does_not_converge_ends_it(cells):
     found = refine(run, LADDER, 1e-3)
     assert not found.converged and not found.periodic and found.reason == "lost its way"
     assert len(fake.asked) == 3
-    # a run without weight in the value has none in its error
-    assert np.isfinite(found.value.error) == (cells == 4)
+    assert found.value.error == np.inf
 
 
 def test_the_finest_level_is_named():
@@ -236,3 +235,15 @@ def test_finer_runs_make_room_for_readings_that_are_apart():
 def test_readings_that_are_too_far_apart_end_it():
     found = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
     assert found.value.error > 1e-3 and found.finest.cells == 16
+
+
+def test_a_coarse_run_that_does_not_converge_counts_in_full():
+    """It has no part in the value, but what it is off by may hide how far the levels are apart."""
+    fake = FakeRun()
+
+    def run(resolution, guess):
+        made = fake(resolution, guess)
+        return replace(made, converged=False, reason="lost", distance=0.01) if not guess else made
+
+    found = refine(run, LADDER, 1e-3)
+    assert not found.converged and found.value.by_source["periodicity"] > 0.01

@@ -186,12 +186,16 @@ def test_all_of_friction_and_more_runs_away(force):
     assert found.reason.startswith("runs away")
 
 
-def test_a_force_within_the_error_of_its_threshold_is_not_converged():
+@pytest.mark.parametrize("tolerance", [1e-2, 2e-2])
+@pytest.mark.parametrize("side", [-0.5, 0.0, 0.5])
+def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, side):
     """A small relative error of so small a speed would take minutes."""
     contact = SIDEWAYS | {"amplitude": stroke(0.5)}
     held = microslip.predict("transverse", speed=0.0, **contact)
-    found = microslip.predict("transverse", force=held.force_threshold_N, **contact)
+    force = held.force_threshold_N + side * held.force_threshold_error_N
+    found = microslip.predict("transverse", force=force, tolerance=tolerance, **contact)
     assert found.outcome == "undecided" and not found.converged
+    assert found.displacement_m is None and not found.displacement_reason
     assert found.reason.startswith("the force is its threshold to within its error")
 
 

@@ -95,3 +95,17 @@ def test_a_load_that_hertz_theory_does_not_know_is_refused():
     asked = ball | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}
     with pytest.raises(InputError, match="^reduction = '10 %': it takes a load of .*Hertz"):
         microslip.predict("transverse", **asked)
+
+
+def test_the_largest_amplitude_is_tried():
+    given = BALL | {"load": "10 N", "speed": "1 m/s", "frequency": "20 kHz"}
+    found = microslip.predict("transverse", **given, reduction="98.75 %")
+    assert found.force_reduction == pytest.approx(0.9875, abs=1e-3)
+    assert 5e3 < found.amplitude < 1e4
+
+
+def test_all_of_it_is_refused_at_a_speed():
+    """What is left there is never 0, and the error of mu_macro does not tell how little it is."""
+    with pytest.raises(InputError, match="^reduction = '100 %': allowed is at most 99.9 %"):
+        given = BALL | {"load": "10 N", "speed": "1 mm/s", "frequency": "20 kHz"}
+        microslip.predict("transverse", **given, reduction="100 %")

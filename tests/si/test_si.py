@@ -157,10 +157,9 @@ def test_the_amplitude_that_halves_friction_does(name, motion):
 
 @pytest.mark.slow
 def test_a_reduction_that_no_amplitude_gives_is_refused():
-    with pytest.raises(ValueError, match=r"^reduction = 1\.0: no amplitude"):
-        microslip.predict(
-            "transverse", reduction=1.0, young="210 GPa", nu=0, frequency="20 kHz", **BALL
-        )
+    with pytest.raises(ValueError, match=r"^reduction = 0\.99: no amplitude"):
+        fast = BALL | {"speed": "1 m/s", "frequency": "20 kHz"}
+        microslip.predict("transverse", reduction=0.99, young="210 GPa", nu=0, **fast)
 
 
 # Materials

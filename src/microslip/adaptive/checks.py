@@ -197,7 +197,8 @@ def checked_drive(
     body = {"stiffness": stiffness, "mass": mass, "damping": damping}
     for name, value in body.items():
         if value is not None:
-            body[name] = real(name, value, 0.0, LARGEST_BODY)
+            softest = SMALLEST_STIFFNESS if name == "stiffness" and force is None else 0.0
+            body[name] = real(name, value, softest, LARGEST_BODY)
     if force is not None:
         for name in ("stiffness", "damping"):
             if body[name] is not None:
@@ -211,10 +212,6 @@ def checked_drive(
                 allowed = "allowed beside a stiffness alone, for a velocity moves any body"
                 raise InputError(name, body[name], allowed)
         return None
-    if stiff < SMALLEST_STIFFNESS:
-        allowed = "allowed is a number above 0, at least "
-        allowed += f"{SMALLEST_STIFFNESS:g} and at most {LARGEST_BODY:g}"
-        raise InputError("stiffness", stiffness, allowed)
     return Spring(stiff, body["mass"] or 0.0, body["damping"] or 0.0)
 
 

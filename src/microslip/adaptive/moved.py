@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ from typing import NamedTuple
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import TOLERANCE, Request, verdict
+from microslip.adaptive.request import TOLERANCE, Request, verdict, within_friction
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import refine, run_tolerance
@@ -98,16 +97,10 @@ def solve_moved(request: Request) -> Result:
     return Result(
         **request.point,
         model=request.model,
-        friction=replace(refined.value, value=_within(problem, refined.value.value)),
+        friction=within_friction(problem, refined.value),
         torque=refined.torque if steady else None,
         **verdict(request, refined, ladder, request.tolerance),
     )
-
-
-def _within(problem: Problem, mu: float) -> float:
-    """A mean force brought to where it can be: what lies beyond is rounding and error."""
-    least = -1.0 if problem.propels else 0.0
-    return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
 def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:

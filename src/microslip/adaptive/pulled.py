@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
-from microslip.adaptive.request import Request, verdict
+from microslip.adaptive.request import Request, verdict, within_friction
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -115,12 +115,11 @@ def solve_pulled(request: Request) -> Result:
         point = request.point | {"model": CLOSED_FORM}
         return replace(of_closed_form(point, bracket, request.seconds), **body)
     refined, ladder = _refined(request, Accuracy(request.accuracy))
-    least = -1.0 if problem.propels else 0.0
     return Result(
         **request.point,
         **body,
         model=request.model,
-        friction=replace(refined.value, value=_between(refined.value.value, least, 1.0)),
+        friction=within_friction(problem, refined.value),
         **verdict(request, refined, ladder, request.tolerance),
     )
 
@@ -373,7 +372,3 @@ def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined, ladder
-
-
-def _between(value: float, least: float, most: float) -> float:
-    return min(max(value, least), most) if math.isfinite(value) else math.nan

@@ -139,6 +139,21 @@ def budget_for(
     return Budget(most_work, math.inf if time_limit is None else time_limit)
 
 
+def within_friction(problem: Problem, friction: Estimate) -> Estimate:
+    """A friction brought to where it can be: 0 to 1, or -1 to 1 of a motion that may propel.
+
+    A value beyond is rounding and error.  An error that is larger than that interval is replaced by
+    the interval itself.
+    """
+    least = -1.0 if problem.propels else 0.0
+    if not math.isfinite(friction.value):
+        return replace(friction, value=math.nan)
+    half = 0.5 * (1.0 - least)
+    if friction.error > 2.0 * half:
+        return Estimate(1.0 - half, {"model": half})
+    return replace(friction, value=min(max(friction.value, least), 1.0))
+
+
 def verdict(request: Request, refined: Refined, ladder: Ladder, largest: float | None) -> dict:
     """Fields of a result.Result that say how an answer was found, and whether it is good enough.
 

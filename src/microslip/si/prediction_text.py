@@ -118,7 +118,9 @@ class _Text:
         value = in_unit(found.sought_value, found.sought_error, self.unit_of_sought())
         end = "the least that" if found.sought == "amplitude" else "the largest at which vibration"
         share = f"takes {found.understood['reduction']} away"
-        return [line("found", f"{found.sought} {value}, {end} {share}")]
+        exact = in_unit(found.sought_value, 0.0, self.unit_of_sought())
+        here = f"all other lines are those at {exact}"
+        return [line("found", f"{found.sought} {value}, {end} {share}; {here}")]
 
     def groups_of_drive(self) -> list[str]:
         """Lines of the groups of the drive, and of its regime."""
@@ -195,12 +197,14 @@ class _Text:
         if value is None:
             return []
         rounding = ROUNDING * found.load_N  # as for static friction, times the load
+        text, words = in_unit(value, error, self.force), "no smaller constant force"
+        if value <= max(error, rounding):
+            most = 0.0 if value <= error <= rounding else value + error
+            text, words = in_unit(0.0, most, self.force), "any constant force"
+            words += f" above {in_unit(most, 0.0, self.force)}" if most else ""
+        lines = [line("force threshold", f"{text}: {words} moves the contact")]
         if value <= max(error, rounding) and not found.force_threshold_high_N:
-            exact = value <= error <= rounding
-            limit = in_unit(0.0, 0.0 if exact else value + error, self.force)
-            return [line("force threshold", f"{limit}: any constant force moves the contact")]
-        text = in_unit(value, error, self.force)
-        lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
+            return lines
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
         return lines + self.interval_of_threshold(ends, error, self.force)
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
+from microslip.adaptive.pulled import GAP_MARGIN
 from microslip.adaptive.shakedown import shakedown
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
@@ -70,18 +71,22 @@ def answer_of(
 
     limits: dict[str, Any] = within_range(pulling)
 
-    def found(tolerance: float) -> Result:
+    def found(tolerance: float, **changed: float) -> Result:
         settings: dict[str, Any] = {"poisson": contact.poisson, "tolerance": tolerance}
         settings |= {"pressure": contact.pressure} | carriers.settings
         name = solver_motion(motion, contact)
-        return solve(name, velocity, size, **settings, **limits)
+        return solve(name, velocity, size, **settings, **limits | changed)
+
+    def _next_to(threshold: Estimate) -> Result:
+        """Between no motion and the velocity under a force at which the contact moves."""
+        force = threshold.value + GAP_MARGIN * threshold.error
+        faster = found(tolerance, force=min(force, LARGEST_FORCE))
+        assert faster.velocity_error is not None  # as under all forces
+        half = 0.5 * (faster.velocity + faster.velocity_error)
+        return replace(answer, mean_velocity=Estimate(half, {"model": half}))
 
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
-        return answer
-    accepted = tolerance * max(answer.velocity, SLOWEST)
-    assert answer.velocity_error is not None  # as under all forces
-    if answer.velocity_error <= accepted:
         return answer
     mass = pulling.get("mass")
     known = equals_static_limit(contact, motion, carriers, mass) is True
@@ -89,7 +94,11 @@ def answer_of(
     if abs(pulling["force"] - threshold.value) <= threshold.error:
         reason = f"the force is its threshold to within its error, {threshold.error:.1e}"
         reason += " of mu times the load: a smaller tolerance may tell them apart"
-        return replace(answer, converged=False, reason=reason)
+        return replace(_next_to(threshold), converged=False, reason=reason)
+    accepted = tolerance * max(answer.velocity, SLOWEST)
+    assert answer.velocity_error is not None  # as under all forces
+    if answer.velocity_error <= accepted:
+        return answer
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 

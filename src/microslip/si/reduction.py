@@ -157,6 +157,12 @@ def with_reduction(
     if motion.spins and share == 1.0:
         allowed = "allowed is less than all of it: the centre of a contact that turns always sticks"
         raise InputError("reduction", given, allowed)
+    if sought != "speed" and motion.speed and share > 1.0 - tolerance:
+        most = 100.0 * (1.0 - tolerance)
+        allowed = (
+            f"allowed is at most {most:g} %, by the tolerance: at a speed some friction is left"
+        )
+        raise InputError("reduction", given, allowed)
     line = _LINES[sought](contact, motion, share)
     last, error, seen = (contact, motion), 0.0, []
 
@@ -180,10 +186,10 @@ def with_reduction(
         if line.end is not None and missing(line.end) > 0.0:
             high = math.inf
         while high > line.high or missing(high) > 0.0:
-            high += math.log(2.0)
-            if high > line.high:
+            if high >= line.high:
                 problem = f"{line.none} takes more than {100.0 * max(seen):.3g} % away"
                 raise NotAttainedError("reduction", given, problem)
+            high = min(high + math.log(2.0), line.high)
         place = brentq(missing, line.low, high, xtol=0.1 * tolerance)
         here = missing(place)
         error_here = error
