@@ -49,7 +49,10 @@ BAD = [
     ({"motion": "transverse", "amplitude": [1], "velocity": [1]}, "required: force or stiffness"),
     (WEIGHTS | {"velocity": [1]}, "force: 0.2: allowed is a force or a velocity, not both"),
     (WEIGHTS | {"stiffness": 1}, "stiffness: 1.0: allowed is none beside a force"),
-    (SPRINGS | {"stiffness": [0, 1]}, "stiffness: 0.0: allowed is a number above 0"),
+    (
+        SPRINGS | {"stiffness": [0, 1]},
+        "stiffness: 0.0: allowed is a finite number of at least 1e-09",
+    ),
     (SPRINGS | {"stiffness": [1, 1]}, "stiffness: 1 occurs twice"),
     (SPRINGS | {"mass": -1}, "mass: -1 is not allowed"),
     (SPRINGS | {"mass": "heavy"}, "mass: "),

@@ -135,7 +135,7 @@ def predicted(monkeypatch):
             rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
             return SimpleNamespace(**found, **rest)
 
-        def answer_of(contact, motion, pulling, tolerance, carriers):
+        def answer_of(contact, motion, pulling, tolerance, carriers, limit):
             return solve(motion.name, *groups(motion, contact), poisson=contact.poisson)
 
         monkeypatch.setattr("microslip.si.static_limit.solve", solve)

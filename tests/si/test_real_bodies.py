@@ -140,9 +140,9 @@ REFUSED = {
     "a reduction": (
         {"contacts": AGAINST, "reduction": 0.5, "amplitude": None},
         "reduction",
-        "beside contacts",
+        "for one contact only",
     ),
-    "power": ({"contacts": AGAINST, "power": True}, "power", "beside contacts"),
+    "power": ({"contacts": AGAINST, "power": True}, "power", "for one contact only"),
     "an ellipse": (
         {"contacts": "load=2;load=1", "radius_across": "7 mm"},
         "contacts",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.contacts.lanes import fused
 from microslip.foundation.compiled import kernel
 
 Parts = tuple[np.ndarray, np.ndarray]
@@ -56,6 +57,12 @@ def backward(
 
 
 @kernel(inline="always")
+def _turned(re: float, im: float, c: float, s: float) -> tuple[float, float]:
+    """(re + i im) (c + i s)."""
+    return fused(re, c, -im * s), fused(re, s, im * c)
+
+
+@kernel(inline="always")
 def _forward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1 = roots[0, w], -roots[1, w]
@@ -64,7 +71,7 @@ def _forward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         x, y = re[a, k] - re[b, k], im[a, k] - im[b, k]
         re[a, k] += re[b, k]
         im[a, k] += im[b, k]
-        re[b, k], im[b, k] = x * c1 - y * s1, x * s1 + y * c1
+        re[b, k], im[b, k] = _turned(x, y, c1, s1)
 
 
 @kernel(inline="always")
@@ -73,7 +80,7 @@ def _backward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c1, s1 = roots[0, w], roots[1, w]
     b = a + part
     for k in range(columns):
-        x, y = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
+        x, y = _turned(re[b, k], im[b, k], c1, s1)
         re[b, k], im[b, k] = re[a, k] - x, im[a, k] - y
         re[a, k] += x
         im[a, k] += y
@@ -93,10 +100,8 @@ def _forward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         zr, zi = re[a, k] - 0.5 * xr, im[a, k] - 0.5 * xi
         re[a, k] += xr
         im[a, k] += xi
-        re[b, k] = (zr + yr) * c1 - (zi + yi) * s1
-        im[b, k] = (zr + yr) * s1 + (zi + yi) * c1
-        re[c, k] = (zr - yr) * c2 - (zi - yi) * s2
-        im[c, k] = (zr - yr) * s2 + (zi - yi) * c2
+        re[b, k], im[b, k] = _turned(zr + yr, zi + yi, c1, s1)
+        re[c, k], im[c, k] = _turned(zr - yr, zi - yi, c2, s2)
 
 
 @kernel(inline="always")
@@ -105,8 +110,8 @@ def _backward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     b, c = a + part, a + 2 * part
     for k in range(columns):
-        br, bi = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
-        cr, ci = re[c, k] * c2 - im[c, k] * s2, re[c, k] * s2 + im[c, k] * c2
+        br, bi = _turned(re[b, k], im[b, k], c1, s1)
+        cr, ci = _turned(re[c, k], im[c, k], c2, s2)
         yr, yi = _SIN_60 * (ci - bi), _SIN_60 * (br - cr)
         zr, zi = re[a, k] - 0.5 * (br + cr), im[a, k] - 0.5 * (bi + ci)
         re[a, k] += br + cr
@@ -127,12 +132,9 @@ def _forward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         gr, gi = re[b, k] + re[d, k], im[b, k] + im[d, k]
         hr, hi = im[b, k] - im[d, k], re[d, k] - re[b, k]
         re[a, k], im[a, k] = er + gr, ei + gi
-        re[b, k] = (fr + hr) * c1 - (fi + hi) * s1
-        im[b, k] = (fr + hr) * s1 + (fi + hi) * c1
-        re[c, k] = (er - gr) * c2 - (ei - gi) * s2
-        im[c, k] = (er - gr) * s2 + (ei - gi) * c2
-        re[d, k] = (fr - hr) * c3 - (fi - hi) * s3
-        im[d, k] = (fr - hr) * s3 + (fi - hi) * c3
+        re[b, k], im[b, k] = _turned(fr + hr, fi + hi, c1, s1)
+        re[c, k], im[c, k] = _turned(er - gr, ei - gi, c2, s2)
+        re[d, k], im[d, k] = _turned(fr - hr, fi - hi, c3, s3)
 
 
 @kernel(inline="always")
@@ -142,9 +144,9 @@ def _backward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c3, s3 = roots[0, 3 * w], roots[1, 3 * w]
     b, c, d = a + part, a + 2 * part, a + 3 * part
     for k in range(columns):
-        br, bi = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
-        cr, ci = re[c, k] * c2 - im[c, k] * s2, re[c, k] * s2 + im[c, k] * c2
-        dr, di = re[d, k] * c3 - im[d, k] * s3, re[d, k] * s3 + im[d, k] * c3
+        br, bi = _turned(re[b, k], im[b, k], c1, s1)
+        cr, ci = _turned(re[c, k], im[c, k], c2, s2)
+        dr, di = _turned(re[d, k], im[d, k], c3, s3)
         er, ei = re[a, k] + cr, im[a, k] + ci
         fr, fi = re[a, k] - cr, im[a, k] - ci
         gr, gi = br + dr, bi + di
