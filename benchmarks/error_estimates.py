@@ -12,7 +12,7 @@ A first reference is the same point at a tenth of the tolerance, at a quarter of
 It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
 may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
 contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
-`finer.py` also replaces first references that take too much work, most of them rotations at 1e-4.
+Either also replaces first references that take too much work, most of them rotations at 1e-4.
 The most certain reference judges.  References that contradict each other are listed.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
@@ -55,6 +55,8 @@ TWICE = 20
 """Every point whose number is a multiple of this has a second reference."""
 MOST_WORK = 3e7
 """Work of a first reference where `finer.py` can make one: about six seconds."""
+MOST_WORK_OF_OTHERS = 5e8
+"""Work of a first reference elsewhere: one or two minutes."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
@@ -168,11 +170,12 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
             every.append(independent(point, result, first_result))
 
     if not every or not clear():
-        first, first_result = tighter(point, None if point.keys() & NOT_FINER else MOST_WORK)
+        others = bool(point.keys() & NOT_FINER)
+        first, first_result = tighter(point, MOST_WORK_OF_OTHERS if others else MOST_WORK)
         every += [] if every else [first]
         if not clear() or (k % TWICE == 0 and first["uncertainty"] > EXACT):
             add_independent()
-        if not clear() and not first["by"]:
+        if not clear() and not first["by"] and not others:
             every.append(tighter(point)[0])
     return best() | {
         KEPT: [one for one in every if one["by"]],
@@ -198,9 +201,9 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         problem = Problem(motion_named(point["motion"]), *place, pressure)
         value, uncertainty = finer.reference(problem, point["tolerance"], result)
         return {"reference": float(value), "uncertainty": float(uncertainty), "by": "finer"}
-    if not first.cells:  # a closed form
-        return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
     ran = first if first.converged else result
+    if not ran.cells:  # a closed form
+        return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
     arguments = arguments_of(point) | {"tolerance": point["tolerance"] * TIGHTER}
     values, rest = [], 0.0
     for factor in DENSER:

@@ -124,6 +124,13 @@ class Contact(Protocol):
         """
 
 
+class KnownContact(Contact, Protocol):
+    """A contact without a system, whose periodic state is known without a search."""
+
+    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
+        """Tractions at the start of a period, or of half of one that has a mirror image."""
+
+
 class GrowingContact(Contact, Protocol):
     """A contact whose normal load may change."""
 

@@ -2,7 +2,7 @@
 
 The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
 tractions over one period is solved for its fixed point by Anderson acceleration, in compiled code
-(states/search.py) where the contact has a system.
+(states/search.py).  Contacts without a system know their periodic state.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from microslip.models.contact import StepFailure
-from microslip.solver import anderson
+from microslip.models.contact import KnownContact, StepFailure, energy_norm
 from microslip.solver.period_map import DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.states import search
 
@@ -44,7 +43,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         Where the tractions blow up.
     """
     if not period_map.contact.compiled:
-        return anderson.search(period_map, start, goal)
+        return _known_state(period_map, goal)
     contact = cast("SystemContact", period_map.contact)  # or one that counts its marches
     path, rate = period_map.path, period_map.drift_rate
     slow = rate or DriftRate(0.0, 0.0, np.inf)
@@ -64,7 +63,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     layout = contact.layout
     memory = search.memory_of(layout.pack(tractions), place, stages, path.steps, target)
     system, loading, inertia = contact.system(), contact.loading(path), period_map.inertia()
-    done, most = False, goal.most_marches - period_map.marches
+    done, most = False, goal.most_marches
     while not done and memory.counts[0] < most:
         marches, iterations = memory.counts[:2]
         affordable = contact.affordable(path.steps * stages * tractions.size)
@@ -76,9 +75,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         contact.take(
             marched * path.steps * stages, int(memory.counts[1] - iterations), tractions.size
         )
-    period_map.marches += int(memory.counts[0])
-    period_map.iterations += int(memory.counts[1])
-    period_map.solves = period_map.marches * path.steps * stages
+    marches, iterations = map(int, memory.counts[:2])
     state, forces, body, numbers = memory.best
     state = layout.unpack(state)
     distance, residual, solver_residual, converged = map(float, numbers)
@@ -90,10 +87,29 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         residual=residual,
         distance=distance,
         solver_residual=solver_residual,
-        marches=period_map.marches,
-        iterations=period_map.iterations,
-        solves=period_map.solves,
+        marches=marches,
+        iterations=iterations,
+        solves=marches * path.steps * stages,
         converged=bool(converged),
         body=body,
         fields=layout.unpack(memory.guess),
+    )
+
+
+def _known_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
+    """The PeriodicState of a contact that tells it by itself, and one march from there."""
+    contact, path = cast(KnownContact, period_map.contact), period_map.path
+    start = contact.periodic_state(path, period_map.mirror)
+    march = contact.march(path, start, goal.step_tolerance)
+    distance = energy_norm(contact, period_map.image(march.state) - start)
+    return PeriodicState(
+        forces=march.forces,
+        start=start,
+        residual=distance,
+        distance=distance,
+        solver_residual=march.residual,
+        marches=1,
+        iterations=march.iterations,
+        solves=march.solves,
+        converged=distance <= goal.tolerance,
     )

@@ -13,16 +13,12 @@ that counts there is the rise of its mean force with the displacement.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from microslip.contacts.coulomb import project
-from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
 from microslip.models.path import Path
-from microslip.models.pull import Body, PulledMarch
+from microslip.models.pull import Body
 from microslip.models.system_contact import SystemContact
-from microslip.solver.period_map import DriftRate, MarchInterval, PeriodicState, PeriodMap
+from microslip.solver.period_map import DriftRate, PeriodMap
 from microslip.states.search import Inertia
 
 CAUTION = 0.3
@@ -49,7 +45,6 @@ class PulledMap(PeriodMap):
     """
 
     contact: SystemContact
-    _march: PulledMarch | None
 
     def __init__(
         self,
@@ -79,34 +74,6 @@ class PulledMap(PeriodMap):
         if body.mass > 0.0:
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
-    def __call__(self, state: np.ndarray, step_tolerance: float) -> MarchInterval:
-        """March once from `state`; steps are solved to `step_tolerance`.
-
-        Raises StepFailure where the tractions blow up.
-        """
-        tractions, start = self.parts(state)
-        self._march = march = self.contact.pulled_march(
-            self.path, tractions, step_tolerance, self.body, start, previous=self._march
-        )
-        self.marches += 1
-        self.iterations += march.iterations
-        self.solves += march.solves
-        image = self._hastened(tractions, start, march)
-        change = image - state
-        if not np.isfinite(change).all():
-            raise StepFailure("diverged: tractions are not finite")
-        return MarchInterval(state, image, change, self.size(change), march)
-
-    def _hastened(self, tractions: np.ndarray, start: np.ndarray, march: PulledMarch) -> np.ndarray:
-        """The state that the next interval begins with."""
-        image = self.image(march.state)
-        if not self.body.remembers and self._haste[0] > 1.0:
-            # by how far the body moved, for the force itself is known to the steps' tolerance alone
-            ahead = march.body[-1, 0] - march.body[0, 0]
-            force = march.forces[0, FORWARD] - self._haste[0] * self.body.stiffness * ahead
-            image[FORWARD] += (force - march.forces[-1, FORWARD]) * self._spread
-        return self.state(image, start + self._haste * (march.body[-1] - start))
-
     def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:
         """The state of tractions and of (x, x'), one row."""
         return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
@@ -126,48 +93,3 @@ class PulledMap(PeriodMap):
             float(self._mass),
             self.contact.layout.pack(self._spread),
         )
-
-    @property
-    def metric(self) -> np.ndarray:
-        points = np.broadcast_to(super().metric, self._shape)
-        return self.state(points, np.array([self._held, self._mass]))
-
-    def size(self, change: np.ndarray) -> float:
-        """Bound on the force that a change of a state carries, over mu F_z.
-
-        A soft spring changes its force by less than the contact would for the same displacement.
-        """
-        tractions, moved = self.parts(change)
-        held = self._held * moved[0] ** 2 + self._mass * moved[1] ** 2
-        if not self.body.remembers and self.body.stiffness > 0.0:
-            force = forces(self.contact, tractions)[FORWARD]
-            held = self._held * (force / self.body.stiffness) ** 2
-        squared = energy_norm(self.contact, tractions) ** 2 + self.contact.stiffness * held
-        return float(np.sqrt(squared))
-
-    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
-        """Estimated distance of an interval's state from the fixed point, given a better state."""
-        distance = max(self.size(proposal - interval.state), interval.residual)
-        if self.drift_rate is None:
-            return distance
-        march, tractions = interval.march, self.parts(interval.state)[0]
-        assert isinstance(march, PulledMarch)  # as __call__ marches
-        gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
-        gained += energy_norm(self.contact, self.image(march.state) - tractions)
-        force = float(self.path.mean(march.forces[:, FORWARD]))
-        return max(distance, self.drift_rate.force_error(gained, force))
-
-    def admissible(self, state: np.ndarray) -> np.ndarray:
-        """The state, its tractions projected on the friction bound."""
-        tractions, moved = self.parts(state)
-        return self.state(project(tractions, self.contact.bound), moved)
-
-    def result(
-        self,
-        interval: MarchInterval,
-        distance: float,
-        converged: bool,
-    ) -> PeriodicState:
-        found = super().result(interval, distance, converged)
-        assert isinstance(interval.march, PulledMarch)  # as __call__ marches
-        return replace(found, body=interval.march.body)

@@ -21,7 +21,7 @@ from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.pulled_map import PulledMap
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
@@ -104,7 +104,8 @@ class _Walk:
     def __init__(self, problem: Problem, contact: SystemContact, steps: int, body: Body):
         self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
         path = path_of(problem, contact, steps)
-        self.map = PulledMap(contact, path, body, mirror=problem.half_period_mirror)
+        self.map = PeriodMap(contact, path, mirror=problem.half_period_mirror)
+        self.marches = 0
         self.interval = path.phase[-1] - path.phase[0]
         self.gone: list[float] = []
         self.residual, self.iterations, self.solves = 0.0, 0, 0
@@ -113,25 +114,24 @@ class _Walk:
         """The ShakedownRun; tolerance: of what may be left of the way."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
-        state, pushed = self._along(self._still(), state, step_tolerance)
+        still, pushed = self._marched(self._still(), state, step_tolerance)
         first, images = self._first_part()
-        state, begun = self._along(first, state, step_tolerance)
+        march, begun = self._marched(first, still.state, step_tolerance)
+        state = march.state
         for _ in range(images):
             state = self.map.image(state)
-        state, look = self.map.state(state, np.zeros(2)), FIRST_LOOK
+        look, previous = FIRST_LOOK, None
         for turn in range(MOST_INTERVALS):
-            interval = self.map(state, step_tolerance)
-            state = interval.image
-            assert isinstance(interval.march, PulledMarch)  # as the map marches
-            self.gone.append(float(interval.march.body[-1, 0] - interval.march.body[0, 0]))
-            self.residual += interval.march.residual
+            previous, way = self._marched(self.map.path, state, step_tolerance, previous)
+            state = self.map.image(previous.state)
+            self.gone.append(way)
+            self.marches += 1
             if turn + 1 == look:
                 left = self._left()
                 if left <= tolerance or self._drifts():
                     break
                 look = round(look * LOOKS[look % 3 == 0])
-        solves = self.solves + self.map.solves
-        reason = unsolved(self.residual, solves, step_tolerance)
+        reason = unsolved(self.residual, self.solves, step_tolerance)
         if left > tolerance:
             reason = f"still moves after {self._periods:g} periods, by {self.gone[-1]:.1e} in the "
             reason += "last march"
@@ -140,7 +140,7 @@ class _Walk:
     @property
     def _periods(self) -> float:
         """Full periods marched so far."""
-        return float(self.map.marches * self.interval / (2.0 * np.pi))
+        return float(self.marches * self.interval / (2.0 * np.pi))
 
     def _still(self) -> Path:
         """The path on which the force alone grows: one step, since slip only grows with it."""
@@ -165,15 +165,26 @@ class _Walk:
         phases = np.linspace(0.0, end, steps + 1)
         return make_path(self.problem.displacement, phases, depth=self.problem.depth), images
 
-    def _along(
-        self, path: Path, state: np.ndarray, step_tolerance: float
-    ) -> tuple[np.ndarray, float]:
-        """State at the end of a path, and how far the contact went."""
-        march = self.contact.pulled_march(path, state, step_tolerance, self.body, np.zeros(2))
+    def _marched(
+        self,
+        path: Path,
+        state: np.ndarray,
+        step_tolerance: float,
+        previous: PulledMarch | None = None,
+    ) -> tuple[PulledMarch, float]:
+        """A march along a path, and how far the contact went.
+
+        Raises StepFailure where the tractions blow up.
+        """
+        march = self.contact.pulled_march(
+            path, state, step_tolerance, self.body, np.zeros(2), previous
+        )
+        if not np.isfinite(march.state).all():
+            raise StepFailure("diverged: tractions are not finite")
         self.residual += march.residual
         self.iterations += march.iterations
         self.solves += march.solves
-        return march.state, float(march.body[-1, 0] - march.body[0, 0])
+        return march, float(march.body[-1, 0] - march.body[0, 0])
 
     def _drifts(self) -> bool:
         """Whether the contact goes on as fast as it did long before."""
@@ -205,15 +216,13 @@ class _Walk:
         if added <= self.residual / self.contact.stiffness:  # no more than steps leave unsolved
             most = 0
         periods = self.interval / (2.0 * np.pi)
-        solves = self.solves + self.map.solves
-        iterations = self.iterations + self.map.iterations
         return ShakedownRun(
             mu=self.body.load / self.problem.mean_load,
             torque=0.0,
             distance=0.5 * left,
             solver_residual=self.residual / self.contact.stiffness,
             periods=self._periods,
-            effort=Effort.of(solves, iterations, state.size),
+            effort=Effort.of(self.solves, self.iterations, state.size),
             converged=not reason,
             reason=reason,
             state=state,

@@ -16,6 +16,7 @@ whatever the period began with, and the maximum makes up for it.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -87,12 +88,15 @@ def loop_limit(
     period_map = PeriodMap(contact, path, mirror=mirror)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     start = np.zeros((2, *shape))
+    goal, marches, iterations, done = Goal(tolerance, step_tolerance, MARCHES), 0, 0, 0
     for _ in range(MOST_ROUNDS):
-        goal = Goal(tolerance, step_tolerance, period_map.marches + MARCHES)
         found = find_periodic_state(period_map, start, goal)
         start = found.start
+        marches, iterations = marches + found.marches, iterations + found.iterations
+        done += found.solves
         if found.converged:
             break
+    found = replace(found, marches=marches, iterations=iterations, solves=done)
     force = float(mean_forces(contact, problem, path, found.forces)[FORWARD])
     residual, solves = found.solver_residual, path.stages.shape[0] * path.stages.shape[1]
     if not contact.sticks:

@@ -47,6 +47,11 @@ class RigidContact(contact.Contact):
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
+    def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
+        """The end of a march, from whatever start."""
+        end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
+        return self.mirrored(end) if mirror else end
+
     def march(
         self,
         path: Path,

@@ -1,23 +1,177 @@
-"""Searches for the periodic state that people write first, on a period_map.PeriodMap.
+"""Searches for the periodic state that people write first, and marches that Python calls.
 
-All return a period_map.PeriodicState.
+All searches return a period_map.PeriodicState.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
+
 import numpy as np
 
-from microslip.solver import anderson
-from microslip.solver.anderson import DEPTH, Anderson
-from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.contacts.coulomb import project
+from microslip.models.contact import March, StepFailure, energy_norm
+from microslip.solver.period_map import DriftRate, Goal, PeriodicState, PeriodMap
 
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two changes that is believed: rounding alone makes it 1."""
+FORCING = 1e-3
+LOOSEST = 1e-4
+"""While the state is still far from periodic, steps are solved to this share of what the last
+period changed, and to LOOSEST at first: more would be wasted on a start that is about to change."""
+DEPTH = 12
+NOISE = 0.1
+"""Share of a period's change that its steps may leave unsolved."""
+LOOSEST_NEAR, QUIET = 1e-5, 0.25
+"""For a start near the periodic state: loosest tolerance of a step, and share of NOISE allowed to
+the steps of the next march.  With many steps each must be solved better, or the march is wasted."""
+FORGETFUL = 0.2
+"""Contraction of the plain map from the start on below which it is left alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class MarchInterval:
+    """One march over a (half) period.
+
+    Attributes
+    ----------
+    state : np.ndarray
+        Tractions at its beginning.
+    image : np.ndarray
+        Those where the next one begins: at the end of the period, or the mirror image of its
+        middle.
+    residual : float
+        Size of image - state, as a force over mu F_z.
+    march : contact.March
+        What it gave.
+    """
+
+    state: np.ndarray
+    image: np.ndarray
+    residual: float
+    march: March
+
+
+def force_error(rate: DriftRate, residual: float, force: float) -> float:
+    """Error of the mean forward force that a residual of the plain map stands for."""
+    excess = abs(force - rate.static_force)
+    if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
+        excess = max(abs(force), abs(rate.full - force))
+    return excess * residual / rate.gain
+
+
+class Marches:
+    """Marches of a period_map.PeriodMap that Python calls one by one, and their verdict.
+
+    Marches(period_map)(state, step_tolerance) is a MarchInterval.  The verdict is that of the plain
+    map: its residual, the distance to the fixed point that the last correction measured, and the
+    error that the residual stands for at the drift rate of the motion.
+    """
+
+    def __init__(self, period_map: PeriodMap):
+        self.contact, self.path = period_map.contact, period_map.path
+        self.image, self.drift_rate = period_map.image, period_map.drift_rate
+        self.count = self.iterations = self.solves = 0
+        self.metric = self.contact.weight * self.contact.compliance
+        self._march: March | None = None
+
+    def __call__(self, state: np.ndarray, step_tolerance: float) -> MarchInterval:
+        """March once from `state`; steps are solved to `step_tolerance`.
+
+        Raises StepFailure where the tractions blow up.
+        """
+        self._march = march = self.contact.march(
+            self.path, state, step_tolerance, previous=self._march
+        )
+        self.count += 1
+        self.iterations += march.iterations
+        self.solves += march.solves
+        image = self.image(march.state)
+        change = image - state
+        if not np.isfinite(change).all():
+            raise StepFailure("diverged: tractions are not finite")
+        return MarchInterval(state, image, energy_norm(self.contact, change), march)
+
+    def admissible(self, state: np.ndarray) -> np.ndarray:
+        """The state projected on the friction bound, where the integrator keeps to it."""
+        return project(state, self.contact.bound) if self.path.end == 1.0 else state
+
+    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
+        """Estimated distance of an interval's state from the fixed point, given a better state."""
+        moved = energy_norm(self.contact, proposal - interval.state)
+        distance = max(moved, interval.residual)
+        if self.drift_rate is not None:
+            mean = float(self.path.mean(interval.march.forces[:, 0]))
+            distance = max(distance, force_error(self.drift_rate, interval.residual, mean))
+        return distance
+
+    def result(self, interval: MarchInterval, distance: float, converged: bool) -> PeriodicState:
+        """The PeriodicState that an interval amounts to."""
+        return PeriodicState(
+            forces=interval.march.forces,
+            start=interval.state,
+            residual=interval.residual,
+            distance=float(distance),
+            solver_residual=interval.march.residual,
+            marches=self.count,
+            iterations=self.iterations,
+            solves=self.solves,
+            converged=bool(converged),
+        )
 
 
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Anderson acceleration of marches that Python calls one by one."""
-    return anderson.search(period_map, start, goal)
+    """Anderson acceleration of marches that Python calls one by one.
+
+    The start should have too much forward traction rather than too little: from there the mean
+    tractions relax towards the periodic ones without losing slip on the way, which is what keeps an
+    accelerated map from settling where nothing moves.
+
+    Parameters
+    ----------
+    period_map : period_map.PeriodMap
+        The map.
+    start : np.ndarray
+        Tractions.
+    goal : period_map.Goal
+        What to reach.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        The best state seen, if none is good enough.
+    """
+    marches = Marches(period_map)
+    accelerate, step_tolerance = Anderson(marches.metric, DEPTH), goal.step_tolerance
+    state, best = start, None
+    forcing, loosest = FORCING, LOOSEST
+    if goal.near:
+        forcing = min(FORCING, QUIET * NOISE / len(period_map.path.stages))
+        loosest = LOOSEST_NEAR
+    inner = max(step_tolerance, loosest)
+    forgets, last_residual = True, np.inf
+    while marches.count < goal.most_marches:
+        interval = marches(state, inner)
+        solved = inner <= step_tolerance
+        noisy = not solved and interval.march.residual > NOISE * interval.residual
+        ceiling = NOISE * inner if noisy else loosest
+        inner = max(step_tolerance, min(forcing * interval.residual, ceiling))
+        if noisy:
+            continue  # what is left of the steps hides what the period changed
+        forgets = forgets and interval.residual <= FORGETFUL * last_residual
+        last_residual = interval.residual
+        proposal = accelerate(state, interval.image)
+        if forgets:
+            proposal = interval.image
+        state = marches.admissible(proposal)
+        distance = marches.distance(interval, state)
+        converged = solved and distance <= goal.tolerance
+        if best is None or distance < best.distance or converged:
+            best = marches.result(interval, distance, converged)
+        if converged:
+            break
+    return best or marches.result(interval, interval.residual, False)
 
 
 def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
@@ -25,39 +179,68 @@ def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState
 
     What is left is the geometric tail of the changes, in the ratio of the last two.
     """
-    state, last, distance = start, None, float("inf")
+    marches, state, last, distance = Marches(period_map), start, None, float("inf")
     for _ in range(goal.most_marches):
-        interval = period_map(state, goal.step_tolerance)
+        interval = marches(state, goal.step_tolerance)
         if last is not None:
             ratio = min(interval.residual / last, SLOWEST) if last > 0.0 else 0.0
             distance = max(
-                interval.residual / (1.0 - ratio), period_map.distance(interval, interval.image)
+                interval.residual / (1.0 - ratio), marches.distance(interval, interval.image)
             )
         if distance <= goal.tolerance:
             break
         state, last = interval.image, interval.residual
-    return period_map.result(interval, distance, distance <= goal.tolerance)
+    return marches.result(interval, distance, distance <= goal.tolerance)
 
 
 def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """March on until the mean force of two half periods is the same to the tolerance."""
-    state, last = start, float("inf")
+    marches, state, last = Marches(period_map), start, float("inf")
     for _ in range(goal.most_marches):
-        interval = period_map(state, goal.step_tolerance)
+        interval = marches(state, goal.step_tolerance)
         mean = period_map.path.mean(interval.march.forces)[0]
         change = abs(mean - last)
         if change <= goal.tolerance:
             break
         state, last = interval.image, mean
-    return period_map.result(interval, change, change <= goal.tolerance)
+    return marches.result(interval, change, change <= goal.tolerance)
 
 
 def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
-    accelerate, state = Anderson(period_map.metric, DEPTH), start
+    marches = Marches(period_map)
+    accelerate, state = Anderson(marches.metric, DEPTH), start
     for _ in range(goal.most_marches):
-        interval = period_map(state, goal.step_tolerance)
+        interval = marches(state, goal.step_tolerance)
         if interval.residual <= goal.tolerance:
             break
-        state = period_map.admissible(accelerate(state, interval.image))
-    return period_map.result(interval, interval.residual, interval.residual <= goal.tolerance)
+        state = marches.admissible(accelerate(state, interval.image))
+    return marches.result(interval, interval.residual, interval.residual <= goal.tolerance)
+
+
+class Anderson:
+    """Anderson acceleration of a fixed-point map on tractions, least squares in a force metric."""
+
+    def __init__(self, metric: np.ndarray, depth: int):
+        self.scale = np.sqrt(metric)
+        self.depth = depth
+        self.images: list[np.ndarray] = []
+        self.changes: list[np.ndarray] = []
+
+    def __call__(self, state: np.ndarray, image: np.ndarray) -> np.ndarray:
+        """Next state from the pairs (state, image) seen so far."""
+        self.images.append(image)
+        self.changes.append(image - state)
+        if len(self.changes) > self.depth + 1:
+            self.images.pop(0)
+            self.changes.pop(0)
+        if len(self.changes) == 1:
+            return image
+        scaled = [(change * self.scale).ravel() for change in self.changes]
+        differences = np.stack([b - a for a, b in pairwise(scaled)], axis=1)
+        try:
+            weights = np.linalg.lstsq(differences, scaled[-1], rcond=1e-9)[0]
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"diverged: {error}") from error
+        moves = [b - a for a, b in pairwise(self.images)]
+        return image - sum(w * move for w, move in zip(weights, moves, strict=True))

@@ -11,6 +11,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import Points, Stage, dense, judge, project_in_place
+from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 2000
 
@@ -46,5 +47,6 @@ def _solve(
 METHOD = Method(
     "ADMM on the dense matrix",
     dress=dense(_solve, _inverse),
+    search=accelerated,
     parameters={"penalty": 1.0, "relaxation": 1.7},
 )

@@ -11,6 +11,7 @@ from microslip.contacts.coulomb import shrink
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import Points, Stage, dense, judge
+from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 1000
 
@@ -49,5 +50,6 @@ def _solve(points: Points, stage: Stage, settings: tuple[np.ndarray, float]) -> 
 METHOD = Method(
     "projected Gauss-Seidel",
     dress=dense(_solve, _columns),
+    search=accelerated,
     parameters={"relaxation": 1.0},
 )

@@ -10,6 +10,7 @@ import numpy as np
 
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import dense, descend
+from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
@@ -20,5 +21,6 @@ def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarra
 METHOD = Method(
     "projected Jacobi, undamped",
     dress=dense(descend, _lengths),
+    search=accelerated,
     parameters={"damping": 1.0},
 )

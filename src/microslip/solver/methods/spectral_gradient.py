@@ -17,6 +17,7 @@ from microslip.solver.methods._dense import (
     project_in_place,
     safe_length,
 )
+from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
@@ -52,4 +53,8 @@ def _solve(points: Points, stage: Stage, shortest: float) -> tuple[int, float]:
     return MAX_ITERATIONS, residual
 
 
-METHOD = Method("projected gradient, Barzilai-Borwein steps", dress=dense(_solve, _shortest))
+METHOD = Method(
+    "projected gradient, Barzilai-Borwein steps",
+    dress=dense(_solve, _shortest),
+    search=accelerated,
+)

@@ -12,6 +12,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import Points, Stage, dense, judge
+from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 200
 
@@ -59,4 +60,4 @@ def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
     return MAX_ITERATIONS, residual
 
 
-METHOD = Method("fixed-point stick/slip switching", dress=dense(_solve))
+METHOD = Method("fixed-point stick/slip switching", dress=dense(_solve), search=accelerated)
