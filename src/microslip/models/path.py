@@ -100,9 +100,11 @@ def turning_point_width(drift: float, stroke: float) -> float:
     to the distance from it.  Infinite where all steps are equal, but for the grading.
 
     A long stroke turns the slip round while the contact goes a way of u_lim, or of its drift in a
-    radian if that is longer.
+    radian if that is longer.  At LONG_STROKE steps are still nearly equal.
     """
-    return max(1.0, drift) / stroke if stroke > LONG_STROKE else math.inf
+    if stroke <= LONG_STROKE:
+        return math.inf
+    return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
 
 
 @dataclass(frozen=True, eq=False)
