@@ -55,8 +55,8 @@ TWICE = 20
 """Every point whose number is a multiple of this has a second reference."""
 MOST_WORK = 3e7
 """Work of a first reference where `finer.py` can make one: about six seconds."""
-MOST_WORK_OF_OTHERS = 5e8
-"""Work of a first reference elsewhere: one or two minutes."""
+MOST_WORK_OF_OTHERS = 1e8
+"""Work of a first reference elsewhere: two or three minutes."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
