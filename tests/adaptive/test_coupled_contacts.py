@@ -154,7 +154,7 @@ def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
         assert answer(other)[1] < 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_angles_and_squares_agree_on_contacts_that_turn():
     given = {"amplitude": 1.5, "force": 0.4, "contacts": "load=2;load=1,phase=90", "poisson": 0.3}
     angles = microslip.solve("bore", tolerance=3e-3, **given)

@@ -26,7 +26,7 @@ def given(request):
     return request.param, microslip.period(motion, velocity, amplitude, poisson=poisson)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_mean_force_is_the_certified_one(given):
     (motion, velocity, amplitude, poisson), found = given
     answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)

@@ -313,6 +313,7 @@ FILES = {
     ),
     "a month too many": (b"results: 2026-13-01\n", "not valid YAML", "month", "line 1"),
     "a tag": (b"results: !!python/object/apply:os.getcwd []\n", "not valid YAML", "line 1"),
+    "itself inside, and more": (b"sweeps: &s\n  transverse: *s\nresults: r\n", "holds itself"),
     "an unknown alias": (b"sweeps: *others\n", "not valid YAML", "others"),
     "itself inside": (b"sweeps: &s {transverse: *s}\n", "holds itself"),
     "very deep": (b"[" * 5000, "not valid YAML"),

@@ -13,6 +13,7 @@ from stubs.in_node import answers, needs_node
 import microslip
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
+from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified, si_form
 from microslip.si.dimensionless import groups
@@ -133,9 +134,10 @@ def predicted(monkeypatch):
                 pair, reason = (float(found.mu_macro), float(found.mu_macro_error)), ""
             found = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
             rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
-            return SimpleNamespace(**found, **rest)
+            friction = Estimate(pair[0], {"model": pair[1]})
+            return SimpleNamespace(**found, friction=friction, **rest)
 
-        def answer_of(contact, motion, pulling, tolerance, carriers, limit):
+        def answer_of(contact, motion, pulling, tolerance, carriers, threshold):
             return solve(motion.name, *groups(motion, contact), poisson=contact.poisson)
 
         monkeypatch.setattr("microslip.si.static_limit.solve", solve)

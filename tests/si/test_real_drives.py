@@ -384,3 +384,31 @@ def test_the_command_line_says_what_comes_of_a_force(capsys):
     found = json.loads(said(capsys, *words, "--json"))
     assert (found["mass_kg"], found["drive_stiffness_N_m"]) == (0.02, 1e7)
     assert found["regime"] == "velocity" and found["outcome"] is None
+
+
+def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():
+    """Of an ellipse the lateral part, whose closed form is known at nu = 0."""
+    parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
+    found = {
+        share: microslip.predict("elliptic", **SIDEWAYS, **parts, force=share * STILL)
+        for share in (0.4, 0.8)
+    }
+    assert [one.outcome for one in found.values()] == ["stays", "moves"]
+    exact = STILL * paper.static_limit_transverse(0.5)
+    for share, one in found.items():
+        assert one.force_threshold_N == pytest.approx(exact, abs=one.force_threshold_error_N)
+        assert one.safety_factor == pytest.approx(one.force_threshold_N / (share * STILL))
+    assert found[0.4].displacement_m > 0.0
+
+
+def test_probabilities_that_are_not_known_are_said_to_be():
+    parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
+    found = microslip.predict("elliptic", **SIDEWAYS, **parts, force="1.2 N +- 0.1 N")
+    assert found.probability_stays is None and found.probability_runs_away == 0.0
+    assert "not known: that it stays, or moves" in str(found)
+
+
+def test_a_load_that_oscillates_far_too_much_is_named():
+    given = SIDEWAYS | {"load_amplitude": "1e10 N", "speed": "1 mm/s"}
+    with pytest.raises(InputError, match="^load_amplitude = '1e10 N': allowed is at most 1e"):
+        microslip.predict("normal", **given)

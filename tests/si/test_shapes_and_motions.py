@@ -229,7 +229,7 @@ def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
         assert found.velocity == plain.velocity and found.amplitude == plain.amplitude
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_oscillating_load_alone_is_its_closed_form():
     """Under a load that oscillates by half of itself, at vanishing speed: what is left is 1 - A."""
     asked = {k: v for k, v in SPHERE.items() if k != "amplitude"}
@@ -395,7 +395,7 @@ def test_a_motion_without_a_meaning_in_units_is_refused(motion, said):
 # A load that parts the bodies
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_load_amplitude_above_the_load_parts_the_bodies():
     """The load is 10 N + 15 N sin t where that is above 0: its mean is an integral by hand."""
     given = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}

@@ -84,3 +84,8 @@ def test_pandas_tables_and_files_are_cases(tmp_path):
     by_series = microslip.predict_table("transverse", series, **shared)
     plain = microslip.predict_table("transverse", CASES, **shared)
     assert by_series.mu_macro.values.tolist() == plain.mu_macro.values.tolist()
+
+
+def test_a_column_without_a_text_for_a_name_is_refused():
+    with pytest.raises(InputError, match="^cases = 0: allowed are names of columns"):
+        microslip.predict_table("transverse", pd.DataFrame({0: ["5 N"]}), radius="1 mm")

@@ -16,7 +16,7 @@ from typing import Any
 from microslip.adaptive.checks import (
     checked_problem,
 )
-from microslip.adaptive.pulled import refuse_drive
+from microslip.adaptive.pulled import STATIC_TOLERANCE, refuse_drive
 from microslip.adaptive.request import Request, request_for, verdict
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
@@ -203,7 +203,8 @@ def _threshold(request: Request, force: float) -> tuple[float, float, str]:
         return 1.0, 0.0, away
     if away:
         return math.nan, math.inf, away
-    static = solve_each(replace(request, chosen=True))
+    tolerance = min(request.tolerance or STATIC_TOLERANCE, STATIC_TOLERANCE)
+    static = solve_each(replace(request, chosen=True, tolerance=tolerance))
     return static.mu_macro, static.mu_macro_error, ""
 
 

@@ -14,6 +14,9 @@ MOST_VALUES = 100_000
 
 Checking that many takes a few seconds."""
 
+UNFINISHED = 0
+"""Size of a node whose children are still being counted."""
+
 
 class StrictLoader(yaml.SafeLoader):
     """Loader of plain data, for yaml.load.
@@ -90,15 +93,19 @@ class StrictLoader(yaml.SafeLoader):
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
     """Number of nodes in a tree that repeats what has several aliases; sizes: those known by id.
 
-    A node inside itself counts once: whoever reads the document refuses it.
+    Raises ConstructorError for a node inside itself.
     """
+    if sizes.get(id(node)) == UNFINISHED:
+        raise yaml.constructor.ConstructorError(
+            None, None, "a value that holds itself, by an alias", node.start_mark
+        )
     if id(node) not in sizes:
-        sizes[id(node)] = 1
+        sizes[id(node)] = UNFINISHED
         if isinstance(node, yaml.MappingNode):
             children = [child for pair in node.value for child in pair]
         else:
             children = node.value if isinstance(node, yaml.SequenceNode) else []
-        sizes[id(node)] += sum(_expanded_size(child, sizes) for child in children)
+        sizes[id(node)] = 1 + sum(_expanded_size(child, sizes) for child in children)
     return sizes[id(node)]
 
 

@@ -18,9 +18,7 @@ HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """The name of a column, with its unit in brackets or without."""
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of texts that are carried through to the output."""
-ENCODING = (
-    "allowed: UTF-8, which spreadsheets call CSV UTF-8, or encoding = the name of another one"
-)
+ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or its encoding"
 DECIMALS = (".", ",")
 PURE = {"", "1", "-"}
 """Units that say that there is none."""
@@ -127,7 +125,10 @@ def by_names(table: Mapping | DataFrame) -> dict:
     given = table if isinstance(table, Mapping) else {name: table[name] for name in table.columns}
     found = {}
     for name, values in given.items():
-        heading = HEADING.fullmatch(name) if isinstance(name, str) else None
+        if not isinstance(name, str):
+            allowed = "allowed are names of columns that are texts, such as 'load [N]'"
+            raise InputError("cases", name, allowed)
+        heading = HEADING.fullmatch(name)
         if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
             found[name] = values
             continue

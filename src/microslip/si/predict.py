@@ -17,7 +17,7 @@ from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_at_rest, answer_of, with_speed
 from microslip.si.question import Question, asked, checked_groups
 from microslip.si.reduction import with_reduction
-from microslip.si.static_limit import static_limit
+from microslip.si.static_limit import force_threshold, static_limit
 from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
@@ -179,13 +179,14 @@ def _answered(question: Question) -> Prediction:
     limit = static_limit(
         contact, motion, carriers, question.tolerance, under_force=given["force"] is not None
     )
-    answer = answer_at_rest((contact, carriers), motion, pulling, limit)
+    threshold = force_threshold(contact, motion, carriers, drive, limit)
+    answer = answer_at_rest((contact, carriers), motion, pulling, limit, threshold)
     if answer is None:
         try:
-            answer = answer_of(contact, motion, pulling, question.tolerance, carriers, limit)
+            answer = answer_of(contact, motion, pulling, question.tolerance, carriers, threshold)
         except InputError as error:
             raise _in_si(error, given) from None
-    pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
+    pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, threshold)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
     if answer.converged:

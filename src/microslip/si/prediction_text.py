@@ -245,6 +245,8 @@ class _Text:
             )
             if chance is not None
         ]
+        if shares and found.probability_stays is None:
+            shares.append("not known: that it stays, or moves")
         return [line("probability", ", ".join(shares))] if shares else []
 
     def moves(self) -> list[str]:

@@ -27,13 +27,12 @@ from microslip.si.dimensionless import (
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.several import Carriers
-from microslip.si.static_limit import equals_static_limit, largest_force
+from microslip.si.static_limit import largest_force
 
 SLOWEST = 1e-3
 """Velocity, in the unit of the motion, below which the accepted error is no longer relative."""
 MARGIN = 0.8
 """Safety factor on the accepted error of a second run, since its velocity may be smaller."""
-UNKNOWN_THRESHOLD = Estimate(math.nan)
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
 """The outcome, and the beginning of the solver's reason for it."""
@@ -45,7 +44,7 @@ def answer_of(
     pulling: dict[str, float],
     tolerance: float,
     carriers: Carriers,
-    limit: Result | None,
+    threshold: Estimate | None,
 ) -> Result:
     """The result of microslip.solve for a motion in SI units.
 
@@ -60,8 +59,8 @@ def answer_of(
         Accepted error: of mu_macro, or under a force of the velocity, relative down to SLOWEST.
     carriers : several.Carriers
         The contact, or several like it.
-    limit : Result or None
-        Friction at a vanishing speed, None for a steady motion.
+    threshold : Estimate or None
+        Force from which on the contact moves, over mu F_z, None where it is not known.
     """
     if not pulling:
         return friction_of(contact, motion, tolerance, **carriers.settings)
@@ -88,10 +87,7 @@ def answer_of(
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
         return answer
-    mass = pulling.get("mass")
-    known = equals_static_limit(contact, motion, carriers, mass) is True
-    threshold = limit.friction if limit is not None and known else UNKNOWN_THRESHOLD
-    if abs(pulling["force"] - threshold.value) <= threshold.error:
+    if threshold is not None and abs(pulling["force"] - threshold.value) <= threshold.error:
         reason = f"the force is its threshold to within its error, {threshold.error:.1e}"
         reason += " of mu times the load: a smaller tolerance may tell them apart"
         return replace(_next_to(threshold), converged=False, reason=reason)
@@ -107,6 +103,7 @@ def answer_at_rest(
     motion: RealMotion,
     pulling: dict[str, float],
     limit: Result | None,
+    threshold: Estimate | None,
 ) -> Result | None:
     """The Result of a force below the threshold by more than the error of the threshold: such a
     contact comes to rest, and no drift is computed.  None for any other force.
@@ -119,13 +116,13 @@ def answer_at_rest(
         Groups of the drive, from dimensionless.drive_groups.
     limit : Result or None
         Friction at a vanishing speed, None for a steady motion.
+    threshold : Estimate or None
+        As for `answer_of`.
     """
     force, mass = pulling.get("force"), pulling.get("mass")
-    if force is None or limit is None or not limit.converged:
+    if force is None or threshold is None or limit is None or not limit.converged:
         return None
-    if equals_static_limit(carried[0], motion, carried[1], mass) is not True:
-        return None
-    if not force <= limit.mu_macro - limit.mu_macro_error:
+    if not force <= threshold.value - threshold.error:
         return None
     if force >= largest_force(carried[0], motion, carried[1], mass):
         return None
@@ -151,7 +148,7 @@ def about_drive(
     motion: RealMotion,
     pulls: tuple[RealDrive, dict[str, float]],
     answer: Result,
-    limit: Result | None,
+    threshold: Estimate | None,
 ) -> dict:
     """Fields of a prediction.Prediction that say what pulls, and what comes of it.
 
@@ -161,19 +158,18 @@ def about_drive(
         The contact, and how many like it there are.
     pulls : tuple
         The drive as it was given, and its groups.
-    limit : Result or None
-        The answer for a vanishing speed, None for a steady motion.
+    threshold : Estimate or None
+        As for `answer_of`.
     """
     (contact, carriers), (drive, pulling) = carried, pulls
     still = full_friction(motion, contact) * carriers.count
-    threshold = _threshold(motion, carried, pulling, limit)
     fields: dict[str, Any] = {
         "force_N": drive.force,
         "drive_stiffness_N_m": drive.stiffness,
         "mass_kg": drive.mass,
         "damping_N_s_m": drive.damping,
-        "force_threshold_N": None if threshold is None else still * threshold[0],
-        "force_threshold_error_N": None if threshold is None else still * threshold[1],
+        "force_threshold_N": None if threshold is None else still * threshold.value,
+        "force_threshold_error_N": None if threshold is None else still * threshold.error,
         **pulling,
     }
     if motion.speed is not None and motion.frequency is not None:
@@ -181,9 +177,8 @@ def about_drive(
         fields["displacement_per_cycle_error_m"] = 0.0
     if drive.force is not None:
         if threshold is not None:
-            share, error = threshold
-            fields["safety_factor"] = still * share / drive.force
-            fields["safety_factor_error"] = still * error / drive.force
+            fields["safety_factor"] = still * threshold.value / drive.force
+            fields["safety_factor_error"] = still * threshold.error / drive.force
         fields |= _walk(contact, motion, pulling["force"], answer)
         if fields["outcome"] == "stays":
             fields |= _way_to_rest((contact, carriers), motion, pulling)
@@ -195,21 +190,6 @@ def about_drive(
         fields["regime"] = regime(motion.name, widest, working)
         fields["natural_frequency"] = natural_frequency(working)
     return fields
-
-
-def _threshold(
-    motion: RealMotion,
-    carried: tuple[TwoBodies, Carriers],
-    pulling: dict[str, float],
-    limit: Result | None,
-) -> tuple[float, float] | None:
-    """Force over mu F_z from which on a constant force moves the contact, and its error; None
-    where it is not known."""
-    share = equals_static_limit(carried[0], motion, carried[1], pulling.get("mass"))
-    if share is True:
-        assert limit is not None  # as of all that oscillate
-        return limit.mu_macro, limit.mu_macro_error
-    return None if share is None else (share, 0.0)
 
 
 def _walk(contact: TwoBodies, motion: RealMotion, force: float, answer: Result) -> dict[str, Any]:

@@ -170,6 +170,10 @@ def checked_groups(
         raise InputError(
             "speed", given["speed"], f"{problem}; allowed is what a laboratory can have"
         )
+    part = motion.load_amplitude or 0.0
+    if part > LARGEST["amplitude"] * contact.load:
+        allowed = f"allowed is at most {LARGEST['amplitude']:g} times the load"
+        raise InputError("load_amplitude", given["load_amplitude"], allowed)
     if size is not None and not size <= LARGEST["amplitude"]:
         unit = "the angle that leaves half of the contact sticking"
         if not motion.spins:

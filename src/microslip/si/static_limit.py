@@ -12,8 +12,9 @@ from microslip.adaptive.under_force import (
     oscillates_forward,
     without_forward_motion,
 )
+from microslip.estimate.estimate import Estimate
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_motion
+from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_motion
 from microslip.si.motions import COMBINED
 from microslip.si.several import Carriers
 
@@ -83,6 +84,32 @@ def equals_static_limit(
         return True
     holds = not mass and not oscillates(without_forward_motion(problem))
     return 1.0 if holds else None
+
+
+def force_threshold(
+    contact: TwoBodies,
+    motion: RealMotion,
+    carriers: Carriers,
+    drive: RealDrive,
+    limit: Result | None,
+) -> Estimate | None:
+    """Constant force over mu F_z from which on the contact moves; None where it is not known.
+
+    Under a force a contact without mass goes along with a forward oscillation.  What is left of the
+    oscillation then has a static limit of its own, which is solved for.
+
+    limit: the static limit of the motion, None for a steady one.
+    """
+    share = equals_static_limit(contact, motion, carriers, drive.mass)
+    if share is True:
+        assert limit is not None  # as of all that oscillate
+        return limit.friction
+    if share is not None:
+        return Estimate(share)
+    held = without_forward_motion(carriers.problem(motion, contact))
+    if drive.mass or drive.force is None or not is_even(held):
+        return None
+    return solve(held, tolerance=TOLERANCE).friction
 
 
 def largest_force(
