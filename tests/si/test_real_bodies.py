@@ -100,9 +100,6 @@ def test_no_threshold_is_claimed_where_contacts_move_the_body_by_themselves():
     given = BALL | {"load": 20.0, "contacts": "phase=0;phase=100", "tolerance": 0.1}
     found = microslip.predict("longitudinal", amplitude="1 um", force=3.0, **given)
     assert found.force_threshold_N is None and found.safety_factor is None
-    elliptic = BALL | {"amplitude": "0.2 um", "forward_amplitude": "0.2 um", "load": 10.0}
-    ellipse = microslip.predict("elliptic", force=0.1, **elliptic)
-    assert ellipse.force_threshold_N is None
 
 
 def test_parts_of_a_drive_and_the_contact_that_carries_most():
