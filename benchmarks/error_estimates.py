@@ -12,7 +12,7 @@ A first reference is the same point at a tenth of the tolerance, at a quarter of
 It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
 may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
 contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
-Either also replaces first references that take too much work, most of them rotations at 1e-4.
+The second reference also replaces a first one that takes too much work, as rotations at 1e-4 do.
 The most certain reference judges.  References that contradict each other are listed.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
@@ -56,7 +56,7 @@ TWICE = 20
 MOST_WORK = 3e7
 """Work of a first reference where `finer.py` can make one: about six seconds."""
 MOST_WORK_OF_OTHERS = 1e8
-"""Work of a first reference elsewhere: two or three minutes."""
+"""Largest work of a first reference where `finer.py` can make none."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75

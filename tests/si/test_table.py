@@ -87,5 +87,5 @@ def test_pandas_tables_and_files_are_cases(tmp_path):
 
 
 def test_a_column_without_a_text_for_a_name_is_refused():
-    with pytest.raises(InputError, match="^cases = 0: allowed are names of columns"):
+    with pytest.raises(InputError, match="^cases = 0: names of columns must be texts"):
         microslip.predict_table("transverse", pd.DataFrame({0: ["5 N"]}), radius="1 mm")

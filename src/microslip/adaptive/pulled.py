@@ -56,8 +56,8 @@ runs; a slower run under the force is not resolved and is not used."""
 SCALE_SHARE = 0.9
 """Share of the coarse velocity that the relative tolerance refers to."""
 ROUGH_TOLERANCE = 3e-2
-"""Largest accepted error of a static limit that is far from the force; a tenth of it, and so on, of
-one that is closer."""
+"""First tolerance of the static limit.  It is divided by 10 until the force differs from the limit
+by more than the error."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of a static limit that a force is close to; the SI side asks for the same,
 so that both agree on what is below the threshold."""
@@ -279,7 +279,7 @@ def _moving(request: Request, marched: float) -> Result:
         velocity = abs(refined.value.value)
         if not refined.converged or scale <= max(1.0, velocity):
             break
-        scale = SCALE_SHARE * velocity  # a small mass may be far from where it was expected
+        scale = SCALE_SHARE * velocity  # with a small mass it may be far below the coarse one
     found = refined.value
     if not request.problem.propels:
         found = replace(found, value=max(found.value, 0.0))  # below are rounding and error

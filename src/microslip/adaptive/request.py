@@ -140,10 +140,10 @@ def budget_for(
 
 
 def within_friction(problem: Problem, friction: Estimate) -> Estimate:
-    """A friction brought to where it can be: 0 to 1, or -1 to 1 of a motion that may propel.
+    """The friction clipped to its physical range: 0 to 1, or -1 to 1 for a motion that may propel.
 
-    A value beyond is rounding and error.  An error that is larger than that interval is replaced by
-    the interval itself.
+    Values outside come from rounding and discretisation.  If the error exceeds the width of the
+    range, the result is the middle of the range with half the width as its error.
     """
     least = -1.0 if problem.propels else 0.0
     if not math.isfinite(friction.value):

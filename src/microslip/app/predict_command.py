@@ -66,8 +66,8 @@ OPTIONS = {
     "counter-density": ("RHO2", "of the counterbody"),
     "tolerance": (
         "T",
-        "largest accepted error of the ratio mu_macro, absolute (1e-3; 1e-2 with --propulsion); "
-        "under a force of the speed, relative (1e-2)",
+        "largest accepted error: of the ratio mu_macro, absolute (1e-3; 1e-2 with --propulsion); "
+        "with --force, of the speed, relative (1e-2)",
     ),
     "points": ("N", "with --propulsion: on the line, its ends included (9)"),
     "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),

@@ -16,10 +16,10 @@ from pathlib import Path
 from tqdm import tqdm
 
 FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
-"""Seconds until a terminal shows the elapsed time, and until it shows it again: most answers need
-none."""
+"""Seconds until a terminal first shows the elapsed time, and between updates; most calculations end
+sooner."""
 BETWEEN_LINES_OF_A_FILE = 15.0
-"""Seconds between two lines about progress where standard error is no terminal."""
+"""Seconds between two lines about progress where standard error is not a terminal."""
 
 
 def counted(items: Iterable, path: str | Path) -> Iterator:
@@ -84,9 +84,9 @@ class Watch:
 
 
 class Elapsed:
-    """The elapsed time on standard error, while a calculation lasts.
+    """A context manager that shows the elapsed time on standard error during a calculation.
 
-    A context manager.  A terminal gets one line that changes, a file a line now and then.
+    A terminal gets one line that is updated, a file a line every BETWEEN_LINES_OF_A_FILE seconds.
     """
 
     def __init__(self, title: str):
@@ -110,7 +110,7 @@ class Elapsed:
             while not self.stopped.wait(BETWEEN_LINES_OF_A_FILE):
                 sys.stderr.write(f"{self.title}: {time.monotonic() - started:.0f} s\n")
                 sys.stderr.flush()
-        except (OSError, ValueError):  # it was closed
+        except (OSError, ValueError):  # standard error was closed
             pass
 
     def _change_a_line(self, started: float) -> None:

@@ -15,7 +15,7 @@ MOST_VALUES = 100_000
 Checking that many takes a few seconds."""
 
 UNFINISHED = 0
-"""Size of a node whose children are still being counted."""
+"""Placeholder for the size of a node whose children are being counted."""
 
 
 class StrictLoader(yaml.SafeLoader):
@@ -93,11 +93,11 @@ class StrictLoader(yaml.SafeLoader):
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
     """Number of nodes in a tree that repeats what has several aliases; sizes: those known by id.
 
-    Raises ConstructorError for a node inside itself.
+    Raises ConstructorError for a node that contains itself.
     """
     if sizes.get(id(node)) == UNFINISHED:
         raise yaml.constructor.ConstructorError(
-            None, None, "a value that holds itself, by an alias", node.start_mark
+            None, None, "a value that holds itself through an alias is not allowed", node.start_mark
         )
     if id(node) not in sizes:
         sizes[id(node)] = UNFINISHED

@@ -8,7 +8,7 @@ until Sum weight |v - q|, a force, is within the tolerance.  Then b - A v = s (v
 comes without applying A.  Any relaxation below 2 converges (Lions and Mercier 1979; Eckstein and
 Bertsekas 1992).  With a driven body v answers to its displacement d by d times a field that is the
 same in every step, so that the equation of the body is a division.  Every BETWEEN_BALANCES
-iterations the body is put into balance under the tractions P(y), see `rebalance`.
+iterations `rebalance` solves the equation of the body with the tractions P(y).
 
 Points that stick want a small penalty, points that slip a large one.  Let D be the mean derivative
 of the projection over the points and the two directions: 1 where all stick, and |q| / (2 |y|) for
@@ -35,11 +35,10 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Within 1.5 to 1.8, the usual range of over-relaxation (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Iterations of a driven step after which its body is put into balance: nearly all steps take
-fewer."""
+"""Iterations of a driven step between two calls of `rebalance`; nearly all steps take fewer."""
 FIRST_WAY, LONGEST_WAY, HALVINGS = 1e-3, 1e6, 40
-"""The first way that is tried for that, four times as long every time, the longest one, and
-halvings of the last interval."""
+"""Search for the balanced displacement: first trial and largest one, in u_lim (it grows fourfold),
+and number of bisections."""
 BALANCED_RINGS = 12
 """Rings at which the best penalty is the self-influence of a ring, where half of the points stick;
 calibrated by benchmarks/splitting.py."""
@@ -150,8 +149,8 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
 def _lack(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, way: float
 ) -> float:
-    """Force that holds the body back in excess of its load, after it goes a way from its
-    displacement: where points slip, their slip grows by the way."""
+    """Residual of the equation of the body, stiffness d + forward force - load, at the displacement
+    d = displacement + way.  The slip of points that slip grows by the way."""
     force = balance.stiffness * (displacement + way) - balance.load
     for i in range(len(step.bound)):
         forward = y[0, i] + way / system.solver.penalty[i]
@@ -164,10 +163,10 @@ def _lack(
 def rebalance(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float
 ) -> None:
-    """Change y, in place, as if the body had gone to where it is in balance.
+    """Shift y, in place, to the displacement at which the body is in balance.
 
-    Iterations take a body there slowly if nearly all points slip, and hardly anything but friction
-    holds it.
+    The splitting alone gets there slowly if nearly all points slip and the drive is soft.  y stays
+    as it is if that displacement is beyond LONGEST_WAY.
     """
     lack = _lack(system, balance, step, y, displacement, 0.0)
     if not abs(lack) > step.tolerance:
@@ -191,7 +190,7 @@ def rebalance(
 def _iterate(
     system: System, balance: Balance, step: Step, fields: Fields, most: int
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on, with at most so many iterations.
+    """Solve a Coulomb step from fields.y on, with at most `most` iterations.
 
     fields.y is the y of the penalty `Resolvent.penalty`, whichever one the step is solved with.
     """

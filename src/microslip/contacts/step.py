@@ -85,7 +85,7 @@ _SOLVERS: dict[type, tuple[Callable, Callable, Callable]] = {}
 
 
 def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable:
-    """Decorator of the kernel that solves steps with a solver of a NamedTuple, see `solve_step`.
+    """Decorator of the kernel that solves steps by solvers of the class `of`, see `solve_step`.
 
     solve_driven, respond: the kernels behind `solve_driven_step` and `response_to_drive`.
     """
@@ -100,7 +100,9 @@ def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable
 def solve_step(
     system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step in compiled code, by the solver of the system; `balance` is ignored.
+    """Solve a Coulomb step in compiled code, by the solver of the system.
+
+    balance: without a body, so that its `slope` is empty.
 
     Returns
     -------
@@ -109,7 +111,7 @@ def solve_step(
     residual : float
         Force over mu F_z.
     displacement : float
-        0.
+        Always 0.
     """
     raise NotImplementedError("solve_step is for compiled code")
 
@@ -117,8 +119,8 @@ def solve_step(
 def solve_driven_step(
     system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step of a driven contact, like `solve_step`; returns the displacement d of
-    the body, too."""
+    """Solve a Coulomb step of a driven contact, like `solve_step`; the third value is the
+    displacement d of the body."""
     raise NotImplementedError("solve_driven_step is for compiled code")
 
 

@@ -179,8 +179,8 @@ class _Levels:
         value, errors, order = self._of(self.read, goal, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), goal, three, others)
         enter = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
-        # a run that did not converge counts in full, for the levels may agree by chance
-        weights = [w if one.converged else 1.0 for w, one in zip(enter, three, strict=True)]
+        # a run that did not converge has a weight of at least 1: the levels may agree by chance
+        weights = [w if one.converged else max(w, 1.0) for w, one in zip(enter, three, strict=True)]
         common = {
             "periodicity": _weighted(weights, [one.distance for one in three]),
             "solver": _weighted(weights, [one.solver_residual for one in three]),

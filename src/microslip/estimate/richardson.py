@@ -7,7 +7,7 @@ chance, but then the third one differs.  This is the grid convergence index of R
 Eng. 116, 1994), with the difference of both pairs of levels.
 
 Where the differences fall more slowly than at first order, the levels are too coarse for an order
-to show.  Then D counts as a whole, as the correction of first order.
+to show.  Then D replaces D / 3, as for a method of first order.
 """
 
 from __future__ import annotations

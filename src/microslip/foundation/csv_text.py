@@ -18,7 +18,7 @@ HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """The name of a column, with its unit in brackets or without."""
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of texts that are carried through to the output."""
-ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or its encoding"
+ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 DECIMALS = (".", ",")
 PURE = {"", "1", "-"}
 """Units that say that there is none."""
@@ -126,7 +126,7 @@ def by_names(table: Mapping | DataFrame) -> dict:
     found = {}
     for name, values in given.items():
         if not isinstance(name, str):
-            allowed = "allowed are names of columns that are texts, such as 'load [N]'"
+            allowed = "names of columns must be texts, such as 'load [N]'"
             raise InputError("cases", name, allowed)
         heading = HEADING.fullmatch(name)
         if isinstance(values, str | bytes) or not hasattr(values, "__len__"):

@@ -125,10 +125,13 @@ class Contact(Protocol):
 
 
 class KnownContact(Contact, Protocol):
-    """A contact without a system, whose periodic state is known without a search."""
+    """A contact that computes its periodic state directly, without a search."""
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Tractions at the start of a period, or of half of one that has a mirror image."""
+        """Tractions of the periodic state at the start of the path.
+
+        mirror: whether the path is half a period, whose mirror image is the other half.
+        """
 
 
 class GrowingContact(Contact, Protocol):

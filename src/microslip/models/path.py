@@ -77,7 +77,8 @@ def theta_method(theta: float) -> Integrator:
 
 
 LONG_STROKE = 16.0
-"""Stroke in u_lim beyond which steps gather at the turning points in place of growing in number."""
+"""Stroke in u_lim beyond which the number of steps no longer grows; on a line they gather at the
+turning points instead."""
 STRONGEST_GRADING = 0.8
 GRADED_DRIFT = 0.02
 GRADED_STROKE = 2.0
@@ -96,11 +97,12 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 
 
 def turning_point_width(drift: float, stroke: float) -> float:
-    """Phase about a turning point within which steps are equal; further away they are proportional
-    to the distance from it.  Infinite where all steps are equal, but for the grading.
+    """Half-width, in phase, of the zone of equal steps at a turning point.
 
-    A long stroke turns the slip round while the contact goes a way of u_lim, or of its drift in a
-    radian if that is longer.  At LONG_STROKE steps are still nearly equal.
+    Further away, steps are proportional to the distance from the turning point.  Infinite: only the
+    grading applies.  The slip reverses within the phase max(1, drift) / stroke, where the velocity
+    of the oscillation is u_lim in a radian, or the drift.  The third term makes the zone shrink
+    gradually from LONG_STROKE on, where the longest step is twice the shortest.
     """
     if stroke <= LONG_STROKE:
         return math.inf
@@ -218,7 +220,10 @@ def phases_between(
     turns: Sequence[float], steps: int, grading: float = 0.0, width: float = math.inf
 ) -> np.ndarray:
     """Phases from the first turning point to the last, `steps` steps from each to the next, finer
-    at both; shape ((len(turns) - 1) steps + 1,)."""
+    at both; shape ((len(turns) - 1) steps + 1,).
+
+    grading, width: see turning_point_grading and turning_point_width.
+    """
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:

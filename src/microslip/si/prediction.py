@@ -103,8 +103,9 @@ class Prediction:
         ratio of several amplitudes is uncertain.  None where there is no interval.
     probability_stays, probability_moves, probability_runs_away : float or None
         Probability of each outcome under a force, for independent inputs with normal distributions;
-        None where every input is exact.  Of a contact that goes along with a forward oscillation
-        the first two are None, since its threshold is computed for the central values only.
+        None where every input is exact.  The first two are also None where the threshold is
+        unknown, or is computed for the central values only (a forward oscillation that the contact
+        follows).
     probability_error : float or None
         Largest error of these probabilities, by estimate.
     regime : str or None

@@ -119,7 +119,7 @@ class _Text:
         end = "the least that" if found.sought == "amplitude" else "the largest at which vibration"
         share = f"takes {found.understood['reduction']} away"
         exact = in_unit(found.sought_value, 0.0, self.unit_of_sought())
-        here = f"all other lines are those at {exact}"
+        here = f"all other lines are for {exact}"
         return [line("found", f"{found.sought} {value}, {end} {share}; {here}")]
 
     def groups_of_drive(self) -> list[str]:
@@ -246,7 +246,7 @@ class _Text:
             if chance is not None
         ]
         if shares and found.probability_stays is None:
-            shares.append("not known: that it stays, or moves")
+            shares.append("not computed: that it stays or moves")
         return [line("probability", ", ".join(shares))] if shares else []
 
     def moves(self) -> list[str]:

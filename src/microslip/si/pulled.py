@@ -48,8 +48,8 @@ def answer_of(
 ) -> Result:
     """The result of microslip.solve for a motion in SI units.
 
-    A force within the error of its threshold is not converged: a contact next to the threshold is
-    so slow that a small relative error of its speed takes minutes.
+    It is not converged if the force is within the error of the threshold: such a contact is so slow
+    that a small relative error of its speed takes minutes.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def answer_of(
     carriers : several.Carriers
         The contact, or several like it.
     threshold : Estimate or None
-        Force from which on the contact moves, over mu F_z, None where it is not known.
+        Smallest force that moves the contact, over mu F_z; None: unknown.
     """
     if not pulling:
         return friction_of(contact, motion, tolerance, **carriers.settings)
@@ -77,7 +77,7 @@ def answer_of(
         return solve(name, velocity, size, **settings, **limits | changed)
 
     def _next_to(threshold: Estimate) -> Result:
-        """Between no motion and the velocity under a force at which the contact moves."""
+        """The answer with a velocity from 0 to that at GAP_MARGIN errors above the threshold."""
         force = threshold.value + GAP_MARGIN * threshold.error
         faster = found(tolerance, force=min(force, LARGEST_FORCE))
         assert faster.velocity_error is not None  # as under all forces
@@ -88,8 +88,8 @@ def answer_of(
     if "force" not in pulling or not answer.converged:
         return answer
     if threshold is not None and abs(pulling["force"] - threshold.value) <= threshold.error:
-        reason = f"the force is its threshold to within its error, {threshold.error:.1e}"
-        reason += " of mu times the load: a smaller tolerance may tell them apart"
+        reason = "the force differs from its threshold by less than the error of the threshold, "
+        reason += f"{threshold.error:.1e} of mu times the load"
         return replace(_next_to(threshold), converged=False, reason=reason)
     accepted = tolerance * max(answer.velocity, SLOWEST)
     assert answer.velocity_error is not None  # as under all forces
@@ -117,7 +117,7 @@ def answer_at_rest(
     limit : Result or None
         Friction at a vanishing speed, None for a steady motion.
     threshold : Estimate or None
-        As for `answer_of`.
+        Smallest force that moves the contact, over mu F_z; None: unknown.
     """
     force, mass = pulling.get("force"), pulling.get("mass")
     if force is None or threshold is None or limit is None or not limit.converged:
@@ -159,7 +159,7 @@ def about_drive(
     pulls : tuple
         The drive as it was given, and its groups.
     threshold : Estimate or None
-        As for `answer_of`.
+        Smallest force that moves the contact, over mu F_z; None: unknown.
     """
     (contact, carriers), (drive, pulling) = carried, pulls
     still = full_friction(motion, contact) * carriers.count

@@ -159,9 +159,8 @@ def with_reduction(
         raise InputError("reduction", given, allowed)
     if sought != "speed" and motion.speed and share > 1.0 - tolerance:
         most = 100.0 * (1.0 - tolerance)
-        allowed = (
-            f"allowed is at most {most:g} %, by the tolerance: at a speed some friction is left"
-        )
+        allowed = f"allowed is at most {most:g} %, 100 % less the tolerance"
+        allowed += ": at a speed some friction is left"
         raise InputError("reduction", given, allowed)
     line = _LINES[sought](contact, motion, share)
     last, error, seen = (contact, motion), 0.0, []

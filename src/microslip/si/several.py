@@ -81,7 +81,7 @@ def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, s
     found = contacts_of(contacts)
     for name, value in alone.items():
         if value:
-            raise InputError(name, value, "allowed for one contact only, not for several contacts")
+            raise InputError(name, value, "allowed for one contact only, without contacts")
     text = contacts_text(found)
     most = (max(one.load for one in found), max(one.amplitude for one in found))
     return Carriers(text, len(found), *most), {"contacts": " ".join(contacts.split())}

@@ -93,10 +93,11 @@ def force_threshold(
     drive: RealDrive,
     limit: Result | None,
 ) -> Estimate | None:
-    """Constant force over mu F_z from which on the contact moves; None where it is not known.
+    """Smallest constant force that moves the contact, over mu F_z.
 
-    Under a force a contact without mass goes along with a forward oscillation.  What is left of the
-    oscillation then has a static limit of its own, which is solved for.
+    None if it is unknown, or if it needs a solve of its own and no force is given.  A contact
+    without mass follows the forward oscillation.  The threshold is then the static limit of the
+    other components, computed here.
 
     limit: the static limit of the motion, None for a steady one.
     """

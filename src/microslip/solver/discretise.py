@@ -156,7 +156,9 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
 @lru_cache(maxsize=32)
 def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
     if not problem.contacts:
-        turns = problem.straight and problem.motion.periodic  # a loop may turn anywhere
+        turns = (
+            problem.straight and problem.motion.periodic
+        )  # on a loop the slip may reverse at any phase
         width = turning_point_width(problem.drift, problem.stroke) if turns else math.inf
         phases = phases_between(problem.turns, steps, grading, width)
         return make_path(problem.displacement, phases, integrator, problem.depth)

@@ -15,8 +15,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     """Means over a march of the forces at its phases, shape (3,)."""
     if problem.depth is None:
         return path.mean(forces)
-    # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
-    # and to how the rings in contact follow its edge
+    # the difference from full slip, whose mean is exact, leaves less to the trapezoidal rule
     growing = cast(GrowingContact, contact)  # as its load changes
     bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]

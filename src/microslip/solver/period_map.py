@@ -1,5 +1,4 @@
-"""One (half) period as a map of the tractions at its beginning, and the search for its fixed point:
-its goal and its result."""
+"""The map of tractions over one (half) period; goal and result of a search for its fixed point."""
 
 from __future__ import annotations
 
@@ -95,8 +94,8 @@ class DriftRate:
     gain : float
         Force that a contact which does not slip gains in a march over a (half) period.
     least : float
-        Mean forward force below which a state only drifts, about that of the static limit; NaN: it
-        is not known better than `static_force`.
+        Mean forward force below which a state is stuck and changes slowly, roughly that of the
+        static limit; NaN: that is `static_force`.
     """
 
     static_force: float

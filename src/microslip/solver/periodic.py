@@ -2,7 +2,7 @@
 
 The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
 tractions over one period is solved for its fixed point by Anderson acceleration, in compiled code
-(states/search.py).  Contacts without a system know their periodic state.
+(states/search.py).  Reduced models without a system compute their periodic state directly.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
 
 
 def _known_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
-    """The PeriodicState of a contact that tells it by itself, and one march from there."""
+    """The PeriodicState of a contact that computes it directly, checked by one march."""
     contact, path = cast(KnownContact, period_map.contact), period_map.path
     start = contact.periodic_state(path, period_map.mirror)
     march = contact.march(path, start, goal.step_tolerance)

@@ -41,8 +41,8 @@ SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 the friction itself does with the drift in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
 LOOP_EXCESS, LIMIT_SHARE, LIMIT_STEP_SHARE = 1.0, 0.3, 1e-3
-"""Factor of that traction for a loop, tolerance of its static limit over the traction, and that of
-a step over the latter."""
+"""For slow loops: the factor SLOW_EXCESS of a loop; the tolerance of its static limit over the
+excess traction; the tolerance of a step over that of the limit."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from tractions on other points.  If it needs
@@ -160,7 +160,7 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-        # a search that is prepared finds the limit of a line, and none that of a loop
+        # a prepared search computes the limit of a line; that of a slow loop sets `least` only
         limit = 0.0 if problem.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.drift * interval
         self.drift_rate = DriftRate(limit, problem.mean_load, gain)
@@ -212,7 +212,10 @@ class _Search:
         return project(start, contact.bound)
 
     def _start_near_a_loop(self, slipping: np.ndarray) -> np.ndarray:
-        """Like `_start_near_the_limit`, for a slow loop; its force is known roughly."""
+        """The static limit of a slow loop with all points pushed forward.
+
+        The limit is computed roughly, so that its force sets `least` only.
+        """
         contact, rest = self.contact, replace(self.problem, velocity=0.0)
         path = path_of(rest, contact, self.steps, self.method.integrator)
         excess = LOOP_EXCESS * self.problem.drift ** (2.0 / 3.0)

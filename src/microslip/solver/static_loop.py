@@ -30,8 +30,8 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02
-"""Drift in a radian, in u_lim, below which what never slips in the limit decides a motion on a
-loop."""
+"""Drift in a radian, in u_lim, below which the stick zone of the static limit governs the state on
+a loop."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Largest number of marches in a search for the periodic state, and largest number of searches: an
 accelerated search can stall on rounding, and then starts again."""
@@ -51,7 +51,8 @@ class LoopLimit(NamedTuple):
     force : float
         Mean forward force, over mu F_z.
     solver_residual : float
-        Sum over the stages of the marches that tell, a force over mu F_z.
+        Summed step residual of the last march of the search and of the march that shows the
+        tractions, a force over mu F_z.
     solves : int
         Number of these stages.
     """
@@ -66,7 +67,7 @@ class LoopLimit(NamedTuple):
 def loop_limit(
     contact: Contact, problem: Problem, path: Path, tolerance: float, step_tolerance: float
 ) -> LoopLimit:
-    """The static limit, by the periodic state of the oscillation alone.
+    """Compute the static limit from the periodic state of the oscillation alone.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def loop_limit(
     Returns
     -------
     LoopLimit
-        Not converged where its state is not.
+        `found.converged` tells whether the search converged.
     """
     mirror = problem.half_period_mirror
     period_map = PeriodMap(contact, path, mirror=mirror)
@@ -112,7 +113,7 @@ def loop_limit(
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """The s that is furthest forward of those with |q + s| <= g at all phases.
+    """The shift s with the largest forward component among all with |q + s| <= g at all phases.
 
     Where s = 0 fits, so does every smaller shift than the largest one: the discs |q + s| <= g are
     convex, and so is what they share.
@@ -127,14 +128,16 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     Returns
     -------
     np.ndarray, shape (2, ...)
-        At every point; 0 where nothing is left.
+        s at every point.  Its lateral component is the middle of the allowed interval, 0 where the
+        forward one is 0.
     """
     forward, lateral = tractions[:, 0], tractions[:, 1]
     bounds = np.maximum(bounds, np.hypot(forward, lateral))  # s = 0 does fit
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift fits each disc, and the ends of the lateral ones beside it."""
+        """Whether a forward shift fits the discs of all phases, and the bounds of the lateral shift
+        there."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

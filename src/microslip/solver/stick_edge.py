@@ -21,8 +21,8 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
 
 SLOW_LINE = 0.01
-"""Drift in a radian, in u_lim, below which what never slips in the limit decides a motion on a
-line; see static_loop.SLOW_LOOP for the others."""
+"""Drift in a radian, in u_lim, below which the stick zone of the static limit governs the state on
+a line; for loops see static_loop.SLOW_LOOP."""
 TELLING_LOOP, TELLING_SWEPT, TOLD = Resolution(24, 4, 32), Resolution(24, 4, 96), 1e-3
 """Resolution and tolerance at which its edge is found on a loop, and where the load oscillates:
 there the edge of the contact sweeps over the rings, which asks for more steps."""

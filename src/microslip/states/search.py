@@ -55,8 +55,8 @@ class Goal(NamedTuple):
     static_force : float
         Mean forward force of the static limit; NaN: unknown.
     least : float
-        Mean forward force below which a state only drifts, about that of the static limit; NaN:
-        unknown.
+        Mean forward force below which a state is stuck and changes slowly, roughly that of the
+        static limit; NaN: unknown.
     full : float
         Largest mean forward force, that of full slip.
     gain : float

@@ -48,7 +48,7 @@ class RigidContact(contact.Contact):
         return state[:, ::-1, :] * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """The end of a march, from whatever start."""
+        """The state after one march, which does not depend on its start."""
         end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
         return self.mirrored(end) if mirror else end
 

@@ -1,4 +1,4 @@
-"""Searches for the periodic state that people write first, and marches that Python calls.
+"""Simple searches for the periodic state, to compare with, and the marches in Python that they use.
 
 All searches return a period_map.PeriodicState.
 """
@@ -44,7 +44,7 @@ class MarchInterval:
     residual : float
         Size of image - state, as a force over mu F_z.
     march : contact.March
-        What it gave.
+        The march itself.
     """
 
     state: np.ndarray
@@ -54,7 +54,7 @@ class MarchInterval:
 
 
 def force_error(rate: DriftRate, residual: float, force: float) -> float:
-    """Error of the mean forward force that a residual of the plain map stands for."""
+    """Error of the mean forward force that corresponds to a residual of the plain map."""
     excess = abs(force - rate.static_force)
     if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
         excess = max(abs(force), abs(rate.full - force))
@@ -94,7 +94,7 @@ class Marches:
         return MarchInterval(state, image, energy_norm(self.contact, change), march)
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
-        """The state projected on the friction bound, where the integrator keeps to it."""
+        """The state projected on the friction bound, if the integrator respects it."""
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
@@ -107,7 +107,7 @@ class Marches:
         return distance
 
     def result(self, interval: MarchInterval, distance: float, converged: bool) -> PeriodicState:
-        """The PeriodicState that an interval amounts to."""
+        """The PeriodicState of an interval."""
         return PeriodicState(
             forces=interval.march.forces,
             start=interval.state,
@@ -135,12 +135,12 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
     start : np.ndarray
         Tractions.
     goal : period_map.Goal
-        What to reach.
+        Tolerances and largest number of marches.
 
     Returns
     -------
     period_map.PeriodicState
-        The best state seen, if none is good enough.
+        The converged state, else the best one.
     """
     marches = Marches(period_map)
     accelerate, step_tolerance = Anderson(marches.metric, DEPTH), goal.step_tolerance
