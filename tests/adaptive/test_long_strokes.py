@@ -31,3 +31,12 @@ def test_tolerances_agree(velocity, amplitude):
     for one, other in ((rough, finest), (finer, finest)):
         error = one.mu_macro_error + other.mu_macro_error
         assert one.mu_macro == pytest.approx(other.mu_macro, abs=error)
+
+
+def test_several_contacts_with_long_strokes_are_each_alone():
+    """At a prescribed velocity none acts on another."""
+    place, tolerance = ("transverse", 115.0, 50000.0), {"tolerance": 1e-3}
+    alone = microslip.solve(*place, **tolerance)
+    found = microslip.solve(*place, contacts="phase=0;phase=90", **tolerance)
+    error = alone.mu_macro_error + found.mu_macro_error
+    assert found.converged and found.mu_macro == pytest.approx(alone.mu_macro, abs=error)

@@ -20,13 +20,16 @@ POINTS = [
 ]
 
 
-@pytest.fixture(scope="module", params=POINTS, ids=str)
+QUICK_AND_LONG = [*POINTS[:-1], pytest.param(POINTS[-1], marks=pytest.mark.long)]
+
+
+@pytest.fixture(scope="module", params=QUICK_AND_LONG, ids=str)
 def given(request):
     motion, velocity, amplitude, poisson = request.param
     return request.param, microslip.period(motion, velocity, amplitude, poisson=poisson)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_mean_force_is_the_certified_one(given):
     (motion, velocity, amplitude, poisson), found = given
     answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)

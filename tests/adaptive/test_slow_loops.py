@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.solver.methods._searches import force_error
-from microslip.solver.period_map import DriftRate
+from microslip.states.search import largest_excess
 
 SHARP = "punch:flat=0.95"
 # motion, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
@@ -70,10 +69,8 @@ def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
     assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error < 0.1
 
 
-def test_a_drift_rate_without_a_known_limit_takes_the_largest_excess():
-    known, unknown = DriftRate(0.3, 1.0, 2e-3), DriftRate(np.nan, 1.0, 2e-3)
-    assert force_error(known, 1e-3, 0.5) == pytest.approx(0.1)
+def test_without_a_known_limit_the_excess_is_the_largest_possible():
+    assert largest_excess(0.5, 0.3, 1.0) == pytest.approx(0.2)
     for force in (0.1, 0.5, 0.9):
-        limits = [DriftRate(limit, 1.0, 2e-3) for limit in np.linspace(0.0, 1.0, 11)]
-        largest = max(force_error(limit, 1e-3, force) for limit in limits)
-        assert force_error(unknown, 1e-3, force) == pytest.approx(largest)
+        largest = max(largest_excess(force, limit, 1.0) for limit in np.linspace(0.0, 1.0, 11))
+        assert largest_excess(force, np.nan, 1.0) == pytest.approx(largest)

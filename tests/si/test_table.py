@@ -89,3 +89,21 @@ def test_pandas_tables_and_files_are_cases(tmp_path):
 def test_a_column_without_a_text_for_a_name_is_refused():
     with pytest.raises(InputError, match="^cases = 0: names of columns must be texts"):
         microslip.predict_table("transverse", pd.DataFrame({0: ["5 N"]}), radius="1 mm")
+
+
+@pytest.mark.parametrize(
+    "cases",
+    [
+        {"load [kN]": [2.0], "load [N]": [1.0]},
+        {"load": ["3 N"], "load [N]": [1.0]},
+        pd.DataFrame([[1.0, 2.0]], columns=["load [N]", "load [N]"]),
+    ],
+)
+def test_a_column_that_is_there_twice_is_refused(cases):
+    with pytest.raises(InputError, match="^cases = 'load': is there twice; allowed: once"):
+        microslip.predict_table("transverse", cases, radius="1 mm")
+
+
+def test_a_dataframe_without_columns_is_refused():
+    with pytest.raises(InputError, match="^cases = {}: allowed is .* with one column at least"):
+        microslip.predict_table("transverse", pd.DataFrame(), radius="1 mm")

@@ -8,6 +8,7 @@ import pytest
 import microslip
 from microslip.app import cli
 from microslip.foundation.errors import InputError
+from microslip.si.uncertain import without_spreads
 
 BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3}
 SPIN = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
@@ -89,3 +90,25 @@ def test_the_command_line_takes_spreads(capsys):
 def test_a_spread_that_is_none_is_refused(change, said):
     with pytest.raises(InputError, match=said):
         microslip.predict("continuous-bore", **SPIN | change)
+
+
+@pytest.mark.parametrize(
+    ("mu", "ends"),
+    [
+        ("0.25 +- 10 %", (0.225, 0.275)),
+        ("0.25 +- 0.025", (0.225, 0.275)),
+        ("25 % +- 2 %", (0.23, 0.27)),  # in the unit of the value
+    ],
+)
+def test_a_spread_in_per_cent_is_a_share_of_the_value(mu, ends):
+    plain, found = without_spreads("transverse", {"mu": mu})
+    assert found["mu"] == pytest.approx(ends) and "+-" not in plain["mu"]
+
+
+def test_propulsion_takes_no_spread_and_says_so():
+    with pytest.raises(InputError, match="^load = '40 N .- 1 N': allowed is a quantity without"):
+        microslip.predict_propulsion(
+            "elliptic:forward_cycles=2",
+            **{"material": "steel", "radius": "5 mm", "load": "40 N +- 1 N", "mu": 0.3},
+            **{"amplitude": "1 um", "frequency": "1 kHz"},
+        )

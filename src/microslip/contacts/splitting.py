@@ -35,8 +35,9 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Within 1.5 to 1.8, the usual range of over-relaxation (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Iterations of a driven step between two calls of `rebalance`; nearly all steps take fewer."""
-FIRST_WAY, LONGEST_WAY, HALVINGS = 1e-3, 1e6, 40
+"""Iterations of a driven step between two calls of `rebalance`: more than the means that
+benchmarks/splitting.py prints, so that few steps get there."""
+FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 """Search for the balanced displacement: first trial and largest one, in u_lim (it grows fourfold),
 and number of bisections."""
 BALANCED_RINGS = 12
@@ -146,14 +147,14 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
 
 
 @kernel
-def _lack(
-    system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, way: float
+def _imbalance(
+    system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, advance: float
 ) -> float:
     """Residual of the equation of the body, stiffness d + forward force - load, at the displacement
-    d = displacement + way.  The slip of points that slip grows by the way."""
-    force = balance.stiffness * (displacement + way) - balance.load
+    d = displacement + advance.  The slip of points that slip grows by the advance."""
+    force = balance.stiffness * (displacement + advance) - balance.load
     for i in range(len(step.bound)):
-        forward = y[0, i] + way / system.solver.penalty[i]
+        forward = y[0, i] + advance / system.solver.penalty[i]
         f = shrink(forward, y[1, i], step.bound[i])
         force += system.weight[i] * f * forward
     return force
@@ -166,19 +167,19 @@ def rebalance(
     """Shift y, in place, to the displacement at which the body is in balance.
 
     The splitting alone gets there slowly if nearly all points slip and the drive is soft.  y stays
-    as it is if that displacement is beyond LONGEST_WAY.
+    as it is if that displacement is beyond LONGEST_ADVANCE.
     """
-    lack = _lack(system, balance, step, y, displacement, 0.0)
-    if not abs(lack) > step.tolerance:
+    missing = _imbalance(system, balance, step, y, displacement, 0.0)
+    if not abs(missing) > step.tolerance:
         return
-    near, far = 0.0, np.copysign(FIRST_WAY, -lack)
-    while lack * _lack(system, balance, step, y, displacement, far) > 0.0:
+    near, far = 0.0, np.copysign(FIRST_ADVANCE, -missing)
+    while missing * _imbalance(system, balance, step, y, displacement, far) > 0.0:
         near, far = far, 4.0 * far
-        if abs(far) > LONGEST_WAY:
+        if abs(far) > LONGEST_ADVANCE:
             return
     for _ in range(HALVINGS):
         middle = 0.5 * (near + far)
-        if lack * _lack(system, balance, step, y, displacement, middle) > 0.0:
+        if missing * _imbalance(system, balance, step, y, displacement, middle) > 0.0:
             near = middle
         else:
             far = middle

@@ -178,9 +178,9 @@ class _Levels:
         others = self.under_other_readings(level)
         value, errors, order = self._of(self.read, goal, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), goal, three, others)
-        enter = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
+        base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
         # a run that did not converge has a weight of at least 1: the levels may agree by chance
-        weights = [w if one.converged else max(w, 1.0) for w, one in zip(enter, three, strict=True)]
+        weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
         common = {
             "periodicity": _weighted(weights, [one.distance for one in three]),
             "solver": _weighted(weights, [one.solver_residual for one in three]),

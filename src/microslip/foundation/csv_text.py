@@ -6,7 +6,7 @@ import codecs
 import csv
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from microslip.foundation.errors import InputError
 
@@ -122,9 +122,8 @@ def by_names(table: Mapping | DataFrame) -> dict:
     Numbers under a heading with a unit become texts with it.  Values that are no sequences stay as
     they are.
     """
-    given = table if isinstance(table, Mapping) else {name: table[name] for name in table.columns}
-    found = {}
-    for name, values in given.items():
+    found: dict[str, Any] = {}
+    for name, values in table.items():
         if not isinstance(name, str):
             allowed = "names of columns must be texts, such as 'load [N]'"
             raise InputError("cases", name, allowed)
@@ -137,8 +136,15 @@ def by_names(table: Mapping | DataFrame) -> dict:
             name, unit = name_and_unit(heading)
             unit = "" if unit in PURE else unit
             values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
+        refuse_twice(name, found)
         found[name] = values
     return found
+
+
+def refuse_twice(name: str, found: Mapping) -> None:
+    """Raise InputError for a column that is there already, in another unit or not."""
+    if name in found:
+        raise InputError("cases", name, "is there twice; allowed: once")
 
 
 def is_table(value: object) -> bool:

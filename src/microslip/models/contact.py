@@ -124,7 +124,7 @@ class Contact(Protocol):
         """
 
 
-class KnownContact(Contact, Protocol):
+class DirectContact(Contact, Protocol):
     """A contact that computes its periodic state directly, without a search."""
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:

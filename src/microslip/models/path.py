@@ -141,6 +141,11 @@ class Path:
     def steps(self) -> int:
         return len(self.phase) - 1
 
+    @property
+    def solves(self) -> int:
+        """Number of stages of a march."""
+        return self.stages.shape[0] * self.stages.shape[1]
+
     @cached_property
     def motion(self) -> np.ndarray:
         """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""

@@ -197,14 +197,13 @@ class _Text:
         if value is None:
             return []
         rounding = ROUNDING * found.load_N  # as for static friction, times the load
-        text, words = in_unit(value, error, self.force), "no smaller constant force"
         if value <= max(error, rounding):
             most = 0.0 if value <= error <= rounding else value + error
             text, words = in_unit(0.0, most, self.force), "any constant force"
-            words += f" above {in_unit(most, 0.0, self.force)}" if most else ""
+            words += " beyond that" if most else ""
+        else:
+            text, words = in_unit(value, error, self.force), "no smaller constant force"
         lines = [line("force threshold", f"{text}: {words} moves the contact")]
-        if value <= max(error, rounding) and not found.force_threshold_high_N:
-            return lines
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
         return lines + self.interval_of_threshold(ends, error, self.force)
 
@@ -311,6 +310,10 @@ class _Text:
             value = self.in_two_digits(found.sought_spread, self.unit_of_sought())
             shares.insert(0, f"{value} of the {found.sought}")
         text = "standard uncertainties that follow from those of the inputs"
+        if found.sought is not None:
+            text += f", as does the {found.sought}"
+        if found.vibration_power_W is not None:
+            text += "; none is computed for torque, power and energy"
         return [line("spread", f"{', '.join(shares)}: {text}")]
 
     def in_two_digits(self, value: float, unit: tuple[str, float]) -> str:

@@ -18,6 +18,7 @@ from microslip.si.inputs import read_body, read_contact, read_counterbody
 from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.propulsion_text import propulsion_text
 from microslip.si.quantities import read
+from microslip.si.uncertain import refuse_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
@@ -152,6 +153,7 @@ def predict_propulsion(
     InputError
         For bad input; it names the argument.
     """
+    refuse_spreads(dict(locals()), "propulsion")
     for name, value in (("amplitude", amplitude), ("frequency", frequency)):
         if value is None:
             raise InputError(name, None, "needed")

@@ -76,21 +76,18 @@ def answer_of(
         name = solver_motion(motion, contact)
         return solve(name, velocity, size, **settings, **limits | changed)
 
-    def _next_to(threshold: Estimate) -> Result:
-        """The answer with a velocity from 0 to that at GAP_MARGIN errors above the threshold."""
-        force = threshold.value + GAP_MARGIN * threshold.error
-        faster = found(tolerance, force=min(force, LARGEST_FORCE))
-        assert faster.velocity_error is not None  # as under all forces
-        half = 0.5 * (faster.velocity + faster.velocity_error)
-        return replace(answer, mean_velocity=Estimate(half, {"model": half}))
-
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
         return answer
     if threshold is not None and abs(pulling["force"] - threshold.value) <= threshold.error:
         reason = "the force differs from its threshold by less than the error of the threshold, "
         reason += f"{threshold.error:.1e} of mu times the load"
-        return replace(_next_to(threshold), converged=False, reason=reason)
+        force = threshold.value + GAP_MARGIN * threshold.error
+        faster = found(tolerance, force=min(force, LARGEST_FORCE))
+        assert faster.velocity_error is not None  # as under all forces
+        half = 0.5 * (faster.velocity + faster.velocity_error)
+        between = Estimate(half, {"model": half})
+        return replace(answer, mean_velocity=between, converged=False, reason=reason)
     accepted = tolerance * max(answer.velocity, SLOWEST)
     assert answer.velocity_error is not None  # as under all forces
     if answer.velocity_error <= accepted:

@@ -161,7 +161,8 @@ def _question(motion: str, **given: Any) -> Question:
 def number_of(cases: Mapping[str, Any], shared: Mapping[str, object]) -> int:
     """How many cases there are; raises InputError for a table that is none."""
     if not isinstance(cases, Mapping) or not cases:
-        allowed = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
+        allowed = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences, "
+        allowed += "with one column at least"
         raise InputError("cases", cases, allowed)
     for name, values in cases.items():
         if name in shared:

@@ -112,6 +112,13 @@ def without_spreads(motion: object, arguments: Mapping[str, object]) -> tuple[di
     return plain, ends
 
 
+def refuse_spreads(arguments: Mapping[str, object], where: str) -> None:
+    """Raise InputError for the first argument with a spread; where: what goes without spreads."""
+    for name, value in arguments.items():
+        if _parts(value) is not None:
+            raise InputError(name, value, f"allowed is a quantity without uncertainty for {where}")
+
+
 def _parts(value: object) -> tuple[str, str] | None:
     """Texts of a value and of its spread; None where there is no spread."""
     match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
@@ -124,7 +131,7 @@ def _ends(name: str, given: object, parts: tuple[str, str], unit: str) -> tuple[
     low = -math.inf if name == "counter_radius" else 0.0
     try:
         value = read(name, text, unit, low=low).si
-        if spread.endswith("%") and unit:
+        if spread.endswith("%") and not text.endswith("%"):
             size = abs(value) * read(name, spread, "", low_open=False).si
         else:
             size = read(name, spread, unit, low_open=False).si

@@ -155,14 +155,13 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
 
 @lru_cache(maxsize=32)
 def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
+    # on a loop the slip may reverse at any phase
+    on_a_line = problem.straight and problem.motion.periodic
+    width = turning_point_width(problem.drift, problem.stroke) if on_a_line else math.inf
     if not problem.contacts:
-        turns = (
-            problem.straight and problem.motion.periodic
-        )  # on a loop the slip may reverse at any phase
-        width = turning_point_width(problem.drift, problem.stroke) if turns else math.inf
         phases = phases_between(problem.turns, steps, grading, width)
         return make_path(problem.displacement, phases, integrator, problem.depth)
-    phases, drift = _body_phases(problem, steps, grading), problem.drift
+    phases, drift = _body_phases(problem, steps, grading, width), problem.drift
 
     def forward(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return drift * phase, np.zeros_like(phase), np.zeros_like(phase)
@@ -193,7 +192,7 @@ def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
     return np.tensordot(stiff / stiff.sum(), ahead, axes=1)
 
 
-def _body_phases(problem: Problem, steps: int, grading: float) -> np.ndarray:
+def _body_phases(problem: Problem, steps: int, grading: float, width: float) -> np.ndarray:
     """From the first turning point of the first contact over half a period, or a whole one, in
     pieces from turning point to turning point of any contact."""
     interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
@@ -205,5 +204,5 @@ def _body_phases(problem: Problem, steps: int, grading: float) -> np.ndarray:
     pieces = [ends[:1]]
     for one, other in pairwise(ends):
         count = max(round(steps * (other - one) / np.pi), 1)
-        pieces.append(phases_between((one, other), count, grading)[1:])
+        pieces.append(phases_between((one, other), count, grading, width)[1:])
     return np.concatenate(pieces)

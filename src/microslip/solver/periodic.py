@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from microslip.models.contact import KnownContact, StepFailure, energy_norm
+from microslip.models.contact import DirectContact, StepFailure, energy_norm
 from microslip.solver.period_map import DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.states import search
 
@@ -43,7 +43,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         Where the tractions blow up.
     """
     if not period_map.contact.compiled:
-        return _known_state(period_map, goal)
+        return _direct_state(period_map, goal)
     contact = cast("SystemContact", period_map.contact)  # or one that counts its marches
     path, rate = period_map.path, period_map.drift_rate
     slow = rate or DriftRate(0.0, 0.0, np.inf)
@@ -66,15 +66,13 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     done, most = False, goal.most_marches
     while not done and memory.counts[0] < most:
         marches, iterations = memory.counts[:2]
-        affordable = contact.affordable(path.steps * stages * tractions.size)
+        affordable = contact.affordable(path.solves * tractions.size)
         some = int(min(most - marches, affordable))
         done, broken = search.search(system, loading, inertia, target, memory, some)
         if broken:
             signal.raise_signal(signal.SIGINT)
         marched = int(memory.counts[0] - marches)
-        contact.take(
-            marched * path.steps * stages, int(memory.counts[1] - iterations), tractions.size
-        )
+        contact.take(marched * path.solves, int(memory.counts[1] - iterations), tractions.size)
     marches, iterations = map(int, memory.counts[:2])
     state, forces, body, numbers = memory.best
     state = layout.unpack(state)
@@ -89,16 +87,16 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         solver_residual=solver_residual,
         marches=marches,
         iterations=iterations,
-        solves=marches * path.steps * stages,
+        solves=marches * path.solves,
         converged=bool(converged),
         body=body,
         fields=layout.unpack(memory.guess),
     )
 
 
-def _known_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
+def _direct_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
     """The PeriodicState of a contact that computes it directly, checked by one march."""
-    contact, path = cast(KnownContact, period_map.contact), period_map.path
+    contact, path = cast(DirectContact, period_map.contact), period_map.path
     start = contact.periodic_state(path, period_map.mirror)
     march = contact.march(path, start, goal.step_tolerance)
     distance = energy_norm(contact, period_map.image(march.state) - start)

@@ -26,7 +26,7 @@ from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicS
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import periods_of, stages_of, step_share
+from microslip.solver.simulate import periods_of, step_share
 
 MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search: twice the default, since a body may swing."""
@@ -209,7 +209,7 @@ class _Pulled:
         problem, unit, found = self.problem, self.force_of_answer, done[-1]
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
         periods = periods_of(sum(one.marches for one in done), problem)
-        reason = unsolved(found.solver_residual, stages_of(self.path), step_tolerance)
+        reason = unsolved(found.solver_residual, self.path.solves, step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         assert found.body is not None  # as of all contacts that are pulled

@@ -114,15 +114,15 @@ class _Walk:
         """The ShakedownRun; tolerance: of what may be left of the way."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
-        still, pushed = self._marched(self._still(), state, step_tolerance)
+        still, pushed = self._march(self._still(), state, step_tolerance)
         first, images = self._first_part()
-        march, begun = self._marched(first, still.state, step_tolerance)
+        march, begun = self._march(first, still.state, step_tolerance)
         state = march.state
         for _ in range(images):
             state = self.map.image(state)
         look, previous = FIRST_LOOK, None
         for turn in range(MOST_INTERVALS):
-            previous, way = self._marched(self.map.path, state, step_tolerance, previous)
+            previous, way = self._march(self.map.path, state, step_tolerance, previous)
             state = self.map.image(previous.state)
             self.gone.append(way)
             self.marches += 1
@@ -165,7 +165,7 @@ class _Walk:
         phases = np.linspace(0.0, end, steps + 1)
         return make_path(self.problem.displacement, phases, depth=self.problem.depth), images
 
-    def _marched(
+    def _march(
         self,
         path: Path,
         state: np.ndarray,

@@ -14,7 +14,6 @@ from microslip.models.contact import (
     forces,
     forward_slip,
 )
-from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
@@ -40,9 +39,6 @@ SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the drift in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
-LOOP_EXCESS, LIMIT_SHARE, LIMIT_STEP_SHARE = 1.0, 0.3, 1e-3
-"""For slow loops: the factor SLOW_EXCESS of a loop; the tolerance of its static limit over the
-excess traction; the tolerance of a step over that of the limit."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from tractions on other points.  If it needs
@@ -197,33 +193,35 @@ class _Search:
         return found
 
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
-        """The static limit with all points pushed forward; also takes note of its force."""
-        contact, drift = self.contact, self.problem.drift
-        if not self.problem.straight and contact.sticks and drift < SLOW_LOOP:
-            return self._start_near_a_loop(slipping)
-        if not (contact.sticks and self.problem.straight):
-            return slipping
-        limit = static_state(contact, self.problem.oscillation, self.step_tolerance)
-        if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
-            force = float(forces(contact, limit.residual)[FORWARD])
-            self.drift_rate = replace(self.drift_rate, static_force=force)
-        excess = min(SLOW_EXCESS * drift ** (2.0 / 3.0), LARGEST_EXCESS)
-        start = limit.residual + limit.oscillating + excess * slipping
-        return project(start, contact.bound)
+        """The static limit with all points pushed forward; full slip where there is no limit.
 
-    def _start_near_a_loop(self, slipping: np.ndarray) -> np.ndarray:
-        """The static limit of a slow loop with all points pushed forward.
-
-        The limit is computed roughly, so that its force sets `least` only.
+        Also takes note of the force of the limit.
         """
-        contact, rest = self.contact, replace(self.problem, velocity=0.0)
-        path = path_of(rest, contact, self.steps, self.method.integrator)
-        excess = LOOP_EXCESS * self.problem.drift ** (2.0 / 3.0)
-        tolerance = max(LIMIT_SHARE * excess, self.tolerance)
-        limit = loop_limit(contact, rest, path, tolerance, LIMIT_STEP_SHARE * tolerance)
-        self.done.append(limit.found)
+        slow_loop = not self.problem.straight and self.problem.drift < SLOW_LOOP
+        if not self.contact.sticks or not (self.problem.straight or slow_loop):
+            return slipping
+        rise = self.problem.drift ** (2.0 / 3.0)
+        limit = self._limit_of_a_loop(rise) if slow_loop else self._limit_of_a_line()
+        excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
+        return project(limit + excess * slipping, self.contact.bound)
+
+    def _limit_of_a_line(self) -> np.ndarray:
+        limit = static_state(self.contact, self.problem.oscillation, self.step_tolerance)
+        if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
+            force = float(forces(self.contact, limit.residual)[FORWARD])
+            self.drift_rate = replace(self.drift_rate, static_force=force)
+        return limit.residual + limit.oscillating
+
+    def _limit_of_a_loop(self, rise: float) -> np.ndarray:
+        """Tractions of the limit as exactly as the rise of friction above it needs, so that the
+        force of the limit sets `least` only."""
+        rest = replace(self.problem, velocity=0.0)
+        path = path_of(rest, self.contact, self.steps, self.method.integrator)
+        tolerance = max(rise, self.tolerance)
+        limit = loop_limit(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
+        self.done.append(limit.periodic)
         self.drift_rate = replace(self.drift_rate, least=limit.force)
-        return project(limit.found.start + limit.shift + excess * slipping, contact.bound)
+        return limit.periodic.start + limit.shift
 
     def _find(self, start: np.ndarray, near: bool = False) -> PeriodicState:
         period_map = PeriodMap(
@@ -241,7 +239,7 @@ class _Search:
         solves = sum(one.solves for one in self.done)
         iterations = sum(one.iterations for one in self.done)
         periods = periods_of(sum(one.marches for one in self.done), self.problem)
-        reason = unsolved(found.solver_residual, stages_of(self.path), self.step_tolerance)
+        reason = unsolved(found.solver_residual, self.path.solves, self.step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         return Run(
@@ -263,11 +261,6 @@ def periods_of(marches: int, problem: Problem) -> float:
     """Full periods in so many marches: each is half a period if the second half is the mirror image
     of the first."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)
-
-
-def stages_of(path: Path) -> int:
-    """Number of stages of a march along a path."""
-    return path.stages.shape[0] * path.stages.shape[1]
 
 
 def _steady_run(contact: Contact, problem: Problem, tolerance: float, step_tolerance: float) -> Run:

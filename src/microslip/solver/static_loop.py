@@ -44,7 +44,7 @@ class LoopLimit(NamedTuple):
 
     Attributes
     ----------
-    found : period_map.PeriodicState
+    periodic : period_map.PeriodicState
         The periodic state of the oscillation alone.
     shift : np.ndarray, shape (2, ...)
         s at every point.
@@ -57,7 +57,7 @@ class LoopLimit(NamedTuple):
         Number of these stages.
     """
 
-    found: PeriodicState
+    periodic: PeriodicState
     shift: np.ndarray
     force: float
     solver_residual: float
@@ -83,33 +83,35 @@ def loop_limit(
     Returns
     -------
     LoopLimit
-        `found.converged` tells whether the search converged.
+        `periodic.converged` tells whether the search converged.
     """
     mirror = problem.half_period_mirror
     period_map = PeriodMap(contact, path, mirror=mirror)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     start = np.zeros((2, *shape))
-    goal, marches, iterations, done = Goal(tolerance, step_tolerance, MARCHES), 0, 0, 0
+    goal, rounds = Goal(tolerance, step_tolerance, MARCHES), []
     for _ in range(MOST_ROUNDS):
         found = find_periodic_state(period_map, start, goal)
+        rounds.append(found)
         start = found.start
-        marches, iterations = marches + found.marches, iterations + found.iterations
-        done += found.solves
         if found.converged:
             break
-    found = replace(found, marches=marches, iterations=iterations, solves=done)
+    counts = ("marches", "iterations", "solves")
+    found = replace(found, **{n: sum(getattr(one, n) for one in rounds) for n in counts})
     force = float(mean_forces(contact, problem, path, found.forces)[FORWARD])
-    residual, solves = found.solver_residual, path.stages.shape[0] * path.stages.shape[1]
+    residual, solves = found.solver_residual, path.solves
     if not contact.sticks:
         return LoopLimit(found, np.zeros((2, *shape)), force, residual, solves)
-    tractions, _, again, solved_again = frames(contact, path, start, step_tolerance, found)
+    shown = frames(contact, path, start, step_tolerance, found)
+    residual, solves = residual + shown.residual, solves + shown.solves
+    tractions = shown.tractions
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     if mirror:
         bounds = np.concatenate([bounds, bounds])
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
     shift = largest_shift(tractions, bounds)
     force += float(np.sum(contact.weight * shift[FORWARD]))
-    return LoopLimit(found, shift, force, residual + again, solves + solved_again)
+    return LoopLimit(found, shift, force, residual, solves)
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:

@@ -201,7 +201,7 @@ def _on_these_points(
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
     limit, left = loop_limit(contact, problem, path, distance, inner), None
-    found = limit.found
+    found = limit.periodic
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
         left = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()

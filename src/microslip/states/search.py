@@ -177,6 +177,14 @@ def state_norm(
 
 
 @kernel
+def largest_excess(force: float, static_force: float, full: float) -> float:
+    """Largest excess of a mean force over the static limit; static_force: NaN if unknown."""
+    if np.isnan(static_force):  # a state below the limit takes long to regain what it lost
+        return max(abs(force), abs(full - force))
+    return abs(force - static_force)
+
+
+@kernel
 def search(
     system: System,
     loading: Loading,
@@ -286,10 +294,8 @@ def search(
             moved[i] = proposal[n + i] - place[i]
         distance = max(state_norm(system, inertia, change, moved, scratch), residual)
         if goal.gain < np.inf:
-            excess = abs(mean - goal.static_force)
-            if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
-                excess = max(abs(mean), abs(goal.full - mean))
             gained = residual if inertia is None else gained
+            excess = largest_excess(mean, goal.static_force, goal.full)
             distance = max(distance, excess * gained / goal.gain)
         near_enough = distance <= goal.tolerance
         converged = solved and near_enough

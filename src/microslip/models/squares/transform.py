@@ -57,7 +57,7 @@ def backward(
 
 
 @kernel(inline="always")
-def _turned(re: float, im: float, c: float, s: float) -> tuple[float, float]:
+def _product(re: float, im: float, c: float, s: float) -> tuple[float, float]:
     """(re + i im) (c + i s)."""
     return fused(re, c, -im * s), fused(re, s, im * c)
 
@@ -71,7 +71,7 @@ def _forward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         x, y = re[a, k] - re[b, k], im[a, k] - im[b, k]
         re[a, k] += re[b, k]
         im[a, k] += im[b, k]
-        re[b, k], im[b, k] = _turned(x, y, c1, s1)
+        re[b, k], im[b, k] = _product(x, y, c1, s1)
 
 
 @kernel(inline="always")
@@ -80,7 +80,7 @@ def _backward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c1, s1 = roots[0, w], roots[1, w]
     b = a + part
     for k in range(columns):
-        x, y = _turned(re[b, k], im[b, k], c1, s1)
+        x, y = _product(re[b, k], im[b, k], c1, s1)
         re[b, k], im[b, k] = re[a, k] - x, im[a, k] - y
         re[a, k] += x
         im[a, k] += y
@@ -100,8 +100,8 @@ def _forward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         zr, zi = re[a, k] - 0.5 * xr, im[a, k] - 0.5 * xi
         re[a, k] += xr
         im[a, k] += xi
-        re[b, k], im[b, k] = _turned(zr + yr, zi + yi, c1, s1)
-        re[c, k], im[c, k] = _turned(zr - yr, zi - yi, c2, s2)
+        re[b, k], im[b, k] = _product(zr + yr, zi + yi, c1, s1)
+        re[c, k], im[c, k] = _product(zr - yr, zi - yi, c2, s2)
 
 
 @kernel(inline="always")
@@ -110,8 +110,8 @@ def _backward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     b, c = a + part, a + 2 * part
     for k in range(columns):
-        br, bi = _turned(re[b, k], im[b, k], c1, s1)
-        cr, ci = _turned(re[c, k], im[c, k], c2, s2)
+        br, bi = _product(re[b, k], im[b, k], c1, s1)
+        cr, ci = _product(re[c, k], im[c, k], c2, s2)
         yr, yi = _SIN_60 * (ci - bi), _SIN_60 * (br - cr)
         zr, zi = re[a, k] - 0.5 * (br + cr), im[a, k] - 0.5 * (bi + ci)
         re[a, k] += br + cr
@@ -132,9 +132,9 @@ def _forward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarray
         gr, gi = re[b, k] + re[d, k], im[b, k] + im[d, k]
         hr, hi = im[b, k] - im[d, k], re[d, k] - re[b, k]
         re[a, k], im[a, k] = er + gr, ei + gi
-        re[b, k], im[b, k] = _turned(fr + hr, fi + hi, c1, s1)
-        re[c, k], im[c, k] = _turned(er - gr, ei - gi, c2, s2)
-        re[d, k], im[d, k] = _turned(fr - hr, fi - hi, c3, s3)
+        re[b, k], im[b, k] = _product(fr + hr, fi + hi, c1, s1)
+        re[c, k], im[c, k] = _product(er - gr, ei - gi, c2, s2)
+        re[d, k], im[d, k] = _product(fr - hr, fi - hi, c3, s3)
 
 
 @kernel(inline="always")
@@ -144,9 +144,9 @@ def _backward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarra
     c3, s3 = roots[0, 3 * w], roots[1, 3 * w]
     b, c, d = a + part, a + 2 * part, a + 3 * part
     for k in range(columns):
-        br, bi = _turned(re[b, k], im[b, k], c1, s1)
-        cr, ci = _turned(re[c, k], im[c, k], c2, s2)
-        dr, di = _turned(re[d, k], im[d, k], c3, s3)
+        br, bi = _product(re[b, k], im[b, k], c1, s1)
+        cr, ci = _product(re[c, k], im[c, k], c2, s2)
+        dr, di = _product(re[d, k], im[d, k], c3, s3)
         er, ei = re[a, k] + cr, im[a, k] + ci
         fr, fi = re[a, k] - cr, im[a, k] - ci
         gr, gi = br + dr, bi + di

@@ -117,7 +117,7 @@ class DenseContact:
             z = z + (now - z) / path.end
             at_end = q.copy() if path.end == 1.0 else at_end + (q - at_end) / path.end
             found[k + 1] = forces(self.contact, at_end.reshape(self.shape))
-        solves = path.stages.shape[0] * path.stages.shape[1]
+        solves = path.solves
         return March(at_end.reshape(self.shape), found, total, iterations, solves)
 
     def _solved(

@@ -12,22 +12,24 @@ import numpy as np
 
 from microslip.contacts.coulomb import project
 from microslip.models.contact import March, StepFailure, energy_norm
-from microslip.solver.period_map import DriftRate, Goal, PeriodicState, PeriodMap
+from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.states.search import largest_excess
 
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two changes that is believed: rounding alone makes it 1."""
 FORCING = 1e-3
-LOOSEST = 1e-4
-"""While the state is still far from periodic, steps are solved to this share of what the last
-period changed, and to LOOSEST at first: more would be wasted on a start that is about to change."""
+"""Tolerance of a step over the last change of the state, while the state is far from periodic."""
+LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
+"""First tolerance of a step, from a start that is far and from one that is near."""
 DEPTH = 12
+"""Differences in the least squares of Anderson's method."""
 NOISE = 0.1
-"""Share of a period's change that its steps may leave unsolved."""
-LOOSEST_NEAR, QUIET = 1e-5, 0.25
-"""For a start near the periodic state: loosest tolerance of a step, and share of NOISE allowed to
-the steps of the next march.  With many steps each must be solved better, or the march is wasted."""
+"""Largest residual of the steps over the change of the state; above it the march is repeated with
+better solved steps."""
+QUIET = 0.25
+"""Share of NOISE allowed to the steps of the next march from a near start."""
 FORGETFUL = 0.2
-"""Contraction of the plain map from the start on below which it is left alone."""
+"""Contraction of the plain map since the start below which it needs no acceleration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +39,10 @@ class MarchInterval:
     Attributes
     ----------
     state : np.ndarray
-        Tractions at its beginning.
+        Tractions at the start.
     image : np.ndarray
-        Those where the next one begins: at the end of the period, or the mirror image of its
-        middle.
+        Tractions at the start of the next march: at the end of the period, or the mirror image of
+        those in its middle.
     residual : float
         Size of image - state, as a force over mu F_z.
     march : contact.March
@@ -53,20 +55,12 @@ class MarchInterval:
     march: March
 
 
-def force_error(rate: DriftRate, residual: float, force: float) -> float:
-    """Error of the mean forward force that corresponds to a residual of the plain map."""
-    excess = abs(force - rate.static_force)
-    if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
-        excess = max(abs(force), abs(rate.full - force))
-    return excess * residual / rate.gain
-
-
 class Marches:
-    """Marches of a period_map.PeriodMap that Python calls one by one, and their verdict.
+    """Calls the marches of a period_map.PeriodMap one by one.
 
-    Marches(period_map)(state, step_tolerance) is a MarchInterval.  The verdict is that of the plain
-    map: its residual, the distance to the fixed point that the last correction measured, and the
-    error that the residual stands for at the drift rate of the motion.
+    Marches(period_map)(state, step_tolerance) is a MarchInterval.  The estimated distance from the
+    fixed point is the largest of the residual, the last correction, and the error of the force that
+    the residual stands for at the drift rate of the motion.
     """
 
     def __init__(self, period_map: PeriodMap):
@@ -102,8 +96,9 @@ class Marches:
         moved = energy_norm(self.contact, proposal - interval.state)
         distance = max(moved, interval.residual)
         if self.drift_rate is not None:
-            mean = float(self.path.mean(interval.march.forces[:, 0]))
-            distance = max(distance, force_error(self.drift_rate, interval.residual, mean))
+            rate, mean = self.drift_rate, float(self.path.mean(interval.march.forces[:, 0]))
+            excess = largest_excess(mean, rate.static_force, rate.full)
+            distance = max(distance, excess * interval.residual / rate.gain)
         return distance
 
     def result(self, interval: MarchInterval, distance: float, converged: bool) -> PeriodicState:
@@ -124,9 +119,8 @@ class Marches:
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Anderson acceleration of marches that Python calls one by one.
 
-    The start should have too much forward traction rather than too little: from there the mean
-    tractions relax towards the periodic ones without losing slip on the way, which is what keeps an
-    accelerated map from settling where nothing moves.
+    The start should have too much forward traction rather than too little.  This prevents
+    convergence to a state without slip.
 
     Parameters
     ----------
@@ -158,7 +152,7 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
         ceiling = NOISE * inner if noisy else loosest
         inner = max(step_tolerance, min(forcing * interval.residual, ceiling))
         if noisy:
-            continue  # what is left of the steps hides what the period changed
+            continue  # the residual of the steps hides the change of the state
         forgets = forgets and interval.residual <= FORGETFUL * last_residual
         last_residual = interval.residual
         proposal = accelerate(state, interval.image)
