@@ -169,17 +169,17 @@ def rebalance(
     The splitting alone gets there slowly if nearly all points slip and the drive is soft.  y stays
     as it is if that displacement is beyond LONGEST_ADVANCE.
     """
-    missing = _imbalance(system, balance, step, y, displacement, 0.0)
-    if not abs(missing) > step.tolerance:
+    imbalance = _imbalance(system, balance, step, y, displacement, 0.0)
+    if not abs(imbalance) > step.tolerance:
         return
-    near, far = 0.0, np.copysign(FIRST_ADVANCE, -missing)
-    while missing * _imbalance(system, balance, step, y, displacement, far) > 0.0:
+    near, far = 0.0, np.copysign(FIRST_ADVANCE, -imbalance)
+    while imbalance * _imbalance(system, balance, step, y, displacement, far) > 0.0:
         near, far = far, 4.0 * far
         if abs(far) > LONGEST_ADVANCE:
             return
     for _ in range(HALVINGS):
         middle = 0.5 * (near + far)
-        if missing * _imbalance(system, balance, step, y, displacement, middle) > 0.0:
+        if imbalance * _imbalance(system, balance, step, y, displacement, middle) > 0.0:
             near = middle
         else:
             far = middle

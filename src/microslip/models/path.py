@@ -101,8 +101,8 @@ def turning_point_width(drift: float, stroke: float) -> float:
 
     Further away, steps are proportional to the distance from the turning point.  Infinite: only the
     grading applies.  The slip reverses within the phase max(1, drift) / stroke, where the velocity
-    of the oscillation is u_lim in a radian, or the drift.  The third term makes the zone shrink
-    gradually from LONG_STROKE on, where the longest step is twice the shortest.
+    of the oscillation is u_lim in a radian, or the drift.  The term LONG_STROKE**2 / stroke lets the
+    zone shrink gradually from LONG_STROKE on, where the longest step is twice the shortest.
     """
     if stroke <= LONG_STROKE:
         return math.inf

@@ -48,8 +48,8 @@ def answer_of(
 ) -> Result:
     """The result of microslip.solve for a motion in SI units.
 
-    It is not converged if the force is within the error of the threshold: such a contact is so slow
-    that a small relative error of its speed takes minutes.
+    The result is not converged if the force is within the error of the threshold.  Such a contact
+    is so slow that a small relative error of its speed takes minutes.
 
     Parameters
     ----------
