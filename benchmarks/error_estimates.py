@@ -12,7 +12,8 @@ A first reference is the same point at a tenth of the tolerance, at a quarter of
 It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
 may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
 contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
-The second reference also replaces a first one that takes too much work, as rotations at 1e-4 do.
+The second reference is also used where the first one would take too much work, for example for
+rotations at 1e-4.
 The most certain reference judges.  References that contradict each other are listed.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.

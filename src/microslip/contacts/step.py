@@ -102,7 +102,7 @@ def solve_step(
 ) -> tuple[int, float, float]:
     """Solve a Coulomb step in compiled code, by the solver of the system.
 
-    balance: has an empty `slope`, since there is no body.
+    balance: its `slope` must be empty, which means that there is no body.
 
     Returns
     -------

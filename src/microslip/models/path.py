@@ -101,8 +101,8 @@ def turning_point_width(drift: float, stroke: float) -> float:
 
     Further away, steps are proportional to the distance from the turning point.  Infinite: only the
     grading applies.  The slip reverses within the phase max(1, drift) / stroke, where the velocity
-    of the oscillation is u_lim in a radian, or the drift.  The term LONG_STROKE**2 / stroke lets the
-    zone shrink gradually from LONG_STROKE on, where the longest step is twice the shortest.
+    of the oscillation is u_lim in a radian, or the drift.  The term LONG_STROKE**2 / stroke lets
+    the zone shrink gradually from LONG_STROKE on, where the longest step is twice the shortest.
     """
     if stroke <= LONG_STROKE:
         return math.inf
@@ -224,8 +224,8 @@ def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
 def phases_between(
     turns: Sequence[float], steps: int, grading: float = 0.0, width: float = math.inf
 ) -> np.ndarray:
-    """Phases from the first turning point to the last, `steps` steps from each to the next, finer
-    at both; shape ((len(turns) - 1) steps + 1,).
+    """Phases from the first turning point to the last, `steps` steps between two of them, smaller
+    near each; shape ((len(turns) - 1) steps + 1,).
 
     grading, width: see turning_point_grading and turning_point_width.
     """

@@ -48,8 +48,8 @@ def answer_of(
 ) -> Result:
     """The result of microslip.solve for a motion in SI units.
 
-    The result is not converged if the force is within the error of the threshold.  Such a contact
-    is so slow that a small relative error of its speed takes minutes.
+    If the force differs from the threshold by less than the error of the threshold, the result is
+    not converged: to compute so small a speed to a small relative error would take minutes.
 
     Parameters
     ----------

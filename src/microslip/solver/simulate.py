@@ -195,7 +195,7 @@ class _Search:
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
         """The static limit with all points pushed forward; full slip where there is no limit.
 
-        Sets the force of the limit in `drift_rate`.
+        Stores the force at the limit in `drift_rate`.
         """
         slow_loop = not self.problem.straight and self.problem.drift < SLOW_LOOP
         if not self.contact.sticks or not (self.problem.straight or slow_loop):

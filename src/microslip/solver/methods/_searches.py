@@ -59,8 +59,8 @@ class Marches:
     """Calls the marches of a period_map.PeriodMap one by one.
 
     Marches(period_map)(state, step_tolerance) is a MarchInterval.  The estimated distance from the
-    fixed point is the largest of the residual, the last correction, and the error of the force that
-    the residual stands for at the drift rate of the motion.
+    fixed point, a force, is the largest of three: the residual, the last correction, and the excess
+    of the force over the static limit times residual / gain, see search.largest_excess.
     """
 
     def __init__(self, period_map: PeriodMap):
