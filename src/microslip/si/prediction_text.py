@@ -204,6 +204,8 @@ class _Text:
         else:
             text, words = in_unit(value, error, self.force), "no smaller constant force"
         lines = [line("force threshold", f"{text}: {words} moves the contact")]
+        if value <= max(error, rounding) and not found.force_threshold_high_N:
+            return lines
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
         return lines + self.interval_of_threshold(ends, error, self.force)
 
