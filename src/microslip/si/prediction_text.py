@@ -197,14 +197,15 @@ class _Text:
         if value is None:
             return []
         rounding = ROUNDING * found.load_N  # as for static friction, times the load
-        if value <= max(error, rounding):
+        nothing = value <= max(error, rounding)
+        if nothing:
             most = 0.0 if value <= error <= rounding else value + error
             text, words = in_unit(0.0, most, self.force), "any constant force"
             words += " beyond that" if most else ""
         else:
             text, words = in_unit(value, error, self.force), "no smaller constant force"
         lines = [line("force threshold", f"{text}: {words} moves the contact")]
-        if value <= max(error, rounding) and not found.force_threshold_high_N:
+        if nothing and not found.force_threshold_high_N:
             return lines
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
         return lines + self.interval_of_threshold(ends, error, self.force)
