@@ -201,8 +201,10 @@ class _Search:
         if not self.contact.sticks or not (self.problem.straight or slow_loop):
             return slipping
         rise = self.problem.drift ** (2.0 / 3.0)
-        limit = self._limit_of_a_loop(rise) if slow_loop else self._limit_of_a_line()
-        excess = min(SLOW_EXCESS * rise, LARGEST_EXCESS)
+        if slow_loop:  # the rise as it is: 4 times as much loses convergence at the smallest drifts
+            limit, excess = self._limit_of_a_loop(rise), rise
+        else:
+            limit, excess = self._limit_of_a_line(), min(SLOW_EXCESS * rise, LARGEST_EXCESS)
         return project(limit + excess * slipping, self.contact.bound)
 
     def _limit_of_a_line(self) -> np.ndarray:
