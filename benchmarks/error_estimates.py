@@ -33,6 +33,7 @@ import one_thread  # noqa: F401
 
 import argparse
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import blind_points
@@ -44,6 +45,7 @@ import tables
 from scipy.stats import beta
 
 import microslip
+from microslip.adaptive import moved, pulled
 from microslip.estimate import ladder, richardson
 from microslip.estimate import refine as refinement
 from microslip.motions.by_name import motion_named
@@ -57,7 +59,7 @@ TWICE = 20
 MOST_WORK = 3e7
 """Work of a first reference where `finer.py` can make one: about six seconds."""
 MOST_WORK_OF_OTHERS = 1e8
-"""Largest work of a first reference where `finer.py` can make none."""
+"""Largest work of a run of a reference where `finer.py` can make none."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
@@ -71,8 +73,8 @@ AGAIN = 24
 EVERY = 500
 """Points between two summaries."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
-START_TOLERANCE = ladder.START_TOLERANCE
-"""Tolerance for first levels as they are: where it is larger, all first levels are."""
+LADDER_FOR = moved.ladder_for
+"""Ladders as they are."""
 KEPT = "all_references"
 """Key of all references of a point in its line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
@@ -121,7 +123,12 @@ def calibrate(
     smallest: float = refinement.SMALLEST_SHARE,
 ) -> None:
     """Set the constants of the error estimate in this process; without arguments, reset them."""
-    ladder.START_TOLERANCE = START_TOLERANCE * start ** (1.0 / ladder.RATE)
+
+    def scaled(*arguments) -> ladder.Ladder:
+        given = LADDER_FOR(*arguments)
+        return given if given.imposed else replace(given, start=start * given.start)
+
+    moved.ladder_for = pulled.ladder_for = scaled
     richardson.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
 
 
@@ -202,7 +209,8 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         problem = Problem(motion_named(point["motion"]), *place, pressure)
         value, uncertainty = finer.reference(problem, point["tolerance"], result)
         return {"reference": float(value), "uncertainty": float(uncertainty), "by": "finer"}
-    ran = first if first.converged else result
+    expected = first.effort.work * DENSER[1] ** 3 if first.converged else np.inf
+    ran = first if expected < MOST_WORK_OF_OTHERS else result
     if not ran.cells:  # a closed form
         return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
     arguments = arguments_of(point) | {"tolerance": point["tolerance"] * TIGHTER}
@@ -211,7 +219,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         imposed = {"cells": round(factor * ran.cells)}
         if ran.steps_per_period:
             imposed["steps"] = 2 * round(0.5 * factor * ran.steps_per_period)
-        run = microslip.solve(**arguments, **imposed)
+        run = microslip.solve(**arguments, **imposed, most_work=MOST_WORK_OF_OTHERS)
         if not run.periodic:
             return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
         values.append(quantity(run)[0])

@@ -21,7 +21,7 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
-LADDER = Ladder(start=16, angles=0.5, steps=2)
+LADDER = Ladder(start=8, angles=0.5, steps=2)
 
 
 class FakeRun:

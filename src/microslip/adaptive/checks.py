@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from microslip.estimate.ladder import TIGHTEST
 from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
@@ -23,7 +24,6 @@ from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
-SMALLEST_TOLERANCE = 1e-6
 LARGEST_FORCE = 1e6
 """Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
 
@@ -221,7 +221,7 @@ def checked_request(
     """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
-        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+        tolerance = real("tolerance", tolerance, TIGHTEST, 0.1)
     return tolerance, cells, steps
 
 

@@ -215,7 +215,7 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
         found_focus(planned, request.model, request.budget, request.progress)
     except Spent as spent:
         return _fields(request, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
-    ladder = ladder_for(planned, request.model)
+    ladder = ladder_for(planned, request.model, request.accuracy)
     # the coarsest run, too, must hold the force
     ladder = replace(ladder, start=2 * ladder.start)
     left = RUN_SHARE * run_tolerance(request.accuracy)

@@ -7,18 +7,20 @@ levels with the level after it.
 
 The first level follows from the tolerance and from what moves.  Whatever else a point needs is in
 its mesh and its path: rings are graded towards the slip front by the stick radius and the width of
-the slip layer (discretise.focus_strength), and the number of time steps grows with the stroke
-and with the natural frequency of a mass.
+the slip layer (discretise.focus_strength).  The number of time steps grows with the stroke and with
+the natural frequency of a mass, by the square root that a method of second order asks for.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from math import isclose
 from typing import NamedTuple
 
 import numpy as np
 
+from microslip.estimate.richardson import ORDER
 from microslip.foundation.errors import InputError
 from microslip.models.contact import Contact
 from microslip.models.path import LONG_STROKE
@@ -28,18 +30,15 @@ from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_loop import SLOW_LOOP
 
-LEVELS = tuple(sorted(base * 2**k for k in range(9) for base in (2, 3)))
+RATIO = 2
+"""Ratio of the levels that are extrapolated.  The first level grows by it per decade of the
+tolerance: extrapolated errors fall with about the third power of the level."""
+LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
-START_TOLERANCE, LOOSEST = 1e-3, 1e-2
-"""Tolerance that Ladder.start is for, and the largest one for which first levels become coarser."""
-RATE = math.log10(2.0)
-"""The first level is proportional to the tolerance to minus this power: it doubles per decade.
-Extrapolated errors fall with about the third power of the level."""
-FINEST = 12
-"""Finest level over the start: one above that of the smallest tolerance, 1e-6."""
-LONGEST_NATURAL_STEP = 1.0
-"""Longest step at the tolerance 1e-2, in radians of the natural oscillation of a mass against the
-contact: within about a radian second-order steps converge, and differences show their error."""
+LOOSEST, TIGHTEST = 1e-2, 1e-6
+"""Tolerance that Ladder.start is for: none is looser.  The smallest tolerance of a request."""
+FEWEST = 4
+"""Smallest number of angles, and of steps."""
 MOST_MASS_STEPS = 8192
 """Steps in half a period that a mass may need: runs over 24 rings take a few seconds then."""
 
@@ -51,14 +50,12 @@ class Ladder:
     Attributes
     ----------
     start : int
-        First level at the tolerance START_TOLERANCE.
+        First level at the tolerance LOOSEST.
     angles, steps : float
         Angles on half the disc and time steps in half a period, per level; 0 for a number that is
         not refined.
     cells : float
         Rings, or squares across the contact, per level; 0 likewise.
-    least_angles : int
-        Smallest number of angles.
     imposed : bool
         Whether the user imposes a resolution: then it is that of the level `start`, and no other
         level is the answer.
@@ -68,52 +65,56 @@ class Ladder:
     angles: float
     steps: float
     cells: float = 1.0
-    least_angles: int = 2
     imposed: bool = False
 
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
-        angles = 2 * math.ceil(0.5 * self.angles * level)
-        fewest = 1 if self.imposed and self.steps else 4  # halves of imposed steps must differ
+        angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
+        fewest = 1 if self.imposed and self.steps else FEWEST  # halves of imposed steps must differ
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
-            angles=max(angles, self.least_angles) if self.angles else 1,
+            angles=max(angles, FEWEST) if self.angles else 1,
             steps=max(round(self.steps * level), fewest),
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Levels to try one after the other at a tolerance."""
+        """Levels to try one after the other at a tolerance; the last is the one above the first
+        level of the tolerance TIGHTEST."""
         if self.imposed:
             return (self.start,)
-        first = self.start * (START_TOLERANCE / min(tolerance, LOOSEST)) ** RATE
-        levels = [level for level in LEVELS if level <= FINEST * self.start]
+        first, last = self._first(tolerance), self._first(TIGHTEST)
+        return LEVELS[min(first, last + 1) : last + 2]
+
+    def _first(self, tolerance: float) -> int:
+        """Place of the first level in LEVELS."""
+        least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
         # rounding of the power must not skip a level
-        return tuple(level for level in levels if level > 0.999 * first) or (levels[-1],)
+        enough = (k for k, n in enumerate(LEVELS) if n > least or isclose(n, least))
+        return next(enough, len(LEVELS) - 1)
 
 
-# Starts are calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
-TRANSLATION = Ladder(start=24, angles=0.25, steps=2)
+TRANSLATION = Ladder(start=12, angles=0.25, steps=2)
 """Tractions depend on the angle a little, and only at nu > 0.  Next to full sliding, levels that
-start at 16 can agree by chance, see tests/adaptive/test_near_full_sliding.py."""
-LOOP = replace(TRANSLATION, start=32)
+start lower can agree by chance, see tests/adaptive/test_near_full_sliding.py."""
+LOOP = replace(TRANSLATION, start=16)
 """Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
-COUPLED = replace(LOOP, start=64, steps=4)
-"""Several contacts that work against each other: which one slides changes within a step."""
-ROTATION = Ladder(start=24, angles=0.5, steps=1, least_angles=4)
-WHOLE_DISC = replace(ROTATION, start=32)
-"""Rotation together with a lateral motion, whose slip fronts have no symmetry."""
-LOAD = replace(ROTATION, start=48, steps=4)
+ROTATION = replace(TRANSLATION, angles=0.5, steps=1)
+WHOLE_DISC = replace(ROTATION, start=LOOP.start)
+"""Rotation together with a lateral motion, whose slip fronts differ likewise."""
+LOAD = replace(ROTATION, start=24, steps=4)
 """Oscillating normal load: the edge of the contact sweeps over the rings, one after the other."""
-SQUARES = Ladder(start=48, angles=0, steps=1)
+SQUARES = replace(ROTATION, start=LOAD.start)
 """Squares across the diameter, which are not graded towards the slip front."""
-STATIC = replace(ROTATION, start=64, steps=0)
+STATIC = replace(ROTATION, start=32, steps=0)
 """Static limit at turning points: nothing is marched, and slip fronts cut through the cells."""
+COUPLED = replace(TRANSLATION, start=STATIC.start, steps=LOAD.steps)
+"""Several contacts that work against each other: which one slides changes within a step."""
 
 
 def ladder_for(
     problem: Problem,
     model: str,
-    tolerance: float = START_TOLERANCE,
+    tolerance: float,
     cells: int | None = None,
     steps: int | None = None,
 ) -> Ladder:
@@ -133,7 +134,7 @@ def ladder_for(
     """
     motion, refined = problem.motion, MODELS[model].axes(problem)
     kind = _kind(problem, model)
-    longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** 0.5 * motion.cycles
+    longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** (1 / ORDER) * motion.cycles
     ladder = replace(
         kind,
         cells=kind.cells if "cells" in refined else 0.0,
@@ -209,9 +210,10 @@ def with_mass(
 
     The natural frequency is sqrt(stiffness / mass), with the stiffness of the contact (1.5 for a
     sphere at nu = 0), over that of the vibration.  Runs whose steps are longer than a radian of it
-    may agree with each other, but not with the solution.  A spring that is s times stiffer than the
-    contact raises the frequency by the square root of s, and lowers the force of the oscillation on
-    the contact by s.  An error of second order then asks for the same steps.
+    may agree with each other, but not with the solution; a radian does for the tolerance LOOSEST.
+    A spring that is s times stiffer than the contact raises the frequency by the square root of s,
+    and lowers the force of the oscillation on the contact by s.  An error of second order then asks
+    for the same steps.
 
     Parameters
     ----------
@@ -231,9 +233,7 @@ def with_mass(
     count = ladder.resolution(ladder.levels(tolerance)[0]).steps
     frequency = (contact.stiffness / mass) ** 0.5
     longest = float(np.diff(path_of(problem, contact, count).phase).max())
-    allowed = LONGEST_NATURAL_STEP
-    if not ladder.imposed:
-        allowed *= (tolerance / 1e-2) ** 0.5  # second order in time
+    allowed = 1.0 if ladder.imposed else (tolerance / LOOSEST) ** (1 / ORDER)
     finer = max(longest * frequency / allowed, 1.0)
     if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
         most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)

@@ -6,11 +6,12 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
+from microslip.adaptive.checks import LARGEST_FORCE
 from microslip.adaptive.point import Result, solve
 from microslip.adaptive.pulled import GAP_MARGIN
 from microslip.adaptive.shakedown import shakedown
 from microslip.estimate.estimate import Estimate
+from microslip.estimate.ladder import TIGHTEST
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
@@ -92,7 +93,7 @@ def answer_of(
     assert answer.velocity_error is not None  # as under all forces
     if answer.velocity_error <= accepted:
         return answer
-    return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
+    return found(max(MARGIN * accepted, TIGHTEST))
 
 
 def answer_at_rest(
