@@ -93,22 +93,41 @@ class Ladder:
         return next(enough, len(LEVELS) - 1)
 
 
-TRANSLATION = Ladder(start=12, angles=0.25, steps=2)
-"""Tractions depend on the angle a little, and only at nu > 0.  Next to full sliding, levels that
-start lower can agree by chance, see tests/adaptive/test_near_full_sliding.py."""
-LOOP = replace(TRANSLATION, start=16)
+class Kind(NamedTuple):
+    """How finely problems of a kind begin.
+
+    Attributes
+    ----------
+    start : int
+        Ladder.start.
+    steps : int
+        Time steps in half a period, per level, for a stroke of u_lim; 0: nothing is marched.
+    """
+
+    start: int
+    steps: int
+
+
+TRANSLATION = Kind(start=12, steps=2)
+"""Next to full sliding, levels that start lower can agree by chance, see
+tests/adaptive/test_near_full_sliding.py."""
+LOOP = TRANSLATION._replace(start=16)
 """Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
-ROTATION = replace(TRANSLATION, angles=0.5, steps=1)
-WHOLE_DISC = replace(ROTATION, start=LOOP.start)
+ROTATION = TRANSLATION._replace(steps=1)
+WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotation together with a lateral motion, whose slip fronts differ likewise."""
-LOAD = replace(ROTATION, start=24, steps=4)
+LOAD = Kind(start=24, steps=4)
 """Oscillating normal load: the edge of the contact sweeps over the rings, one after the other."""
-SQUARES = replace(ROTATION, start=LOAD.start)
+SQUARES = ROTATION._replace(start=LOAD.start)
 """Squares across the diameter, which are not graded towards the slip front."""
-STATIC = replace(ROTATION, start=32, steps=0)
-"""Static limit at turning points: nothing is marched, and slip fronts cut through the cells."""
-COUPLED = replace(TRANSLATION, start=STATIC.start, steps=LOAD.steps)
+STATIC = Kind(start=32, steps=0)
+"""Static limit at turning points: slip fronts cut through the cells."""
+COUPLED = LOAD._replace(start=STATIC.start)
 """Several contacts that work against each other: which one slides changes within a step."""
+ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
+"""Angles on half the disc, per level.  A rotation turns the slip about a centre within the contact.
+Under a translation tractions depend on the angle a little, and only at nu > 0: four angles leave
+1e-4 at most, see `benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -135,17 +154,18 @@ def ladder_for(
     motion, refined = problem.motion, MODELS[model].axes(problem)
     kind = _kind(problem, model)
     longer = min(max(problem.stroke, 1.0), LONG_STROKE) ** (1 / ORDER) * motion.cycles
-    ladder = replace(
-        kind,
-        cells=kind.cells if "cells" in refined else 0.0,
-        angles=kind.angles if "angles" in refined else 0.0,
+    angles = ANGLES_OF_ROTATION if motion.rotates else ANGLES_OF_TRANSLATION
+    ladder = Ladder(
+        kind.start,
+        angles=angles if "angles" in refined else 0.0,
         steps=kind.steps * longer if motion.periodic else 0.0,
+        cells=1.0 if "cells" in refined else 0.0,
     )
     return _imposing(ladder, tolerance, cells, steps)
 
 
-def _kind(problem: Problem, model: str) -> Ladder:
-    """The Ladder of problems of this kind."""
+def _kind(problem: Problem, model: str) -> Kind:
+    """The Kind of a problem."""
     motion = problem.motion
     on_a_line = at_turning_points(problem)
     if motion.periodic and problem.velocity == 0.0 and on_a_line:

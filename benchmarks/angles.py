@@ -1,0 +1,84 @@
+"""How many angles do rotations need, and how many translations at nu > 0?
+
+    python benchmarks/angles.py [--points N] [--markdown FILE]
+
+Random points of several motions and pressures are solved with few angles and with many, over the
+same rings and in the same steps.  One line of the table for each motion: the largest difference of
+the friction for each number of angles on half the disc.
+"""
+
+from __future__ import annotations
+
+import one_thread  # noqa: F401
+
+# isort: split
+
+import argparse
+
+import numpy as np
+import tables
+
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.solver.discretise import Resolution
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
+from microslip.solver.stick_edge import found_focus
+
+MOTIONS = (
+    "transverse",
+    "longitudinal",
+    "elliptic",
+    "zigzag",
+    "normal:lateral=0.9,phase=90",
+    "bore",
+)
+PRESSURES = ("hertz", "ring", "power:exponent=8")
+ANGLES, MANY = (4, 6, 8, 12, 16, 24), 32
+RINGS, STEPS = 16, 24
+DISTANCE = 1e-7
+"""Largest distance of a run from its periodic state."""
+
+
+def differences(motion: str, place: tuple, poisson: float, pressure: str) -> list[float]:
+    """Friction with ANGLES less that with MANY; place: velocity and amplitude."""
+    problem = Problem(motion_named(motion), *place, poisson, pressure_named(pressure))
+    settings = Settings(focus=found_focus(problem, "polar"))
+    steps = round(STEPS * max(problem.stroke, 1.0) ** 0.5)
+    found = [
+        simulate(problem, "polar", Resolution(RINGS, angles, steps), DISTANCE, settings=settings).mu
+        for angles in (*ANGLES, MANY)
+    ]
+    return [one - found[-1] for one in found[:-1]]
+
+
+def main() -> None:
+    """Solve all points and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=int, default=12, help="of each motion")
+    tables.add_markdown(parser)
+    options = parser.parse_args()
+    random, rows = np.random.default_rng(1), []
+    for motion in MOTIONS:
+        loads, rotates = motion_named(motion).loads, motion_named(motion).rotates
+        worst = np.zeros(len(ANGLES))
+        for k in range(options.points):
+            place = (
+                10 ** random.uniform(-3.0, 0.2),
+                10 ** random.uniform(-0.5, -0.05 if loads else 1.0),
+            )
+            pressure = "hertz" if loads else PRESSURES[k % len(PRESSURES)]
+            found = differences(motion, place, 0.0 if rotates else (0.3, 0.5)[k % 2], pressure)
+            worst = np.maximum(worst, np.abs(found))
+        rows.append(
+            {"motion": motion} | dict(zip(ANGLES, [f"{one:.0e}" for one in worst], strict=True))
+        )
+        print(rows[-1], flush=True)
+    heading = "Largest difference of the friction from that with"
+    text = f"{heading} {MANY} angles, over {options.points} random points of each motion.\n\n"
+    tables.publish(text + tables.markdown(rows), options)
+
+
+if __name__ == "__main__":
+    main()
