@@ -72,7 +72,8 @@ def main() -> None:
             found = differences(motion, place, 0.0 if rotates else (0.3, 0.5)[k % 2], pressure)
             worst = np.maximum(worst, np.abs(found))
         rows.append(
-            {"motion": motion} | dict(zip(ANGLES, [f"{one:.0e}" for one in worst], strict=True))
+            {"motion": motion}
+            | dict(zip(map(str, ANGLES), [f"{one:.0e}" for one in worst], strict=True))
         )
         print(rows[-1], flush=True)
     heading = "Largest difference of the friction from that with"

@@ -132,6 +132,17 @@ def test_warnings_are_about_the_contact_that_carries_most():
     assert yields == [False, True]
 
 
+def test_warnings_are_about_the_largest_load_of_a_period():
+    """Hertz's pressure grows with the cube root of the load, 5 % for a load that is 1.16 times."""
+    given = BALL | {"load": 10.0, "speed": "1 m/s", "tolerance": 0.1}
+    given["hardness"] = 1.05 * one_of(10.0).largest_pressure / 0.57
+    texts = [
+        " ".join(microslip.predict("normal", load_amplitude=one, **given).warnings)
+        for one in ("1.4 N", "1.8 N")
+    ]
+    assert ["hardness" in text for text in texts] == [False, True]
+
+
 REFUSED = {
     "no text": ({"contacts": 2}, "contacts", "allowed is a text such as"),
     "a reduction": (

@@ -82,7 +82,8 @@ def read_body(young: object, nu: object, material: Any) -> Body:
     try:
         return _named(name)
     except InputError as error:
-        raise InputError("material", material, f"{error.allowed}, or a Material") from None
+        other = "" if isinstance(material, str) else ", or a Material"
+        raise InputError("material", material, f"{error.allowed}{other}") from None
 
 
 def read_counterbody(given: Any) -> Body:

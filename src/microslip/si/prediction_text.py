@@ -88,7 +88,10 @@ class _Text:
         if not math.isnan(found.indentation_m):
             lines.append(line("indentation", in_unit(found.indentation_m, 0.0, self.length)))
         lines.append(line("u_lim", in_unit(found.u_lim_m, 0.0, self.length)))
-        lines.append(line("largest pressure", pressure_text(found.largest_pressure_Pa)))
+        under = ""
+        if found.load_amplitude_N:
+            under = f" under {in_unit(found.load_N, 0.0, force_unit(found.load_N))}"
+        lines.append(line("largest pressure", pressure_text(found.largest_pressure_Pa) + under))
         if found.amplitude is not None:
             group = f"dimensionless {number_text(found.amplitude)}"
             lines.append(line("amplitude", f"{self.amplitude()}{group}"))

@@ -10,6 +10,7 @@ from typing import Any
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups, solver_motion, speed_unit
 from microslip.si.motions import COMBINED, check_motion, unit_of_amplitude
@@ -174,19 +175,19 @@ def with_reduction(
             raise _NoAnswerError
         if last[1].speed == 0.0 and found <= error:
             found = 0.0  # of static friction nothing is left, which no run says to the last digit
-        seen.append(1.0 - found)
+        seen.append((100.0 * (1.0 - found), 100.0 * error))
         return found - (1.0 - share)
 
     try:
         if missing(line.low) < 0.0:
-            problem = f"{line.every} takes more away: {100.0 * min(seen):.3g} %"
+            problem = f"{line.every} takes more away: {number_text(*min(seen))} %"
             raise NotAttainedError("reduction", given, problem)
         high = line.start
         if line.end is not None and missing(line.end) > 0.0:
             high = math.inf
         while high > line.high or missing(high) > 0.0:
             if high >= line.high:
-                problem = f"{line.none} takes more than {100.0 * max(seen):.3g} % away"
+                problem = f"{line.none} takes more than {number_text(*max(seen))} % away"
                 raise NotAttainedError("reduction", given, problem)
             high = min(high + math.log(2.0), line.high)
         place = brentq(missing, line.low, high, xtol=0.1 * tolerance)

@@ -199,8 +199,13 @@ def unchecked(contact: TwoBodies) -> list[str]:
 
 
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """Measures that the rules check, by name; None: does not apply, or is not known."""
-    return _of_bodies(contact) | _of_adhesion(contact) | _of_motion(contact, motion)
+    """Measures that the rules check, by name; None: does not apply, or is not known.
+
+    Pressures and the contact radius are those under the largest load of a period.
+    """
+    largest = contact.with_load(contact.load + (motion.load_amplitude or 0.0))
+    bodies = _of_bodies(largest) | {"load": contact.load}
+    return bodies | _of_adhesion(contact) | _of_motion(contact, motion)
 
 
 def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
