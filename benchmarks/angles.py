@@ -26,14 +26,8 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.stick_edge import found_focus
 
-MOTIONS = (
-    "transverse",
-    "longitudinal",
-    "elliptic",
-    "zigzag",
-    "normal:lateral=0.9,phase=90",
-    "bore",
-)
+LOADED = "normal:lateral=0.9,phase=90"
+MOTIONS = ("transverse", "longitudinal", "elliptic", "zigzag", LOADED, "bore")
 PRESSURES = ("hertz", "ring", "power:exponent=8")
 ANGLES, MANY = (4, 6, 8, 12, 16, 24), 32
 RINGS, STEPS = 16, 24
@@ -71,10 +65,8 @@ def main() -> None:
             pressure = "hertz" if loads else PRESSURES[k % len(PRESSURES)]
             found = differences(motion, place, 0.0 if rotates else (0.3, 0.5)[k % 2], pressure)
             worst = np.maximum(worst, np.abs(found))
-        rows.append(
-            {"motion": motion}
-            | dict(zip(map(str, ANGLES), [f"{one:.0e}" for one in worst], strict=True))
-        )
+        rows.append({"motion": motion})
+        rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)
     heading = "Largest difference of the friction from that with"
     text = f"{heading} {MANY} angles, over {options.points} random points of each motion.\n\n"
