@@ -63,31 +63,31 @@ class Averaging(NamedTuple):
 
 
 @kernel
-def _close_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Average kernels over ring i (outer rule) and ring j (inner rule).
+def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
+    """Average kernels over rings i and j <= i.
 
-    Adds to near[:, i, j] and far[:, i, j] the averages of G_m and C_{m+1} weighted with the ring
-    shapes (normalised to unit weight Integral shape r dr = 1 on each ring).
+    Adds to near[:, i, j] the averages of G_m, and to far[:, i, j] and far[:, j, i] those of
+    C_{m+1}, weighted with the ring shapes (normalised to unit weight Integral shape r dr = 1 on
+    each ring).
     """
     psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
-    x_out, w_out = averaging.outer
-    x_in, w_in = averaging.inner
-    n_modes = len(near)
     a0, a1 = psi[i], psi[i + 1]
     b0, b1 = psi[j], psi[j + 1]
+    apart = a0 - b1 >= 0.999 * max(a1 - a0, b1 - b0)
+    x_out, w_out = averaging.apart if apart else averaging.outer
+    x_in, w_in = averaging.apart if apart else averaging.inner
+    n_modes = len(near)
     norm_i = 0.0
     for p in range(len(x_out)):
-        at = a0 + (a1 - a0) * x_out[p]
-        norm_i += (a1 - a0) * w_out[p] * _weight(at, hertz)
+        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p], hertz)
     norm_j = _weight_integral(b0, b1, hertz)
     torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
     for p in range(len(x_out)):
         at = a0 + (a1 - a0) * x_out[p]
         weight_out = (a1 - a0) * w_out[p] * _weight(at, hertz) / norm_i
         # the inner panel is cut at the point of nearest approach
-        cut = min(max(at, b0), b1)
-        for side in range(2):
-            end = b0 if side == 0 else b1
+        cut = min(at, b1)
+        for end in (b0, b1):
             length = end - cut
             if length == 0.0:
                 continue
@@ -99,36 +99,10 @@ def _close_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.
                     near[m, i, j] += w * torus[m]
                     if coupled:
                         far[m, i, j] += w * pair[m]
-
-
-@kernel
-def _pair_apart(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Add the kernels of two rings with a gap between them, where the kernels are smooth.
-
-    Like `_close_pair`, and the coupling kernel is also added to far[:, j, i].
-    """
-    psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
-    x, w = averaging.apart
-    n_modes = len(near)
-    a0, a1 = psi[i], psi[i + 1]
-    b0, b1 = psi[j], psi[j + 1]
-    norm = _weight_integral(a0, a1, hertz) * _weight_integral(b0, b1, hertz)
-    torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
-    for p in range(len(x)):
-        at = a0 + (a1 - a0) * x[p]
-        weight_out = (a1 - a0) * w[p] * _weight(at, hertz) / norm
-        for q in range(len(x)):
-            chi = b0 + (b1 - b0) * x[q]
-            weight = weight_out * (b1 - b0) * w[q] * _weight(chi, hertz)
-            torus = mode_kernels(np.sin(at), np.sin(chi), n_modes, coupled, torus, pair)
-            for m in range(n_modes):
-                near[m, i, j] += weight * torus[m]
-                if coupled:
-                    far[m, i, j] += weight * pair[m]
-            if coupled:
-                torus = mode_kernels(np.sin(chi), np.sin(at), n_modes, coupled, torus, pair)
-                for m in range(n_modes):
-                    far[m, j, i] += weight * pair[m]
+                if coupled and i != j:
+                    torus = mode_kernels(np.sin(chi), np.sin(at), n_modes, coupled, torus, pair)
+                    for m in range(n_modes):
+                        far[m, j, i] += w * pair[m]
 
 
 @kernel
@@ -150,18 +124,10 @@ def _weight_integral(b0: float, b1: float, hertz: bool) -> float:
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
     """Fill near and far, (n_modes, rings, rings), which are zero before."""
-    psi = averaging.psi
-    for i in range(len(psi) - 1):
+    for i in range(near.shape[1]):
         for j in range(i + 1):
-            gap = psi[i] - psi[j + 1]
-            if gap >= 0.999 * max(psi[i + 1] - psi[i], psi[j + 1] - psi[j]):
-                _pair_apart(averaging, i, j, near, far)
-                for m in range(len(near)):
-                    near[m, j, i] = near[m, i, j]
-                continue
-            _close_pair(averaging, i, j, near, far)
-            if i != j:
-                _close_pair(averaging, j, i, near, far)
+            _add_pair(averaging, i, j, near, far)
+            near[:, j, i] = near[:, i, j]
 
 
 @lru_cache
@@ -224,6 +190,4 @@ def ring_influence(
     _all_pairs(averaging, near, far)
     area = np.diff(np.sin(psi) ** 2) / 2.0  # Integral r dr of each ring
     scale = 2.0 / modulus * area[None, None, :]
-    # the quadrature is not symmetric in its outer and inner variable; the operator is
-    near = 0.5 * (near + near.transpose(0, 2, 1)) * scale
-    return near, far * scale
+    return near * scale, far * scale

@@ -6,8 +6,12 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 
-MOST_GROWTH = 2.5
-"""Half the exponent of the largest growth of rounding errors in an upward recurrence, e^5."""
+ACCURACY = 1e-10
+"""Relative accuracy of the kernels, far below that of the averages over rings."""
+MOST_GROWTH = np.log(ACCURACY / np.finfo(float).eps)
+"""Exponent of the largest growth of rounding errors in an upward recurrence."""
+DECAY = -np.log(ACCURACY)
+"""Exponent of the decay after which a downward recurrence has forgotten how it began."""
 
 
 @kernel
@@ -45,14 +49,14 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
     chi_minus_1 = (r - s) ** 2 / (2.0 * r * s)
     chi = 1.0 + chi_minus_1
     decay = np.log1p(chi_minus_1 + np.sqrt(chi_minus_1 * (chi + 1.0)))
-    if decay * n < MOST_GROWTH:
+    if 2.0 * decay * n < MOST_GROWTH:
         modulus = 2.0 * np.sqrt(r * s) / (r + s)
         q1 = chi * modulus * big_k - np.sqrt(2.0 * (chi + 1.0)) * big_e
         out[1] = q1 / (np.pi * np.sqrt(r * s))
         for m in range(1, n - 1):
             out[m + 1] = (2.0 * m * chi * out[m] - (m - 0.5) * out[m - 1]) / (m + 0.5)
         return
-    top = n + int(20.0 / decay) + 2
+    top = n + int(0.5 * DECAY / decay) + 2
     ratio = 0.0
     for m in range(top, 0, -1):
         ratio = (m - 0.5) / (2.0 * m * chi - (m + 0.5) * ratio)
@@ -99,7 +103,7 @@ def mode_kernels(
         top = n_modes + 2
         ratio = abs(np.log(s / r))
         if s > r and (n_modes + 1) * ratio >= 2.0:
-            top = n_modes + 2 + int(36.0 / ratio)
+            top = n_modes + 2 + int(DECAY / ratio)
         if top > len(torus):
             torus = np.empty(top)
     view = torus[:top]
