@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from microslip.estimate.ladder import TIGHTEST
 from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
     SMALLEST_STIFFNESS,
+    SMALLEST_TOLERANCE,
     count,
     is_real,
     real,
@@ -221,7 +221,7 @@ def checked_request(
     """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
-        tolerance = real("tolerance", tolerance, TIGHTEST, 0.1)
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, cells, steps
 
 

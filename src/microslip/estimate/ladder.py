@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.estimate.richardson import ORDER
+from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.models.contact import Contact
 from microslip.models.path import LONG_STROKE
@@ -35,8 +36,8 @@ RATIO = 2
 tolerance: extrapolated errors fall with about the third power of the level."""
 LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
-LOOSEST, TIGHTEST = 1e-2, 1e-6
-"""Tolerance that Ladder.start is for: none is looser.  The smallest tolerance of a request."""
+LOOSEST = 1e-2
+"""Tolerance that Ladder.start is for: looser ones need no coarser levels."""
 FEWEST = 4
 """Smallest number of angles, and of steps."""
 MOST_MASS_STEPS = 8192
@@ -79,10 +80,10 @@ class Ladder:
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
         """Levels to try one after the other at a tolerance; the last is the one above the first
-        level of the tolerance TIGHTEST."""
+        level of the tolerance SMALLEST_TOLERANCE."""
         if self.imposed:
             return (self.start,)
-        first, last = self._first(tolerance), self._first(TIGHTEST)
+        first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
         return LEVELS[min(first, last + 1) : last + 2]
 
     def _first(self, tolerance: float) -> int:

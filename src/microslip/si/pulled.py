@@ -11,8 +11,12 @@ from microslip.adaptive.point import Result, solve
 from microslip.adaptive.pulled import GAP_MARGIN
 from microslip.adaptive.shakedown import shakedown
 from microslip.estimate.estimate import Estimate
-from microslip.estimate.ladder import TIGHTEST
-from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
+from microslip.foundation.arguments import (
+    LARGEST,
+    LARGEST_BODY,
+    SMALLEST_STIFFNESS,
+    SMALLEST_TOLERANCE,
+)
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
 from microslip.pressures.by_name import pressure_named
@@ -93,7 +97,7 @@ def answer_of(
     assert answer.velocity_error is not None  # as under all forces
     if answer.velocity_error <= accepted:
         return answer
-    return found(max(MARGIN * accepted, TIGHTEST))
+    return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 
 def answer_at_rest(

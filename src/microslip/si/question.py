@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from microslip.estimate.ladder import TIGHTEST
-from microslip.foundation.arguments import LARGEST
+from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, groups
@@ -111,7 +110,7 @@ def asked(motion: str, given: Mapping[str, object]) -> Question:
     if tolerance is None:
         tolerance = TOLERANCE if force is None else TOLERANCE_OF_SPEED
     accepted = read(
-        "tolerance", tolerance, "", low=TIGHTEST, low_open=False, high=LARGEST_TOLERANCE
+        "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
     )
     body = read_body(given["young"], given["nu"], given["material"])
     other = read_counterbody(given["counterbody"])

@@ -64,16 +64,17 @@ class Averaging(NamedTuple):
 
 @kernel
 def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Average kernels over rings i and j <= i.
+    """Average kernels over ring i (outer rule) and ring j (inner rule), i the narrower one.
 
-    Adds to near[:, i, j] the averages of G_m, and to far[:, i, j] and far[:, j, i] those of
-    C_{m+1}, weighted with the ring shapes (normalised to unit weight Integral shape r dr = 1 on
-    each ring).
+    The points of the inner rule alone cluster where the rings are nearest, so that those of the
+    outer rule have to be close to each other.  Adds to near[:, i, j] the averages of G_m, and to
+    far[:, i, j] and far[:, j, i] those of C_{m+1}, weighted with the ring shapes (normalised to
+    unit weight Integral shape r dr = 1 on each ring).
     """
     psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
     a0, a1 = psi[i], psi[i + 1]
     b0, b1 = psi[j], psi[j + 1]
-    apart = a0 - b1 >= 0.999 * max(a1 - a0, b1 - b0)
+    apart = max(a0 - b1, b0 - a1) >= 0.999 * max(a1 - a0, b1 - b0)
     x_out, w_out = averaging.apart if apart else averaging.outer
     x_in, w_in = averaging.apart if apart else averaging.inner
     n_modes = len(near)
@@ -86,7 +87,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
         at = a0 + (a1 - a0) * x_out[p]
         weight_out = (a1 - a0) * w_out[p] * _weight(at, hertz) / norm_i
         # the inner panel is cut at the point of nearest approach
-        cut = min(at, b1)
+        cut = min(max(at, b0), b1)
         for end in (b0, b1):
             length = end - cut
             if length == 0.0:
@@ -124,8 +125,10 @@ def _weight_integral(b0: float, b1: float, hertz: bool) -> float:
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
     """Fill near and far, (n_modes, rings, rings), which are zero before."""
-    for i in range(near.shape[1]):
-        for j in range(i + 1):
+    width = np.diff(averaging.psi)
+    for one in range(len(width)):
+        for other in range(one + 1):
+            i, j = (one, other) if width[one] < width[other] else (other, one)
             _add_pair(averaging, i, j, near, far)
             near[:, j, i] = near[:, i, j]
 

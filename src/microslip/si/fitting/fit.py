@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from microslip.estimate.ladder import TIGHTEST
+from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.si.fitting import estimate
 from microslip.si.fitting.conclusions import Settled, concluded
@@ -110,7 +110,7 @@ def fit(
         model: FrictionModel = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
         limits: dict[str, Any] = {
-            "low": TIGHTEST,
+            "low": SMALLEST_TOLERANCE,
             "low_open": False,
             "high": LARGEST_TOLERANCE,
         }
