@@ -9,7 +9,7 @@ from stubs.in_node import needs_node, page_says
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
-from microslip.report.explorer import payload, requests
+from microslip.report.explorer import explorer, payload
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 

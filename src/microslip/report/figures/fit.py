@@ -54,8 +54,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         rows = dataset.isel(row=chosen)
         color, marker, _ = ink
         measured, error = columns(rows, "measured", "measured_error")
-        mark: look.Ink = {"color": color, "marker": marker, "ms": 3.2, "ls": "none"}
-        mark |= {"gid": "measured"}
+        mark: look.Ink = {"color": color, "ms": 3.2, "gid": "measured", **look.ERROR_BARS}
         error = finite_or_nan(error) / factor
         label = title or "measured; line: model"
         x, y = along[chosen], measured / factor
