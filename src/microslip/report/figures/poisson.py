@@ -27,6 +27,8 @@ LOOKS = (
 """Colour and line style at each Poisson's ratio, ascending."""
 MOST = 3
 """Datasets that a figure has room for."""
+MOST_LEVELS = 12
+"""Levels on one side of 0 from which on the two inner ones have no room for labels."""
 DIVERGING = "PuOr"
 """Pale in the middle, and evenly darker on both sides."""
 
@@ -83,7 +85,8 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     count = max(2, int(np.ceil(np.abs(values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
     filled = bands(axes, x, y, values, levels=levels, cmap=DIVERGING)
-    ends = (levels[0], -step, step, levels[-1])
+    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else their labels would meet
+    ends = (levels[0], *inner, levels[-1])
     first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
     label = rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$"
     panels.colour_bar(filled, axes, label, aspect=24, ticks=ends)

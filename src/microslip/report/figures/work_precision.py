@@ -91,6 +91,7 @@ class Scale:
             ticks = {place: text for place, text in ticks.items() if place > self.low * self.strip}
             ticks[self.low / self.strip**0.5] = "0"
         if self.above:
+            ticks = {place: text for place, text in ticks.items() if place < self.high / self.strip}
             ticks[self.high * self.strip**0.5] = self.above
         line = axes.axvline if axis is axes.xaxis else axes.axhline
         for place, name in ((self.low, self.below), (self.high, self.above)):
