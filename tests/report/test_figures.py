@@ -14,6 +14,7 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from PIL import Image
 from stubs import figures_stub as stub
+from stubs import fit_stub
 from stubs.figures_stub import artists
 
 from microslip.report.figures import drawing
@@ -157,7 +158,7 @@ def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
 # Errors and files
 
 BORE = {"bore": stub.fake_bore(5)}
-EVERY = stub.pulled() | stub.studies()
+EVERY = stub.pulled() | stub.studies() | {"fit": fit_stub.fitted()}
 PAPER = {"transverse": stub.fake_transverse(5)}
 
 
@@ -197,6 +198,7 @@ def test_unsuitable_data_is_refused_in_one_line(name, data, message):
         ("drift_maps", "drift_bore", "converged"),
         ("drives", "drive_body", "mu_macro_error"),
         ("pairs", "pair_force", "converged"),
+        ("fit", "fit", "residual"),
     ],
 )
 def test_a_missing_variable_is_named(name, key, variable):

@@ -105,7 +105,9 @@ def _read(name: str, dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
     first = np.argsort(methods != "shipped", kind="stable")
     of_case, labels = (part.astype(str) for part in columns(dataset, "case_axis", "case_label"))
     if strays := sorted(set(of_case) - set(dataset["axis"].values.astype(str))):
-        raise ValueError(f"figure {name}: case_axis {strays[0]!r} is not on the dimension 'axis'")
+        raise ValueError(
+            f"figure {name}: case_axis {str(strays[0])!r} is not on the dimension 'axis'"
+        )
     blocks = []
     for axis, title, note in zip(*columns(dataset, "axis", "axis_label", "axis_note"), strict=True):
         own = np.flatnonzero(of_case == str(axis))
