@@ -196,7 +196,7 @@ def test_unsuitable_data_is_refused_in_one_line(name, data, message):
         ("claims_patches", "claims", "patch_share"),
         ("propulsion", "propulsion", "efficiency_error"),
         ("drift_maps", "drift_bore", "converged"),
-        ("drives", "drive_body", "mu_macro_error"),
+        ("drives", "drive_force", "converged"),
         ("pairs", "pair_force", "converged"),
         ("fit", "fit", "residual"),
     ],

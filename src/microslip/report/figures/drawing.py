@@ -155,7 +155,8 @@ def _missing_variable(
     lacking = [k for k, data in datasets.items() if variable and variable[1] not in data.variables]
     if not variable or not lacking:
         return error
-    return ValueError(f"figure {name}: dataset {lacking[0]!r} has no variable {variable[1]!r}")
+    keys = " or ".join(map(repr, lacking))
+    return ValueError(f"figure {name}: dataset {keys} has no variable {variable[1]!r}")
 
 
 def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
