@@ -35,10 +35,11 @@ def with_palette(image):
         image.quantize(count, method, dither=Image.Dither.NONE).getpalette()[: 3 * count]
         for method, count in COLOURS.items()
     ]
-    colours = np.reshape(np.concatenate(colours), (-1, 3))
-    colours[(colours >= 252).all(axis=1)] = 255  # the paper stays white
-    palette.putpalette(colours.ravel().tolist())
-    return image.quantize(palette=palette, dither=Image.Dither.NONE)
+    palette.putpalette(np.concatenate(colours).tolist())
+    picture = image.quantize(palette=palette, dither=Image.Dither.NONE)
+    paper, final = 3 * picture.getpixel((0, 0)), picture.getpalette()
+    picture.putpalette([*final[:paper], 255, 255, 255, *final[paper + 3 :]])
+    return picture
 
 
 def main(results, *names):
