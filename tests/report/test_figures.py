@@ -197,6 +197,7 @@ def test_unsuitable_data_is_refused_in_one_line(name, data, message):
         ("propulsion", "propulsion", "efficiency_error"),
         ("drift_maps", "drift_bore", "converged"),
         ("drives", "drive_force", "converged"),
+        ("drives", "drive_body", "mass"),
         ("pairs", "pair_force", "converged"),
         ("fit", "fit", "residual"),
     ],

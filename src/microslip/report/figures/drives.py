@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns
+from microslip.report.figures.data import at_one_poisson, columns, require
 from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
@@ -31,6 +31,7 @@ def drives(
     name: str, moved: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
 ) -> Figure:
     """Draw friction over the mean velocity, and over the mass at one velocity."""
+    require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
     _over_velocity(left, moved, force, spring)

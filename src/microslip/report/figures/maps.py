@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_each_poisson, columns, curve, limit, sweep
+from microslip.report.figures.data import at_each_poisson, columns, curve, limit, require, sweep
 from microslip.report.figures.map_panel import LINE_LEVELS, fill
 from microslip.theory.catalogue import FORMS, STATIC
 
@@ -90,6 +90,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     `POISSONS` has looks for, that many are drawn, evenly chosen, and a title says so.
     """
     plan, every = MAPS[name], at_each_poisson(dataset)
+    require(name, plan.key, dataset, ("amplitude", "velocity"))
     chosen = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
     shown = [sweep(every[k], ("amplitude", "velocity")) for k in chosen]
     if plan.key == "transverse" and any(poisson > 0 for _, poisson in shown):

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns, curve, limit, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit, require, sweep
 
 QUANTITIES = (
     ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
@@ -28,6 +28,7 @@ STARTS = {
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:
     """Draw Eqs 21 and 22 with the computed steady values."""
+    require(name, "continuous_bore", dataset, ("velocity",))
     dataset, _ = sweep(dataset, ("velocity",))
     velocity = dataset["velocity"].values
     figure = look.new_figure(look.SINGLE, 2.7)
