@@ -8,8 +8,10 @@ from types import SimpleNamespace
 
 import docutils.core
 import jinja2
+import numpy as np
 import pytest
 from PIL import Image
+from stubs import figures_stub
 
 from microslip.report.figures import drawing
 
@@ -43,14 +45,19 @@ def test_figure_5_starts_from_full_forward_slip():
 
 def test_pictures_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
     make = runpy.run_path(str(ROOT / "docs" / "make_images.py"))
-    (tmp_path / "figures").mkdir()
-    Image.effect_noise((300, 150), 60).convert("RGB").save(tmp_path / "figures" / "fig1.png")
+    figures = tmp_path / "figures"
+    figure = drawing.draw("fig2_transverse_map", {"transverse": figures_stub.fake_transverse()})
+    path = drawing.save(figure, figures / "fig2.png")
     monkeypatch.setitem(make["main"].__globals__, "IMAGES", tmp_path)
-    make["main"](tmp_path, "fig1")
-    with Image.open(tmp_path / "fig1.png") as image:
-        assert image.size == (200, 100)
-        assert image.mode == "RGB"  # fewer colours would take one curve for another
+    make["main"](tmp_path, "fig2")
+    with Image.open(tmp_path / "fig2.png") as image, Image.open(path) as full:
+        assert [round(1.5 * side) for side in image.size] == pytest.approx(full.size, abs=1)
+        plain = full.convert("RGB").resize(image.size, Image.Resampling.LANCZOS)
+        away = np.abs(np.asarray(image.convert("RGB"), int) - np.asarray(plain, int))
+        assert np.percentile(away, 99) < 20  # a band of the map is 12 from the next
+    assert (tmp_path / "fig2.png").stat().st_size < 0.3 * path.stat().st_size
     with pytest.raises(SystemExit, match="run the workflow first"):
         make["main"](tmp_path, "fig9")
-    pictures = (ROOT / "docs" / "images").glob("*.png")
+    pictures = list((ROOT / "docs" / "images").glob("*.png"))
     assert {*drawing.FIGURES} <= {path.stem for path in pictures}
+    assert sum(path.stat().st_size for path in pictures) < 2.1e6

@@ -56,7 +56,7 @@ def test_links_lead_somewhere_and_nothing_lies_outside(page):
 
 
 def test_every_run_has_its_name_and_the_line_that_repeats_it(page, data):
-    text = html.unescape(page[page.index("id='runs'") :])
+    text = html.unescape(page[page.index('id="runs"') :])
     for key, line in zip(data["run"].values, data["run_command"].values, strict=True):
         assert key in text
         assert line in text

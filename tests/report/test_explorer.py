@@ -10,7 +10,7 @@ from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
 from microslip.config import load
-from microslip.report.explorer import explorer, page, payload, requests
+from microslip.report.explorer import explorer, page, payload
 from microslip.sweeps import period_codec
 from microslip.sweeps.cache import Store
 from microslip.theory.catalogue import FORMS
@@ -30,7 +30,7 @@ def map_of(content, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", requests.MAPS)
+@pytest.mark.parametrize("name", explorer.MAPS)
 def test_points_and_limits_are_those_of_the_dataset(made, name):
     dataset, found = made[0][name], map_of(made[2], name)
     assert found["velocity"] == list(dataset.velocity.values)
@@ -47,7 +47,7 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", requests.MAPS)
+@pytest.mark.parametrize("name", explorer.MAPS)
 def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     _, records, content = made
     packed = map_of(content, name)["periods"]
@@ -81,7 +81,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
 
 @pytest.mark.slow
 def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
-    for name in requests.MAPS:
+    for name in explorer.MAPS:
         dataset, packed = made[0][name], map_of(made[2], name)["periods"]
         moves = (dataset.amplitude > 0) & (dataset.velocity > 0)
         has = np.array(packed["index"]) >= 0
@@ -99,7 +99,7 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
     datasets, records = stub.made_up(tmp_path, default)
     left_out = set(explorer.sweeps_of(default, explorer.PAGE_OF_ALL)) - set(datasets)
     assert len(left_out) < 0.2 * len(datasets)
-    for name in requests.MAPS:
+    for name in explorer.MAPS:
         grid = default.sweeps[name]
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
     page.write(tmp_path / "explorer_all.html", datasets, records)

@@ -8,8 +8,8 @@ import pytest
 from stubs import explorer_stub as stub
 from stubs.unpacked_period import unpacked
 
+from microslip.report.explorer.explorer import MAPS
 from microslip.report.explorer.page import write
-from microslip.report.explorer.requests import MAPS
 from microslip.sweeps.cache import Store
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)

@@ -9,7 +9,7 @@ from stubs.in_node import needs_node, page_says
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
-from microslip.report.explorer import payload, requests
+from microslip.report.explorer import explorer, payload
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
@@ -135,8 +135,8 @@ def test_too_many_points_are_refused():
     many |= {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
     given = {"sweeps": {"bore": MAP}, "extended": {"large": many}}
     configuration = load.from_mapping(given)
-    assert requests.refusal(configuration) is None
-    assert requests.refusal(configuration, requests.PAGE_OF_ALL) == (
+    assert explorer.refusal(configuration) is None
+    assert explorer.refusal(configuration, explorer.PAGE_OF_ALL) == (
         "sweeps: 20,313 points have no room in explorer_all.html; allowed: up to 20,000, "
         "at all of Poisson's ratios together"
     )
@@ -353,7 +353,6 @@ def test_names_of_the_scripts_do_not_meet():
     """All scripts of the page share their names: of two functions the later one would win."""
     import re
 
-    from microslip.report.explorer import explorer
     from microslip.report.explorer.page import FOLDER
 
     names = []

@@ -72,16 +72,6 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
 
 
-@pytest.mark.parametrize("name", ["drift_maps", "drives", "pairs"])
-def test_what_is_missing_is_named(name):
-    datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")} | pulled()
-    datasets |= pairs()
-    last = drawing.FIGURES[name][-1]
-    lacking = datasets | {last: datasets[last].drop_vars("converged")}
-    with pytest.raises(ValueError, match="converged"):
-        drawing.draw(name, lacking)
-
-
 def test_no_other_amplitude_stands_for_the_one_of_the_sweeps():
     datasets = pulled()
     datasets["transverse"] = datasets["transverse"].assign_coords(amplitude=[1.1])

@@ -46,8 +46,3 @@ def test_rows_of_more_conditions_than_looks_are_one_series():
     assert dashes.get_linestyle() == "None" and dashes.get_marker() == "_"
     assert dashes.get_ydata() == pytest.approx(dataset.fitted.values)
     assert lower.get_xscale() == "linear"
-
-
-def test_a_dataset_without_rows_is_refused():
-    with pytest.raises(ValueError, match="no variable 'residual'"):
-        drawing.draw("fit", {"fit": fitted().drop_vars("residual")})

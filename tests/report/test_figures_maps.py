@@ -1,4 +1,4 @@
-"""Maps: their colours, the surface between the points, and the numbers on contours."""
+"""Maps and groups of sweeps: colours, the surface between points, contours, ticks, lines, texts."""
 
 from __future__ import annotations
 
@@ -7,18 +7,32 @@ import re
 import matplotlib
 import numpy as np
 import pytest
-import test_figures
-import test_figures_groups as groups
 import xarray as xr
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.legend import Legend
+from matplotlib.text import Text
+from stubs import figures_stub as stub
+from stubs.figures_stub import VELOCITY, artists
 
 from microslip.datasets.query import open_map
-from microslip.report.figures import drawing, map_panel, signed, small_maps, ticks
+from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.report.figures import drawing, groups, map_panel, panels, signed
 from microslip.report.figures import style as look
+from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.surface import refined
 from microslip.theory import paper
 
-pytestmark = pytest.mark.slow  # for drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes a second or two
+
+
+def words(figure) -> str:
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def maps_in(figure) -> list:
+    return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+
 
 # Colours
 
@@ -71,29 +85,25 @@ def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_visio
         assert away.min() > 10, seen  # 2 or 3 can just be told apart
 
 
-def test_a_map_with_negative_friction_is_drawn_in_these_colours():
-    given = {"a": groups.spanning("a", shift=-0.234), "b": groups.spanning("b")}
-    figure = drawing.draw("extended_motions", given)
-    (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
-    middles = (bands.levels[1:] + bands.levels[:-1]) / 2
-    drawn = bands.get_facecolor()[:, :3]
-    np.testing.assert_allclose(drawn, shown(middles), atol=0.03)
-    (lines,) = test_figures.artists(figure.axes[0], "contours")
-    assert lines.get_linestyle()[0][1] is not None  # dashed below 0 ...
-    assert lines.get_linestyle()[-1][1] is None  # ... and not above
+def test_lines_stand_out_from_their_bands():
+    for levels in (map_panel.FILL_LEVELS, groups.levels_of([stub.spanning(shift=-0.9)])[0]):
+        lines = np.arange(levels[0] + 0.1, 0.95, 0.1)
+        for level, ink in zip(lines, signed.inks(lines, levels), strict=True):
+            behind, line = (lab([c])[0, 0] for c in (shown([level], levels)[0], to_rgb(ink)))
+            assert abs(behind - line) > 25, level
 
 
 # The surface between the points
 
 
 def mapped(velocities=9, amplitudes=7):
-    """A map that query can be asked about, far from any limit on its values."""
+    """A map that query can interpolate, far from any limit on its values."""
     velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
     mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return xr.Dataset(
-        test_figures.fake_map(mu),
+        stub.fake_map(mu),
         coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
-        attrs={"motion": "longitudinal"},
+        attrs={"motion": "longitudinal", "title": "m", "group": "motions"},
     )
 
 
@@ -131,56 +141,58 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
     np.testing.assert_allclose(fine[~hole], plane[~hole], atol=1e-9)
 
 
-# What the points support
-
-
-def drawn(dataset):
+def contours_of(dataset):
     """The panel of a map that is drawn alone, and its contours."""
-    dataset.attrs = {"title": "m", "group": "motions"}
     figure = drawing.draw("extended_motions", {"m": dataset})
-    (axes,) = test_figures.artists(figure, "map")
-    (lines,) = test_figures.artists(axes, "contours")
+    (axes,) = artists(figure, "map")
+    (lines,) = artists(axes, "contours")
     return axes, lines
 
 
 def test_a_coarse_map_shows_its_points_and_no_contours_that_they_cannot_support():
-    axes, lines = drawn(mapped(5, 5))
-    (points,) = test_figures.artists(axes, "points")
+    axes, lines = contours_of(mapped(5, 5))
+    (points,) = artists(axes, "points")
     assert len(points.get_xdata()) == 25
     for level, path in zip(lines.levels, lines.get_paths(), strict=True):
         for velocity, amplitude in path.vertices:
             true = float(paper.large_amplitude_transverse(velocity, amplitude))
             assert abs(true - level) < 0.1  # half the distance of two contours
-    axes, lines = drawn(mapped(25, 25))
-    assert not test_figures.artists(axes, "points")
+    steep = mapped(5, 5)
+    steep["mu_macro"][:] = np.where(np.add.outer(np.arange(5), np.arange(5)) > 4, 1.0, 0.0)
+    assert not any(len(path.vertices) for path in contours_of(steep)[1].get_paths())
+
+
+def test_a_number_stands_on_the_contour_of_its_level_inside_the_frame():
+    axes, lines = contours_of(mapped(25, 25))
+    assert not artists(axes, "points")
     assert all(len(path.vertices) for path in lines.get_paths())
-
-
-def test_contours_of_a_steep_map_of_few_points_are_left_out():
-    dataset = mapped(5, 5)
-    dataset["mu_macro"][:] = np.where(np.add.outer(np.arange(5), np.arange(5)) > 4, 1.0, 0.0)
-    _, lines = drawn(dataset)
-    assert not any(len(path.vertices) for path in lines.get_paths())
-
-
-# Ticks of short ranges
+    axes.figure.draw_without_rendering()
+    numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
+    assert len(numbers) >= 3
+    frame = axes.get_window_extent()
+    for text in numbers:
+        velocity, amplitude = text.get_position()
+        there = float(paper.large_amplitude_transverse(velocity, amplitude))
+        assert there == pytest.approx(float(text.get_text()), abs=0.01)
+        box = text.get_window_extent()
+        assert frame.x0 <= box.x0 and box.x1 <= frame.x1
+        assert frame.y0 <= box.y0 and box.y1 <= frame.y1
 
 
 @pytest.mark.parametrize(
-    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1.0, 1.002)]
+    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1e-6, 1e6)]
 )
-@pytest.mark.parametrize("width", [1.2, 3.0])
+@pytest.mark.parametrize("width", [1.6, 3.0])
 def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
     with look.style():
         figure = look.new_figure(width, 1.5)
         axes = figure.subplots()
         axes.set(xscale="log", xlim=(low, high))
-        ticks.logarithmic(axes.xaxis)
+        panels.logarithmic(axes.xaxis)
         figure.draw_without_rendering()
-        drawn = (*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks())
         shown = [
             tick.label1.get_window_extent()
-            for tick in drawn
+            for tick in (*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks())
             if tick.label1.get_text() and low * 0.9999 <= tick.get_loc() <= high * 1.0001
         ]
         assert len(shown) >= 2
@@ -188,63 +200,163 @@ def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
         assert all(a.x1 < b.x0 for a, b in zip(shown, shown[1:], strict=False))
 
 
-# Numbers on contours
+# Groups of maps
+
+
+def test_a_group_is_drawn_from_its_own_datasets_with_one_scale_and_shared_labels():
+    data = {"s": stub.static("still"), "b": stub.spanning("second"), "a": stub.spanning("first")}
+    figure = drawing.draw("extended_motions", data)
+    titles = [axes.get_title(loc="left") for axes in maps_in(figure)]
+    assert [title.split()[-1] for title in titles] == ["second", "first"]
+    (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
+    assert bar.get_ylim() == (0, 1)
+    assert words(figure).count(r"$x_{0}/u_{\mathrm{lim}}$") == 1
+    data["c"] = stub.spanning("c", amplitude_label="phi0 / phi_lk(a/2)")
+    labels = [axes.get_ylabel() for axes in maps_in(drawing.draw("extended_motions", data))]
+    formulas = r"$x_{0}/u_{\mathrm{lim}}$", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"
+    assert (labels[0], labels[2]) == formulas
+
+
+def test_friction_below_zero_widens_the_scale_of_all():
+    negative = stub.spanning("a", shift=-0.234)
+    fills, contours, labels = groups.levels_of([stub.spanning(), negative])
+    assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
+    assert 0 in contours and 0 in labels
+    fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error
+    assert (fills[0], fills[-1]) == (0.0, 1.0)
+    figure = drawing.draw("extended_motions", {"a": negative, "b": stub.spanning("b")})
+    (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
+    middles = (bands.levels[1:] + bands.levels[:-1]) / 2
+    np.testing.assert_allclose(bands.get_facecolor()[:, :3], shown(middles), atol=0.03)
+    (lines,) = artists(figure.axes[0], "contours")
+    dashes = [style[1] is not None for style in lines.get_linestyle()]
+    assert dashes == [level < 0 for level in lines.levels]
+
+
+def test_points_that_are_not_converged_are_hatched_with_one_legend():
+    data = stub.motions(2)
+    for dataset in data.values():
+        dataset["converged"][2:4, 1] = 0
+        dataset["mu_macro"][2, 1] = np.nan
+    figure = drawing.draw("extended_motions", data)
+    hatched = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
+    assert [len(cells.get_paths()) for cells in hatched] == [2, 2]
+    assert words(figure).count("not converged") == 1
+
+
+def test_all_of_poissons_ratios_of_a_group_are_drawn():
+    def at_ratios(first):
+        other = first.assign(mu_macro=first.mu_macro - 0.01).assign_coords(poisson=0.3)
+        both = xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
+        change = both.mu_macro - both.mu_macro.isel(poisson=0)
+        return both.assign(mu_macro_change=change).assign_attrs(tolerance=1e-3)
+
+    two = at_ratios(stub.spanning("a"))
+    mixed = drawing.draw("extended_motions", {"a": two, "b": stub.spanning("b")})
+    heads = [axes.get_title(loc="left") for axes in maps_in(mixed)]
+    assert [r"$\nu = 0.3$" in head for head in heads] == [False, True, False]
+    lines = {"a": at_ratios(stub.static("a")), "b": stub.static("b")}
+    (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
+    # Up to three maps show the effect of the ratios; more have a map each.
+    for count, differences, drawn in ((2, 2, 4), (4, 0, 8)):
+        figure = drawing.draw("extended_motions", {f"m{k}": two for k in range(count)})
+        labels = [axes.get_ylabel() for axes in figure.axes]
+        assert sum("less that" in label for label in labels) == differences
+        assert len(maps_in(figure)) == drawn
+
+
+# Lines
+
+
+def test_lines_show_the_limit_and_marks_the_smallest_velocity():
+    slow = stub.static("line", velocity=(0.0, 1e-3))
+    loop = stub.static("loop", velocity=(1e-3,))
+    loop["converged"][3, 0] = 0
+    figure = drawing.draw("extended_static", {"a": slow, "b": loop})
+    (line,) = artists(figure, "limit")  # the loop has none
+    np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
+    first, done, failed = (bars.lines[0] for bars in figure.axes[0].containers)
+    np.testing.assert_array_equal(first.get_ydata(), slow["mu_macro"].sel(velocity=1e-3))
+    assert len(done.get_ydata()) == 6 and failed.get_markerfacecolor() == "white"
+    assert "marks: velocity $0.001$" in words(figure)
+
+
+def test_a_limit_from_theory_is_drawn_on_its_finer_axis_where_it_holds():
+    fine = np.linspace(0, 1.2, 50)
+    curve = ("amplitude_curve", np.maximum(1 - fine, 0))
+    data = stub.static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
+    data = data.assign_coords(amplitude_curve=fine)
+    for poisson, points in ((0.0, 50), (0.3, 7)):
+        figure = drawing.draw("extended_static", {"a": data.assign_coords(poisson=poisson)})
+        (line,) = artists(figure, "limit")
+        assert len(line.get_xdata()) == points
+
+
+def test_a_steady_motion_is_drawn_over_its_velocity():
+    velocity = np.geomspace(0.01, 100, 9)
+    force = paper.bore_forward(velocity)
+    steady = {name: ("velocity", part[1][0]) for name, part in stub.fake_map(force[None]).items()}
+    steady["mu_forward_theory"] = "velocity", force
+    coords = {"velocity": velocity, "poisson": 0.0}
+    data = stub.labelled(xr.Dataset(steady, coords, {"title": "spin", "group": "steady"}), "")
+    figure = drawing.draw("extended_steady", {"spin": data})
+    (line,) = artists(figure, "limit")
+    np.testing.assert_array_equal(line.get_ydata(), force)
+    assert figure.axes[0].get_xscale() == "log"
+
+
+# Texts from outside
+
+TITLES = ["costs $5", r"$\frac{", r"\frac{1}{2} $x$", "a_b^c {} % # & ~", "_first", "$$"]
+TITLES += ["it ends in \\", r"\$ and $"]
+
+
+def drawn_words(figure):
+    """All texts as they stand on the page: without escapes and formulas, on one line."""
+    texts = [text.get_text() for text in figure.findobj(Text)]
+    plain = [re.sub(r"(?<!\\)\$(?:\\\$|[^$])*(?<!\\)\$", "", text) for text in texts]
+    return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
+
+
+def test_titles_are_drawn_as_they_stand(tmp_path):
+    maps = {f"m{k}": stub.spanning(title) for k, title in enumerate(TITLES)}
+    figure = drawing.draw("extended_motions", maps)
+    assert set(TITLES) <= set(drawn_words(figure))
+    drawing.save(figure, tmp_path / "maps.pdf")
+    lines = {f"s{k}": stub.static(title) for k, title in enumerate(TITLES)}
+    (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert len(labels) == 8 and r"$\_$first" in labels
+
+
+@pytest.mark.filterwarnings("ignore:Glyph")
+def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
+    maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
+    figure = drawing.draw("extended_motions", maps)
+    drawing.save(figure, tmp_path / "maps.pdf")
+    figure.draw_without_rendering()
+    assert figure.get_tightbbox().x1 <= figure.get_size_inches()[0] + 0.02
 
 
 @pytest.mark.parametrize(
-    ("velocities", "amplitudes", "least"),
+    ("formula", "expected"),
     [
-        # too coarse for contours: dots, without numbers
-        *(pytest.param(n, n, 0, marks=pytest.mark.long) for n in (3, 4)),
-        (13, 9, 6),  # one on each map at least
+        (VELOCITY, r"$v_{0}/(\omega\,u_{\mathrm{lim}})$"),
+        ("phi0 / phi_lk(a/2)", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"),
+        ("", ""),
+        ("largest amplitude / u_lim, if a", r"largest amplitude / $u_{\mathrm{lim}}$, if a"),
     ],
 )
-def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes, least):
-    given = {f"m{k}": mapped(velocities, amplitudes) for k in range(6)}
-    for key, dataset in given.items():
-        dataset.attrs = {"title": key, "group": "motions"}
-    figure = drawing.draw("extended_motions", given)
-    figure.draw_without_rendering()
-    found = 0
-    for axes in test_figures.artists(figure, "map"):
-        (lines,) = test_figures.artists(axes, "contours")
-        frame = axes.get_window_extent()
-        numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
-        found += len(numbers)
-        for text in numbers:
-            box = text.get_window_extent()
-            assert frame.x0 <= box.x0 and box.x1 <= frame.x1
-            assert frame.y0 <= box.y0 and box.y1 <= frame.y1
-            for level, path in zip(lines.levels, lines.get_paths(), strict=True):
-                if f"{level:.1f}" == text.get_text():
-                    continue
-                pixels = axes.transData.transform(path.vertices)
-                turn = np.radians(text.get_rotation())
-                c, s = np.cos(turn), np.sin(turn)
-                middle = axes.transData.transform(text.get_position())
-                beside = (pixels - middle) @ np.array([[c, -s], [s, c]])
-                width = look.measurer(text.get_fontsize())(text.get_text()) * figure.dpi
-                height = text.get_fontsize() * figure.dpi / 72
-                over = (np.abs(beside) < [0.5 * width, 0.4 * height]).all(axis=1)
-                assert not over.any(), (level, text.get_text())
-    assert found >= least
+def test_formulas_become_math(formula, expected):
+    assert mathtext(formula) == expected
 
 
-def test_a_number_stands_on_the_contour_of_its_level():
-    """On lines of many points, too."""
-    axes, lines = drawn(mapped(25, 25))
-    axes.figure.draw_without_rendering()
-    numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
-    assert len(numbers) >= 3
-    for text in numbers:
-        velocity, amplitude = text.get_position()
-        there = float(paper.large_amplitude_transverse(velocity, amplitude))
-        assert there == pytest.approx(float(text.get_text()), abs=0.01)
+@pytest.mark.parametrize("name", [*MOTIONS])
+def test_labels_of_every_motion_can_be_set(name):
+    from matplotlib.mathtext import MathTextParser
 
-
-def test_lines_stand_out_from_their_bands():
-    for levels in (map_panel.FILL_LEVELS, small_maps.levels_of([groups.spanning(shift=-0.9)])[0]):
-        lines = np.arange(levels[0] + 0.1, 0.95, 0.1)
-        for level, ink in zip(lines, signed.inks(lines, levels), strict=True):
-            behind, line = (lab([c])[0, 0] for c in (shown([level], levels)[0], to_rgb(ink)))
-            assert abs(behind - line) > 25, level
+    motion = motion_named(name)
+    for label in (motion.velocity_label, motion.amplitude_label):
+        MathTextParser("path").parse(mathtext(label))

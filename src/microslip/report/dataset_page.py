@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from html import escape
 
 import xarray as xr
@@ -12,36 +12,42 @@ import yaml
 
 from microslip.sweeps.sealed_files import writing_beside
 
-# Quantities whose range tells at a glance whether a run came out well, where a dataset has them.
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
+"""Quantities whose ranges show at a glance whether a run came out well."""
 MOST_LINES = 40
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of an xarray.Dataset; lines: list of what its report says.
+    """Write the page of an xarray.Dataset; lines: those of its report.
 
     Raises CacheError as `sealed_files.writing_beside` does.
     """
-    # Text inside HTML, since the report of a run shows that in place.
-    text = escape(page(dataset, lines))
-    title = escape(dataset.attrs.get("title", ""))
+    # Text inside HTML, since Snakemake's report shows that in place.
+    text, title = escape(page(dataset, lines)), escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
     with writing_beside(path, sealed=True) as beside:
         beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the text of the page; it depends on its arguments alone."""
-    attributes = dict(dataset.attrs)
-    parts = [attributes.pop("title", ""), "", *lines[:MOST_LINES]]
+    """The text of the page; it depends on its arguments alone."""
+    shown = lines[:MOST_LINES]
     if len(lines) > MOST_LINES:
-        parts.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")
-    parts += ["", "Sizes", *(f"  {name}: {size}" for name, size in dataset.sizes.items())]
-    parts += ["", "Ranges", *_ranges(dataset), "", "Made by"]
+        shown.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")
+    sizes = [f"  {name}: {size}" for name, size in dataset.sizes.items()]
+    parts = [dataset.attrs.get("title", ""), "", *shown, "", "Sizes", *sizes, "", "Ranges"]
+    return "\n".join([*parts, *_ranges(dataset), "", "Made by", *provenance(dataset)])
+
+
+def provenance(
+    dataset: xr.Dataset, lines: Sequence[str] = (), without: Sequence[str] = ("title",)
+) -> Iterator[str]:
+    """Lines of text: the attributes but for some, then `lines`, then the configuration."""
+    attributes = {name: value for name, value in dataset.attrs.items() if name not in without}
     configuration = json.loads(attributes.pop("configuration", "{}"))
-    parts += [f"  {name}: {value}" for name, value in attributes.items()]
-    parts += ["", "Configuration, with all defaults"]
-    return "\n".join([*parts, yaml.safe_dump(configuration, default_flow_style=None, width=100)])
+    yield from (f"  {name}: {value}" for name, value in attributes.items())
+    yield from ("", *lines, *[""][: len(lines)], "Configuration, with all defaults")
+    yield yaml.safe_dump(configuration, default_flow_style=None, width=100)
 
 
 def _ranges(dataset: xr.Dataset) -> Iterator[str]:

@@ -60,7 +60,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        By the names of sweeps, see `requests`.
+        By the names of sweeps, see `explorer`.
     periods : dict of list
         Records of periods, of the sweeps that have some: a map each.
     certified : sequence of xarray.Dataset

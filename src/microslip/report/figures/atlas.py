@@ -1,11 +1,12 @@
-"""The atlas of stability: what became of every method in every case, square by square.
+"""The atlas of stability: the outcome of every method in every case, square by square.
 
-One block a quantity that is varied. Blocks side by side share the names of the methods. The page
-is laid out in millimetres, since every square must have room for its letter.
+There is one block of squares for each quantity that is varied. Blocks side by side share the names
+of the methods.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,23 +14,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
 
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.atlas_layout import (
-    GAP,
-    LINE,
-    MARGIN,
-    MM,
-    SIZE,
-    SWATCH,
-    WIDTH,
-    Block,
-    layout,
-)
-from microslip.report.figures.data import require
+from microslip.report.figures.data import columns
 
-VARIABLES = ("method", "outcome", "case_axis", "case_label", "axis", "axis_label", "axis_note")
 OUTCOMES = {
     1: ("converged", "#CDE7DC", "\N{CHECK MARK}", "#00664A", "as near the reference as it claims"),
     2: ("slow", "#F0B84B", "S", look.BLACK, "gives up within its budget, and says so"),
@@ -39,31 +30,70 @@ OUTCOMES = {
 """Outcomes by their code: name, fill, sign and its colour, meaning. The fills darken from good to
 bad, so that they differ in grey as well."""
 BLANK = "blank: the method does not apply"
+SIZES = ((27, 0.15), (33, 0.15), (33, 0.12), (40, 0.12), (40, 0.105))
+"""Squares and gaps in a row of blocks, and the height of a square in inches, best first."""
+WIDTH, HEIGHT = 6.0, 9.7
+"""Width of all squares in a row, and the height of the page, in inches."""
+NARROWEST = 5
+"""Squares as wide as a heading needs."""
+HEAD, FOOT = 0.75, 0.95
+"""Height in inches of the headings of a row of blocks, and of the legend."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """One axis of the atlas: its title and a note, and its cases.
+
+    outcome: codes, shape (methods, cases).
+    """
+
+    title: str
+    note: str
+    labels: list[str]
+    outcome: np.ndarray
+
+    @property
+    def width(self) -> int:
+        """Number of squares that it is wide, with its heading and the gap after it."""
+        return max(len(self.labels), NARROWEST) + 1
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the atlas, with so many blocks side by side that it fits the page."""
-    require(name, "stability", dataset, VARIABLES)
+    """Draw the atlas: rows of blocks, each with the methods that apply to one of them."""
     methods, blocks = _read(name, dataset)
-    meanings = [f"{name}: {meaning}" for name, _, _, _, meaning in OUTCOMES.values()]
-    plan = layout(methods, blocks, [*meanings, BLANK])
-    page = Page(look.new_figure(WIDTH * MM, plan.height * MM, layout=None), plan.height)
-    top = MARGIN
-    for band in plan.bands:
-        start, x = top, plan.left
-        top += band.heading_height
-        names = [methods[i] for i in band.rows]
-        for block in band.blocks:
-            axes = page.axes(x, top, plan.column * len(block.labels), plan.row * len(names))
-            _squares(axes, block.outcome[band.rows])
-            _labels(axes, block, names, first=block is band.blocks[0])
-            page.text(x, start, block.title, fontsize=look.HEADING)
-            page.text(x, start + block.title_height, block.note, color=look.GREY)
-            x += block.width + GAP
-        top += plan.row * len(names) + GAP
-    corner = (x + GAP, start) if plan.beside else (MARGIN, top)
-    _legend(page, *corner, plan.legend)
-    return page.figure
+    for squares, row in SIZES:
+        bands = _bands(blocks, squares)
+        used = [_methods_of(band) for band in bands]
+        height = HEAD * len(bands) + row * sum(map(len, used)) + FOOT
+        if height <= HEIGHT:
+            break
+    figure = look.new_figure(look.DOUBLE, height)
+    figure.set_layout_engine("constrained", w_pad=0.0, wspace=0.0, rect=(0.01, 0.0, 0.98, 1.0))
+    grid = figure.add_gridspec(len(bands), squares, height_ratios=[len(rows) for rows in used])
+    letters = iter(look.letters(len(blocks)))
+    for k, (band, rows) in enumerate(zip(bands, used, strict=True)):
+        start = 0
+        for block in band:
+            axes = figure.add_subplot(grid[k, start : start + len(block.labels)])
+            _squares(axes, block.outcome[rows])
+            names = [methods[i] for i in rows] if not start else [""] * len(rows)
+            _labels(axes, block, names, WIDTH / squares)
+            _head(axes, block, next(letters), WIDTH / squares)
+            start += block.width
+    figure.align_xlabels()
+    figure.align_titles()
+    _legend(figure)
+    return figure
+
+
+def _bands(blocks: list[Block], squares: int) -> list[list[Block]]:
+    """The blocks in their order, in rows of at most so many squares."""
+    bands: list[list[Block]] = [[]]
+    for block in blocks:
+        if bands[-1] and sum(one.width for one in [*bands[-1], block]) > squares + 1:
+            bands.append([])
+        bands[-1].append(block)
+    return bands
 
 
 def _read(name: str, dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
@@ -73,97 +103,76 @@ def _read(name: str, dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
         raise ValueError(f"figure {name}: outcome {unknown[0]} is none of 0 to {max(OUTCOMES)}")
     methods = dataset["method"].values.astype(str)
     first = np.argsort(methods != "shipped", kind="stable")
-    of_case = dataset["case_axis"].values.astype(str)
-    axes = dataset["axis"].values.astype(str)
-    if strays := sorted(set(of_case) - set(axes)):
+    of_case, labels = (part.astype(str) for part in columns(dataset, "case_axis", "case_label"))
+    if strays := sorted(set(of_case) - set(dataset["axis"].values.astype(str))):
         raise ValueError(
             f"figure {name}: case_axis {str(strays[0])!r} is not on the dimension 'axis'"
         )
     blocks = []
-    for index, axis in enumerate(axes):
-        mine = np.flatnonzero(of_case == axis)
-        if not mine.size:
-            continue
-        title, note = (str(dataset[f"axis_{n}"].values[index]) for n in ("label", "note"))
-        labels = dataset["case_label"].values.astype(str)[mine].tolist()
-        blocks.append(Block(title, note, labels, outcome[np.ix_(first, mine)]))
+    for axis, title, note in zip(*columns(dataset, "axis", "axis_label", "axis_note"), strict=True):
+        own = np.flatnonzero(of_case == str(axis))
+        if own.size:
+            cases = labels[own].tolist(), outcome[np.ix_(first, own)]
+            blocks.append(Block(str(title), str(note), *cases))
     if not blocks or not methods.size:
         raise ValueError(f"figure {name}: the dataset holds no cases or no methods")
     return methods[first].tolist(), blocks
 
 
-class Page:
-    """A figure on which things are placed in millimetres from the upper left corner."""
-
-    def __init__(self, figure: Figure, height: float) -> None:
-        self.figure, self.height = figure, height
-
-    def axes(self, x: float, y: float, width: float, height: float) -> Axes:
-        """Axes with that upper left corner and that size."""
-        bottom = 1.0 - (y + height) / self.height
-        return self.figure.add_axes((x / WIDTH, bottom, width / WIDTH, height / self.height))
-
-    def text(self, x: float, y: float, text: str, **ink: Any) -> None:
-        """A text that hangs from that point."""
-        ink = {"va": "top", "fontsize": SIZE, "linespacing": 1.1, **ink}
-        self.figure.text(x / WIDTH, 1.0 - y / self.height, text, **ink)
+def _methods_of(band: list[Block]) -> np.ndarray:
+    """Indices of the shipped method, and of those that apply to a case of a block."""
+    used = np.any([(block.outcome != 0).any(axis=1) for block in band], axis=0)
+    used[0] = True
+    return np.flatnonzero(used)
 
 
 def _squares(axes: Axes, outcome: np.ndarray) -> None:
     """Draw one square a method and case, with its sign; outcome: shape (methods, cases)."""
-    axes.pcolormesh(
-        np.ma.masked_equal(outcome, 0),
-        cmap=ListedColormap([fill for _, fill, *_ in OUTCOMES.values()]),
-        vmin=0.5,
-        vmax=len(OUTCOMES) + 0.5,
-        edgecolors="white",
-        linewidth=0.8,
-        gid="outcome",
-    )
+    fills = ListedColormap([fill for _, fill, *_ in OUTCOMES.values()])
+    ink: look.Ink = {"vmin": 0.5, "vmax": len(OUTCOMES) + 0.5, "edgecolors": "white", "lw": 0.8}
+    axes.pcolormesh(np.ma.masked_equal(outcome, 0), cmap=fills, gid="outcome", **ink)
     axes.invert_yaxis()
     for (i, j), code in np.ndenumerate(outcome):
         if code:
-            _sign(axes, j + 0.5, i + 0.5, code)
+            _, _, sign, color, _ = OUTCOMES[code]
+            text: look.Ink = {"color": color, "fontsize": look.SMALLEST, "ha": "center"}
+            weight = "normal" if code == 1 else "bold"
+            axes.text(j + 0.5, i + 0.5, sign, va="center_baseline", fontweight=weight, **text)
     for spine in axes.spines.values():
         spine.set(color=look.PALE, linewidth=0.5)
 
 
-def _labels(axes: Axes, block: Block, names: list[str], first: bool) -> None:
-    """Write the cases above the squares and, at the first block of a band, the methods beside."""
+def _labels(axes: Axes, block: Block, names: list[str], square: float) -> None:
+    """Write the cases above the squares and the methods beside them."""
     cases = len(block.labels)
-    axes.set_xticks(np.arange(cases) + 0.5, block.labels, fontsize=SIZE)
-    shown = names if first else [""] * len(names)
-    axes.set_yticks(np.arange(len(names)) + 0.5, shown, fontsize=SIZE)
+    upright = max(look.width(label, look.SMALLEST) for label in block.labels) > square - 0.04
+    axes.set_xticks(np.arange(cases) + 0.5, block.labels, rotation=90 if upright else 0)
+    axes.set_yticks(np.arange(len(names)) + 0.5, names)
     axes.tick_params(length=0, pad=1.5, top=False, labeltop=True, labelbottom=False)
-    if block.upright:
-        axes.tick_params(axis="x", labelrotation=90)
-    if names[0] == "shipped":  # what the rest is compared with stands out
-        frame: dict[str, Any] = {
-            "facecolor": "none",
-            "edgecolor": look.BLACK,
-            "linewidth": 1.0,
-            "zorder": 4,
-        }
-        axes.add_patch(Rectangle((0, 0), cases, 1, clip_on=False, **frame))
-        axes.get_yticklabels()[0].set_fontweight("bold")
+    axes.tick_params(labelsize=look.SMALLEST)
+    # The shipped method, which the others are compared with, stands out.
+    frame: look.Ink = {"fill": False, "ec": look.BLACK, "zorder": 4, "clip_on": False}
+    axes.add_patch(Rectangle((0, 0), cases, 1, **frame))
+    axes.get_yticklabels()[0].set_fontweight("bold")
 
 
-def _sign(axes: Axes, x: float, y: float, code: int) -> None:
-    """Write the sign of an outcome into its square."""
-    _, _, sign, color, _ = OUTCOMES[code]
-    weight = "normal" if code == 1 else "bold"
-    axes.text(
-        x, y, sign, color=color, fontsize=SIZE, fontweight=weight, ha="center", va="center_baseline"
-    )
+def _head(axes: Axes, block: Block, letter: str, square: float) -> None:
+    """Write the letter, the title and the note of a block above its cases."""
+    room = (block.width - 1) * square
+    panels.letter(axes, letter, block.title, room)
+    axes.xaxis.set_label_position("top")
+    note = look.wrapped(block.note, room, look.SMALLEST)
+    axes.set_xlabel(note, loc="left", color=look.GREY, fontsize=look.SMALLEST)
 
 
-def _legend(page: Page, x: float, y: float, lines: list[str]) -> None:
+def _legend(figure: Figure) -> None:
     """A square of every outcome with its sign and its meaning."""
-    for code, text in enumerate(lines, start=1):
-        axes = page.axes(x, y, SWATCH, LINE)
-        axes.set(xlim=(0, 1), ylim=(1, 0), xticks=[], yticks=[], label="<legend>")
-        if code in OUTCOMES:
-            axes.set_facecolor(OUTCOMES[code][1])
-            _sign(axes, 0.5, 0.5, code)
-        page.text(x + SWATCH + 1.5, y, text)
-        y += LINE * (text.count("\n") + 1) + 1.2
+    handles: list[Any] = []
+    labels = []
+    for name, fill, sign, color, meaning in OUTCOMES.values():
+        mark = Line2D([], [], marker=rf"$\bf{{{sign}}}$", color=color, ls="none", ms=5.0, mew=0.0)
+        handles.append((Patch(fc=fill), mark))
+        labels.append(f"{name}: {meaning}")
+    blank = Patch(fc="white", ec=look.PALE)
+    place: look.Ink = {"loc": "outside lower left", "handlelength": 1.6, "handleheight": 1.1}
+    figure.legend([*handles, blank], [*labels, BLANK], fontsize=look.SMALLEST, **place)

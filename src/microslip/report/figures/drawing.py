@@ -15,6 +15,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,37 +28,41 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN: dict[str, tuple[str, ...]] = {
-    "fig1_force_history": ("history", "transverse"),
-    "fig2_transverse_map": ("maps", "transverse"),
-    "fig3_traction_field": ("field", "continuous_bore"),
-    "fig4_continuous_bore": ("steady", "continuous_bore"),
-    "fig5_transients": ("transients", "continuous_bore"),
-    "fig6_bore_map": ("maps", "bore"),
-    "poisson": ("poisson", "transverse", "bore"),
-    "drift_maps": ("drift", "drift_transverse", "drift_bore"),
-    "drives": ("drives", "transverse", "drive_force", "drive_spring", "drive_body"),
-    "pairs": ("pairs", "one_spring", "pair_spring", "pair_force"),
-    "accuracy_profile": ("profile", "accuracy_cost"),
-    "accuracy_vs_cost": ("work_precision", "accuracy_cost"),
-    "accuracy_vs_work": ("work_precision", "accuracy_cost"),
-    "model_map": ("model_map", "accuracy_cost"),
-    "scaling": ("scaling", "accuracy_cost"),
-    "stability_atlas": ("atlas", "stability"),
-    "claims_static": ("claims_static", "claims"),
-    "claims_patches": ("claims_patches", "claims"),
-    "propulsion": ("propulsion", "propulsion"),
+    "fig1_force_history": ("history.draw", "transverse"),
+    "fig2_transverse_map": ("maps.draw", "transverse"),
+    "fig3_traction_field": ("field.draw", "continuous_bore"),
+    "fig4_continuous_bore": ("steady.curves", "continuous_bore"),
+    "fig5_transients": ("steady.transients", "continuous_bore"),
+    "fig6_bore_map": ("maps.draw", "bore"),
+    "poisson": ("poisson.draw", "transverse", "bore"),
+    "drift_maps": ("drift.draw", "drift_transverse", "drift_bore"),
+    "drives": ("drives.drives", "transverse", "drive_force", "drive_spring", "drive_body"),
+    "pairs": ("drives.pairs", "one_spring", "pair_spring", "pair_force"),
+    "accuracy_profile": ("accuracy.profile", "accuracy_cost"),
+    "accuracy_vs_cost": ("work_precision.draw", "accuracy_cost"),
+    "accuracy_vs_work": ("work_precision.draw", "accuracy_cost"),
+    "model_map": ("model_map.draw", "accuracy_cost"),
+    "scaling": ("accuracy.scaling", "accuracy_cost"),
+    "stability_atlas": ("atlas.draw", "stability"),
+    "claims_static": ("claims.static", "claims"),
+    "claims_patches": ("claims.patches", "claims"),
+    "propulsion": ("propulsion.draw", "propulsion"),
+    "fit": ("fit.draw", "fit"),
 }
-"""Every figure: the module beside this one that draws it, and the datasets it is drawn from."""
-_MODULES = {name: module for name, (module, *_) in _DRAWN.items()} | {"fit": "fit"}
-FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
-"""Every figure and its datasets, but for those of groups in `extended`, which have the names that
-`figure_of` gives and all the datasets of their group, and of certified maps."""
+"""Every figure: the module beside this one and its function that draw it, and its datasets."""
+
+ON_DEMAND = {"fit": ("fit",)}
+"""Figures that commands draw from their own results, not the workflow, and their datasets."""
+FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
+"""Figures of the workflow and their datasets.
+
+Two kinds of figures have names of the configuration and are not listed: those of groups in
+`extended`, see `figure_of`, and those of certified maps.
+"""
 
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
 """Figures of the paper by their numbers: fig1 to fig6."""
 
-ON_DEMAND = {"fit": ("fit",)}
-"""Figures that commands draw from their own results, not the workflow, and their datasets."""
 CERTIFIED = "certified_"
 """Prefix of the names of certified maps; a figure of one has the name of its dataset."""
 MOST_POISSONS = 4
@@ -67,16 +72,11 @@ FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
-"""File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
-and the name of the one that says what the figure was made from."""
-PROVENANCE: tuple[str, ...] = (
-    "title",
-    "references",
-    "microslip_version",
-    "source_digest",
-    "results_digest",
-)
-PROVENANCE += ("configuration", "library_versions")
+"""Formats of `save`: metadata left out, since they hold dates and versions, and the entry that says
+what the figure was made from."""
+PROVENANCE = ["title", "references", "microslip_version", "source_digest", "results_digest"]
+PROVENANCE += ["configuration", "library_versions"]
+"""Attributes of a dataset that say what made it."""
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
@@ -89,52 +89,80 @@ def figure_of(group: str) -> str:
 def modules_of(name: str) -> tuple[str, ...]:
     """Paths inside the package of the modules that draw a figure, besides what they import."""
     folder = "report/figures"
-    return f"{folder}/drawing.py", f"{folder}/{_module_of(name)}.py"
+    return f"{folder}/drawing.py", f"{folder}/{_function_of(name)[0]}.py"
 
 
-def _module_of(name: str) -> str:
-    if name.startswith(CERTIFIED):
-        return "certified"
-    return _MODULES.get(name, "groups")
+def _function_of(name: str) -> tuple[str, str]:
+    """The module and the function that draw a figure."""
+    other = "certified.draw" if name.startswith(CERTIFIED) else "groups.draw"
+    module, _, function = _DRAWN.get(name, (other,))[0].partition(".")
+    return module, function
 
 
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
-    name: a key of `FIGURES` or `ON_DEMAND`, what `figure_of` gives for a group, or the name of a
-    certified map. datasets: at
-    least those that these list, by their key, or all of that group; others are ignored. Raises
-    ValueError if the name is unknown, a dataset is of another motion, or a dataset, variable or
-    dimension the figure needs is missing. The figure belongs to no window and no global state.
+    Parameters
+    ----------
+    name : str
+        A key of `FIGURES` or `ON_DEMAND`, the value of `figure_of` for a group, or the name of a
+        certified map.
+    datasets : dict of xarray.Dataset
+        The datasets of the figure by their keys, or all datasets of the group. Others are ignored.
+
+    Returns
+    -------
+    Figure
+        It belongs to no window and no global state.
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown, a dataset has another motion, or a dataset or variable is missing.
     """
     keys = _keys_of(name, datasets)
     missing = [key for key in keys if key not in datasets]
     if missing:
-        given = ", ".join(map(repr, datasets)) or "none"
-        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
+        present = ", ".join(map(repr, datasets)) or "none"
+        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {present}")
     for key in keys:
-        motion, found = MOTION_OF_SWEEP.get(key), datasets[key].attrs.get("motion")
-        if motion and found not in (motion, None):
-            raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {motion!r}")
+        motion, other = MOTION_OF_SWEEP.get(key), datasets[key].attrs.get("motion")
+        if motion and other not in (motion, None):
+            raise ValueError(f"figure {name}: dataset {key!r} is of {other!r}; allowed: {motion!r}")
     from microslip.report.figures.style import style
 
-    module = importlib.import_module(f"microslip.report.figures.{_module_of(name)}")
+    module, function = _function_of(name)
+    draw_panels = getattr(importlib.import_module(f"microslip.report.figures.{module}"), function)
     with style():
-        figure = module.draw(name, *(datasets[key] for key in keys))
-        if (layout := figure.get_layout_engine()) is not None:
-            for _ in range(2):  # it settles, and is then fixed: every save gives the same
-                layout.execute(figure)
-            figure.set_layout_engine("none")
+        try:
+            figure = draw_panels(name, *(datasets[key] for key in keys))
+        except KeyError as error:
+            raise _missing_variable(name, {key: datasets[key] for key in keys}, error) from error
+        for _ in range(2):  # the second layout settles; then it is fixed: every save is the same
+            figure.get_layout_engine().execute(figure)
+        figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
     figure.made_from = made_from(datasets[key] for key in keys)
     return figure
 
 
+def _missing_variable(
+    name: str, datasets: Mapping[str, xr.Dataset], error: KeyError
+) -> KeyError | ValueError:
+    """The error of xarray for a variable that a dataset lacks, with the name of the dataset."""
+    variable = re.match(r"No variable named '(\w+)'", str(error.args[0]))
+    lacking = [k for k, data in datasets.items() if variable and variable[1] not in data.variables]
+    if not variable or not lacking:
+        return error
+    keys = " or ".join(map(repr, lacking))
+    return ValueError(f"figure {name}: dataset {keys} has no variable {variable[1]!r}")
+
+
 def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
     """Keys of the datasets that a figure is drawn from."""
-    if known := FIGURES.get(name) or ON_DEMAND.get(name):
-        return known
+    if name in _DRAWN:
+        return _DRAWN[name][1:]
     if name.startswith(CERTIFIED):
         return (name,)
     groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
@@ -156,9 +184,9 @@ def made_from(datasets: Iterable[xr.Dataset]) -> str:
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Write a figure as `.png` (300 dpi) or `.pdf`, whole or not at all, and return its path.
 
-    Its metadata say what made it, see `made_from`. The same figure gives the same bytes: no date is
-    written. The folder is made if it is not there. Raises CacheError, one line that says what to
-    do, on a full disk, a read-only folder and the like.
+    The metadata say what made it, see `made_from`. Equal figures give equal bytes: no date is
+    written. A missing folder is made. Raises CacheError, one line with the remedy, on a full disk,
+    a read-only folder and the like.
     """
     from microslip.report.figures.style import style
 
@@ -169,21 +197,5 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     plain, key = FORMATS[kind]
     metadata = plain | {key: getattr(figure, "made_from", None)}
     with writing_beside(path, sealed=True) as beside, style():
-        _write(figure, kind, beside, metadata)
+        figure.savefig(beside, format=kind, metadata=metadata)
     return path
-
-
-def _write(figure: Figure, kind: str, path: Path, metadata: Mapping[str, str | None]) -> None:
-    """Write a figure as `savefig` does, but without a second layout."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
-    canvas, dpi = figure.canvas, figure.dpi
-    try:
-        if kind == "png":
-            FigureCanvasAgg(figure).print_png(path, metadata=metadata)
-        else:
-            FigureCanvasPdf(figure).print_pdf(path, metadata=metadata)
-    finally:
-        figure.set_canvas(canvas)
-        figure.dpi = dpi

@@ -1,4 +1,5 @@
-"""Drives of a contact: friction over velocity under each drive, and a mass on a spring."""
+"""Drives of a contact: friction over velocity under each drive, a mass on a spring, and two
+contacts that work against each other."""
 
 from __future__ import annotations
 
@@ -10,85 +11,112 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import DRIVES, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures import ticks
-from microslip.report.figures.cuts import computed
-from microslip.report.figures.data import at_one_poisson, require
+from microslip.report.figures.data import at_one_poisson, columns, require
+from microslip.theory.drift import antiphase_drift
 
-NEEDED = {
-    "transverse": ("velocity", "amplitude", "mu_macro"),
-    "drive_force": ("velocity", "velocity_error", "force", "converged"),
-    "drive_spring": ("velocity", "stiffness", "mu_macro", "mu_macro_error", "converged"),
-    "drive_body": ("mass", "stiffness", "mu_macro", "mu_macro_error", "converged"),
-}
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
 """Colour and marker of the points of each stiffness, from the softest on."""
 GOOD = 0.01
 """A share of the friction at a constant velocity within which that is a good model."""
+AS_A_VELOCITY = 1e5
+"""Stiffness from which on a spring is labelled as a constant velocity."""
+MARGIN = 1.1
+"""Free space beside the first and the last velocity, as a factor, so that no mark is cut."""
+MU = ("mu_macro", "mu_macro_error", "converged")
 
 
-def draw(name: str, *datasets: xr.Dataset) -> Figure:
+def drives(
+    name: str, moved: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
+) -> Figure:
     """Draw friction over the mean velocity, and over the mass at one velocity."""
-    given = dict(zip(NEEDED, datasets, strict=True))
-    for key, dataset in given.items():
-        require(name, key, dataset, NEEDED[key])
+    require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
-    _over_velocity(left, given)
-    _over_mass(right, given)
+    _over_velocity(left, moved, force, spring)
+    _over_mass(right, moved, body)
     return figure
 
 
-def _over_velocity(axes: Axes, given: dict[str, xr.Dataset]) -> None:
+def pairs(name: str, *datasets: xr.Dataset) -> Figure:
+    """Draw friction over the mean velocity, of one contact and of two in antiphase."""
+    one, pair, force = map(_one, datasets)
+    figure = look.new_figure(look.DOUBLE, 3.1)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    _springs(left, one, "velocity")
+    _springs(right, pair, "velocity")
+    _force(right, force)
+    forces = np.linspace(0.0, 1.0, 200, endpoint=False)
+    form = antiphase_drift(forces, float(force["amplitude"]))
+    ink: look.Ink = {"color": look.VERMILLION, "lw": 1.0, "ls": "--", "gid": "antiphase"}
+    right.plot(form, forces, label="its closed form", **ink)
+    velocity = pair["velocity"].values
+    amplitude = f"amplitude {float(pair['amplitude']):g}, along the motion"
+    panels.letter(left, "a", f"one contact, {amplitude}")
+    panels.letter(right, "b", "two in antiphase")
+    for axes in (left, right):
+        _logarithmic(axes, velocity[0] / MARGIN, velocity[-1] * MARGIN)
+        axes.set_xlabel(look.axis(VELOCITY["transverse"]))
+    panels.unit_range(left)
+    left.set_ylabel(look.FRICTION_IN_TWO_LINES)
+    panels.legend_of_figure(figure, right.get_legend_handles_labels()[0])
+    return figure
+
+
+def _over_velocity(axes: Axes, moved: xr.Dataset, force: xr.Dataset, spring: xr.Dataset) -> None:
     """All drives at the amplitude of the sweeps."""
-    springs = _one(given["drive_spring"])
+    springs = _one(spring)
     amplitude = float(springs["amplitude"])
-    moved = _moved(given, amplitude)
-    axes.plot(
-        *(moved["velocity"], moved["mu_macro"]),
-        color=look.BLACK,
-        linewidth=1.3,
-        label="constant velocity",
-        gid="velocity",
-    )
-    for part, (color, marker) in _by_stiffness(springs):
-        label = f"spring, ${DRIVES['stiffness'].latex} = {look.number(float(part['stiffness']))}$"
-        mu, error, good = (part[k].values for k in ("mu_macro", "mu_macro_error", "converged"))
-        ink: dict[str, Any] = {"color": color, "marker": marker, "markerfacecolor": "white"}
-        computed(axes, part["velocity"].values, mu, error, good, label, **ink)
-    pulled = _one(given["drive_force"])
-    pulled = pulled.isel(force=(pulled["velocity"].values > 0.0))
-    errors = np.zeros(pulled["force"].size)
-    place, force, good = (pulled[k].values for k in ("velocity", "force", "converged"))
-    computed(axes, place, force, errors, good, "constant force", color=look.VERMILLION)
-    velocity = moved["velocity"].values
-    axes.set_xscale("log")
-    axes.set(xlim=(velocity[velocity > 0.0][0], velocity[-1]))
-    ticks.logarithmic(axes.xaxis)
-    axes.set_xlabel(look.axis(VELOCITY["transverse"]))
-    look.unit_range(axes)
-    axes.set_ylabel(look.FRICTION.replace("  (", "\n("))
-    look.legend_above(axes, "a", f"amplitude {amplitude:g}, sideways")
+    velocity, mu = columns(_moved(moved, amplitude), "velocity", "mu_macro")
+    ink: look.Ink = {"color": look.BLACK, "lw": 1.3, "gid": "velocity"}
+    axes.plot(velocity, mu, label="constant velocity", **ink)
+    _springs(axes, springs, "velocity", mfc="white")
+    _force(axes, _one(force))
+    _logarithmic(axes, velocity[velocity > 0.0][0], velocity[-1])
+    axes.set(xlabel=look.axis(VELOCITY["transverse"]), ylabel=look.FRICTION_IN_TWO_LINES)
+    panels.unit_range(axes)
+    panels.legend_above(axes, "a", f"amplitude {amplitude:g}, sideways")
 
 
-def _over_mass(axes: Axes, given: dict[str, xr.Dataset]) -> None:
-    """A mass on springs at one velocity, and what a constant velocity gives there."""
-    bodies = _one(given["drive_body"])
+def _over_mass(axes: Axes, moved: xr.Dataset, body: xr.Dataset) -> None:
+    """A mass on springs at one velocity, and the friction at a constant velocity."""
+    bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
-    moved = float(_at(_moved(given, amplitude), "velocity", velocity)["mu_macro"])
-    axes.axhspan(moved * (1 - GOOD), moved * (1 + GOOD), color=look.PALE, label="within 1 %")
-    axes.axhline(moved, color=look.BLACK, linewidth=1.3, label="constant velocity", gid="velocity")
-    for part, (color, marker) in _by_stiffness(bodies):
-        label = f"${DRIVES['stiffness'].latex} = {look.number(float(part['stiffness']))}$"
-        mu, error, good = (part[k].values for k in ("mu_macro", "mu_macro_error", "converged"))
-        computed(axes, part["mass"].values, mu, error, good, label, color=color, marker=marker)
-    axes.set_xscale("log")
-    axes.set(xlim=(bodies["mass"].values[0], bodies["mass"].values[-1]))
-    ticks.logarithmic(axes.xaxis)
-    axes.set_xlabel(look.axis(DRIVES["mass"]))
-    axes.set_ylabel(look.FRICTION.replace("  (", "\n("))
+    mu = float(_at(_moved(moved, amplitude), "velocity", velocity)["mu_macro"])
+    axes.axhspan(mu * (1 - GOOD), mu * (1 + GOOD), color=look.PALE, label="within 1 %")
+    axes.axhline(mu, color=look.BLACK, lw=1.3, label="constant velocity", gid="velocity")
+    _springs(axes, bodies, "mass", name="")
+    mass = bodies["mass"].values
+    _logarithmic(axes, mass[0], mass[-1])
+    axes.set(xlabel=look.axis(DRIVES["mass"]), ylabel=look.FRICTION_IN_TWO_LINES)
     at = look.conditions([(VELOCITY["transverse"].latex, velocity)])
-    look.legend_above(axes, "b", f"a mass on a spring, {at}", ncols=3)
+    panels.legend_above(axes, "b", f"a mass on a spring, {at}", ncols=3)
+
+
+def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", **ink: Any) -> None:
+    """Friction on every spring; the stiffest may stand for a constant velocity."""
+    for k, (color, marker) in zip(range(dataset.sizes["stiffness"]), SPRINGS, strict=False):
+        part = dataset.isel(stiffness=k)
+        stiffness = float(part["stiffness"])
+        label = f"{name}${DRIVES['stiffness'].latex} = {look.number(stiffness)}$"
+        style: look.Ink = {"color": color, "marker": marker, **ink}
+        if stiffness >= AS_A_VELOCITY:
+            label, style = "constant velocity", {}
+        panels.computed(axes, *columns(part, dim, *MU), label=label, **style)
+
+
+def _force(axes: Axes, dataset: xr.Dataset) -> None:
+    """The mean velocities under constant forces, where the contact moves."""
+    moving = dataset.isel(force=(dataset["velocity"].values > 0.0))
+    velocity, force, done = columns(moving, "velocity", "force", "converged")
+    label, exact = "constant force", np.zeros(force.size)
+    panels.computed(axes, velocity, force, exact, done, label=label, color=look.VERMILLION)
+
+
+def _logarithmic(axes: Axes, low: float, high: float) -> None:
+    axes.set(xscale="log", xlim=(low, high))
+    panels.logarithmic(axes.xaxis)
 
 
 def _one(dataset: xr.Dataset) -> xr.Dataset:
@@ -96,18 +124,13 @@ def _one(dataset: xr.Dataset) -> xr.Dataset:
     return at_one_poisson(dataset)[0].squeeze()
 
 
-def _by_stiffness(dataset: xr.Dataset) -> list[tuple[xr.Dataset, tuple[str, str]]]:
-    parts = [dataset.isel(stiffness=k) for k in range(dataset.sizes["stiffness"])]
-    return list(zip(parts, SPRINGS, strict=False))
-
-
-def _moved(given: dict[str, xr.Dataset], amplitude: float) -> xr.Dataset:
-    """The cut of the map of the paper at an amplitude."""
-    return _at(at_one_poisson(given["transverse"])[0], "amplitude", amplitude)
+def _moved(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
+    """The cut of the paper's map at an amplitude."""
+    return _at(at_one_poisson(transverse)[0], "amplitude", amplitude)
 
 
 def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """A dataset at a value that it has, but for rounding; raises ValueError if it has not."""
+    """A dataset at one of its values, up to rounding. Raises ValueError if it has no such value."""
     same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
     if not same.size:
         raise ValueError(f"the sweep transverse has no {dim} {value:g}, as the drives have")

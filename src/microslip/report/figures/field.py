@@ -9,99 +9,60 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from matplotlib.ticker import MultipleLocator
 from matplotlib.tri import Triangulation
 from scipy.interpolate import griddata
 
 from microslip.config.quantities import FORWARD, LATERAL, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, require
-
-VARIABLES = (
-    "field_lateral_position",
-    "field_forward_position",
-    "field_traction_lateral",
-    "field_traction_forward",
-    "field_bound",
-    "field_velocity",
-    "field_centre_lateral",
-)
+from microslip.report.figures.data import at_one_poisson, columns
 
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
-
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 """Light enough everywhere for black arrows."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw traction arrows over the friction bound, lateral across and forward up."""
-    require(name, "continuous_bore", dataset, VARIABLES)
     dataset, _ = at_one_poisson(dataset)
-    x, y, tx, ty, bound = (dataset[variable].values for variable in VARIABLES[:5])
-    centre = float(dataset["field_centre_lateral"])
-
+    x, y = columns(dataset, "field_lateral_position", "field_forward_position")
+    tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
+    bound, centre = dataset["field_bound"].values, float(dataset["field_centre_lateral"])
     figure = look.new_figure(look.SINGLE, 3.95)
     axes = figure.add_subplot(aspect="equal")
-    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=look.BLACK, linewidth=0.9))
-    shade = _background(axes, x, y, bound)
-    bar = figure.colorbar(shade, ax=axes, orientation="horizontal", pad=0.02, aspect=32)
-    bar.set_label(r"friction bound  $\mu p\,a^2/(\mu F_z)$")
-
-    arrows = axes.quiver(
-        *lattice(x, y, tx, ty, centre=centre),
-        angles="xy",
-        scale_units="xy",
-        scale=bound.max() / (1.15 * SPACING),
-        width=0.006,
-        headwidth=3.6,
-        headlength=4.2,
-        headaxislength=3.8,
-        minlength=0.6,
-        pivot="mid",
-        color=look.BLACK,
-        gid="traction",
-    )
+    axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
+    below: look.Ink = {"orientation": "horizontal", "aspect": 32}
+    label = r"friction bound  $\mu p\,a^2/(\mu F_z)$"
+    panels.colour_bar(_background(axes, x, y, bound), axes, label, **below)
+    arrow: look.Ink = {"width": 0.006, "headwidth": 3.6, "headlength": 4.2, "headaxislength": 3.8}
+    arrow |= {"angles": "xy", "scale_units": "xy", "minlength": 0.6, "pivot": "mid"}
+    field = lattice(x, y, *tractions, centre=centre)
+    scale = bound.max() / (1.15 * SPACING)
+    arrows = axes.quiver(*field, scale=scale, gid="traction", **arrow)
     axes.quiverkey(arrows, 0.7, 1.042, 0.4, r"$0.4\,\mu F_z/a^2$", labelpos="E", labelsep=0.06)
-    axes.plot(
-        [centre],
-        [0.0],
-        linestyle="none",
-        marker="o",
-        markersize=6.5,
-        markerfacecolor="white",
-        markeredgecolor=look.VERMILLION,
-        markeredgewidth=1.6,
-        zorder=6,
-        gid="centre",
-        label="instantaneous centre",
-    )
+    mark: look.Ink = {"mfc": "white", "mec": look.VERMILLION, "mew": 1.6, "zorder": 6}
+    mark |= {"gid": "centre"}
+    axes.plot([centre], [0.0], "o", ms=6.5, label="instantaneous centre", **mark)
     axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
     axes.set(xlabel=look.axis(LATERAL), ylabel=look.axis(FORWARD))
-    axes.set(xticks=_ticks(axes.get_xlim()), yticks=_ticks(axes.get_ylim()))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(0.5))
     velocity = VELOCITY["continuous-bore"].latex, float(dataset["field_velocity"])
     axes.text(0.035, 0.97, look.conditions([velocity]), transform=axes.transAxes, va="top")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), handlelength=1.0, borderaxespad=0.1)
     return figure
 
 
-def _ticks(limits: tuple[float, float]) -> np.ndarray:
-    """The multiples of a half within the limits."""
-    return np.arange(np.ceil(2 * limits[0]), 2 * limits[1]) / 2
-
-
 def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> ScalarMappable:
-    """Shade the friction bound between the cells; beyond the outermost the nearest cell's."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
-    rim_x, rim_y = np.cos(turn), np.sin(turn)
-    nearest = np.argmin((rim_x[:, None] - x) ** 2 + (rim_y[:, None] - y) ** 2, axis=1)
-    shade = axes.tripcolor(
-        Triangulation(np.append(x, rim_x), np.append(y, rim_y)),
-        np.append(bound, bound[nearest]),
-        shading="gouraud",
-        cmap=SHADES,
-        vmin=0.0,
-        zorder=0,
-    )
+    """Shade the friction bound; outside the outermost cells it is that of the nearest cell."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+    rim_x, rim_y = np.cos(angle), np.sin(angle)
+    nearest = griddata((x, y), bound, (rim_x, rim_y), method="nearest")
+    mesh = Triangulation(np.append(x, rim_x), np.append(y, rim_y))
+    shading: look.Ink = {"shading": "gouraud", "cmap": SHADES, "vmin": 0.0, "zorder": 0}
+    shade = axes.tripcolor(mesh, np.append(bound, nearest), **shading)
     shade.set_clip_path(Circle((0, 0), 1.0, transform=axes.transData))
     return shade
 
@@ -111,14 +72,13 @@ def lattice(
 ) -> tuple[np.ndarray, ...]:
     """Nodes of an even square lattice, and the fields there, linear between the cells.
 
-    Arrows on the cells themselves would crowd where the cells do, in the middle and at the rim.
-    Nodes close to the rim and to the centre of rotation, where an arrow is a dot, are left out.
+    Arrows on the cells themselves would crowd in the middle and at the rim. Nodes close to the rim
+    and to the centre of rotation, where an arrow is a dot, are left out.
     """
     count = round(1.0 / SPACING)
     line = SPACING * np.arange(-count, count + 1)
     nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    cells = np.column_stack((x, y))
-    values = griddata(cells, np.column_stack(fields), nodes)
+    values = griddata(np.column_stack((x, y)), np.column_stack(fields), nodes)
     shown = np.isfinite(values).all(axis=1)
     shown &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
     shown &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0

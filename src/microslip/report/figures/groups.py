@@ -2,38 +2,208 @@
 
 from __future__ import annotations
 
-import xarray as xr
-from matplotlib.figure import Figure
+from collections.abc import Iterable, Sequence
+from typing import Any
 
-from microslip.report.figures import lines, poisson, small_maps
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from microslip.report.figures import panels, poisson
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_each_poisson, require, sweep
+from microslip.report.figures.data import (
+    at_each_poisson,
+    columns,
+    finite_or_nan,
+    limit,
+    require,
+    sweep,
+)
+from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
+COLUMNS = {1: 1, 2: 2, 4: 2}
+"""Columns of maps by their number; other numbers have three."""
+HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
+"""Height in inches of a row of maps, by the number of columns, and of the margins."""
+CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Fewer than on a large map, and fewer with a number, which would hide the others."""
+LABELLED = np.array([0.1, 0.5, 0.9])
+BEYOND = 0.01
+"""Friction below 0 or above 1 by more than this is no error of the points."""
+MOST_MAPS = 12
+"""Maps that a figure has room for, as `extended.MOST_PANELS`."""
+THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
+"""Limits from theory at Poisson's ratio 0, by the axis of the lines."""
+JOINING = 0.5
+"""Width of lines that only join marks."""
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw maps where every dataset has two amplitudes and two velocities above 0, lines where none
-    has.
+    """Draw maps if every dataset has two amplitudes and two velocities above 0, lines if none has.
 
-    Every Poisson's ratio of every dataset is drawn: where there is room, as what it changes; else a
+    Every Poisson's ratio of every dataset is drawn: by its effect where there is room, else with a
     map or a line of its own. Raises ValueError for a mixture of maps and lines.
     """
-    spanning = all(map(small_maps.spans_a_map, datasets))
-    if spanning and all(map(poisson.shows, datasets)) and poisson.has_room(datasets):
+    if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
     shown, titles = [], []
     for dataset in datasets:
-        key = dataset.attrs.get("title", name)
-        require(name, key, dataset, NEEDED)
+        title = dataset.attrs.get("title", "")
+        require(name, title or name, dataset, NEEDED)
         dims = tuple(dim for dim in ("amplitude", "velocity") if dim in dataset["mu_macro"].dims)
         parts = [sweep(part, dims) for part in at_each_poisson(dataset)]
         for part, ratio in parts:
             shown.append(part)
-            of = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
-            titles.append(look.literal(dataset.attrs.get("title", "")) + of)
-    spans = [small_maps.spans_a_map(dataset) for dataset in shown]
+            at = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
+            titles.append(look.literal(title) + at)
+    spans = [_spans_a_map(dataset) for dataset in shown]
     if any(spans) and not all(spans):
         odd = shown[spans.index(False)].attrs.get("title")
         raise ValueError(f"figure {name}: {odd!r} spans no map, as others of its group do")
-    return (small_maps if all(spans) else lines).draw(name, shown, titles)
+    what, most = ("maps", MOST_MAPS) if all(spans) else ("sweeps", len(look.LINES))
+    if len(shown) > most:
+        raise ValueError(f"figure {name}: {len(shown)} {what}; allowed: up to {most}")
+    return (_maps if all(spans) else _lines)(shown, titles)
+
+
+def _spans_a_map(dataset: xr.Dataset) -> bool:
+    """Whether there is an area to draw."""
+    positive = int((dataset["velocity"] > 0).sum())
+    return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
+
+
+def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
+    """A map of each dataset, headed by its title, with one scale of colours."""
+    count = len(datasets)
+    columns_ = COLUMNS.get(count, 3)
+    rows = -(-count // columns_)
+    width = look.DOUBLE if columns_ > 1 else 0.65 * look.DOUBLE
+    figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
+    fills, contours, labelled = levels_of(datasets)
+    grid = figure.subplots(rows, columns_, squeeze=False).ravel()
+    entries: dict[str, Artist] = {}
+    for axes, letter, dataset, title in zip(
+        grid, look.letters(count), datasets, titles, strict=False
+    ):
+        # Where friction is negative, the contour of 0 is next to that of 0.1, and worth more.
+        spare = 0.1 if float(dataset["mu_macro"].min()) < -BEYOND else None
+        numbered = labelled[labelled != spare]
+        filled, handles, _ = fill(axes, dataset, fills, contours, numbered, look.SMALLEST)
+        entries |= {str(handle.get_label()): handle for handle in handles}
+        axes.set_gid("map")
+        panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
+    for axes in grid[count:]:
+        axes.remove()
+    for dim, quantity in (("velocity", "forward velocity"), ("amplitude", "amplitude")):
+        _label_maps(figure, list(grid[:count]), dim, quantity, datasets)
+    label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
+    shown = fills[np.isclose(np.round(5 * fills), 5 * fills)]
+    panels.colour_bar(filled, list(grid[:count]), label, aspect=20 * rows, ticks=shown)
+    panels.legend_of_figure(figure, list(entries.values()), "lower right")
+    return figure
+
+
+def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Levels of bands, of contours, and of contours with a number.
+
+    Bands hold all values: they span 0 to 1, and further where values lie outside.
+    """
+    low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
+    high = max(float(dataset["mu_macro"].max()) for dataset in datasets)
+    low = np.floor(10 * low) if low < -BEYOND else 0.0
+    high = np.ceil(10 * high) if high > 1 + BEYOND else 10.0
+    fills = np.linspace(low / 10, high / 10, round(2 * (high - low)) + 1)
+    if low == 0:
+        return fills, CONTOURS, LABELLED
+    contours = np.concatenate([-CONTOURS[::-1], [0.0], CONTOURS])
+    contours = contours[contours > fills[0]]
+    return fills, contours, contours[np.isin(contours, [-0.7, -0.3, 0.0, *LABELLED])]
+
+
+def _label_maps(
+    figure: Figure, grid: Sequence[Axes], dim: str, quantity: str, datasets: Sequence[xr.Dataset]
+) -> None:
+    """Name an axis once where all panels have the same, else at each panel."""
+    texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
+    if len(set(texts)) == 1:
+        write = figure.supxlabel if dim == "velocity" else figure.supylabel
+        write(f"{quantity}  {texts[0]}".strip(), fontsize=look.RC["axes.labelsize"])
+        return
+    spec = panels.place_of(grid[0]).get_gridspec()
+    width, height = figure.get_size_inches()
+    room = width / spec.ncols - 0.7 if dim == "velocity" else height / spec.nrows - 0.5
+    for axes, text in zip(grid, texts, strict=True):
+        axis = axes.xaxis if dim == "velocity" else axes.yaxis
+        axis.set_label_text(look.wrapped(text or quantity, room, 7.5), fontsize=7.5)
+
+
+def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
+    """A line of each dataset: static friction over amplitude, or friction over velocity."""
+    (dim,) = {"amplitude" if d.sizes.get("amplitude", 0) > 1 else "velocity" for d in datasets}
+    figure = look.new_figure(5.2, 3.3)
+    axes = figure.subplots()
+    velocities: set[float] = set()
+    handles = []
+    for dataset, title, (color, marker, ls) in zip(datasets, titles, look.LINES, strict=False):
+        limited = _limit(axes, dataset, dim, color=color, ls=ls)
+        style: look.Ink = {"ls": ls} if limited else {"lw": JOINING}
+        label = look.wrapped(look.shown_in_legend(title), 1.35, 8.0)
+        handles.append(Line2D([], [], color=color, marker=marker, ms=4.0, label=label, **style))
+        points = dataset.isel(velocity=dataset["velocity"].values > 0)
+        if points.sizes["velocity"]:
+            points = points.isel(velocity=0) if dim == "amplitude" else points.squeeze()
+            _marks(axes, points, dim, color, marker)
+            velocities.update(np.atleast_1d(points["velocity"].values).tolist())
+    low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
+    panels.unit_range(axes, low=np.floor(5 * low) / 5 if low < -BEYOND else 0.0)
+    axes.set(ylabel=look.FRICTION, xlabel=_axis_label(dim, datasets))
+    if dim == "velocity":
+        axes.set_xscale("log")
+        panels.logarithmic(axes.xaxis)
+    axes.margins(x=0.02)
+    figure.legend(handles=handles, loc="outside right upper", handlelength=3.0)
+    if dim == "amplitude" and velocities:
+        at = [look.number(velocity) for velocity in sorted(velocities)]
+        marks = rf"marks: velocity ${at[0]}$" + (rf" to ${at[-1]}$" if len(at) > 1 else "")
+        axes.set_title(f"lines: limit for velocity to 0; {marks}", loc="left", fontsize=8.0)
+    return figure
+
+
+def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
+    """Draw the limit for vanishing velocity, or a closed form; whether the dataset has one."""
+    known = [variable for variable in THEORY[dim] if variable in dataset]
+    if known and float(dataset["poisson"]) == 0.0:
+        line = limit(dataset, known[0])
+        if line.ndim == 1:
+            axes.plot(line[line.dims[0]], line, gid="limit", **ink)
+            return True
+    if dim == "amplitude" and float(dataset["velocity"][0]) == 0.0:
+        static = dataset["mu_macro"].isel(velocity=0)
+        axes.plot(static[dim], finite_or_nan(static.values), gid="limit", **ink)
+        return True
+    return False
+
+
+def _marks(axes: Axes, points: xr.Dataset, dim: str, color: str, marker: str) -> None:
+    """Computed points with their errors, joined by a thin line; hollow where not converged."""
+    x, y, error = map(finite_or_nan, columns(points, dim, "mu_macro", "mu_macro_error"))
+    axes.plot(x, y, color=color, lw=JOINING, alpha=0.6, zorder=1.5)
+    done = points["converged"].values != 0
+    for part, face, gid in ((done, color, "computed"), (~done, "white", "unconverged")):
+        if part.any():
+            ink: look.Ink = {"color": color, "mfc": face, "gid": gid, **look.ERROR_BARS}
+            axes.errorbar(x[part], y[part], yerr=error[part], fmt=marker, ms=4.0, **ink)
+
+
+def _axis_label(dim: str, datasets: Iterable[xr.Dataset]) -> str:
+    quantity = "forward velocity" if dim == "velocity" else "amplitude"
+    formulas = (mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets)
+    texts = list(dict.fromkeys(filter(None, formulas)))
+    if sum(map(len, texts)) > 90 or any(" " in text for text in texts):
+        return f"{quantity}, in the units of each motion"
+    return f"{quantity}  {', '.join(texts)}"

@@ -8,62 +8,42 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from microslip.config.quantities import AMPLITUDE, FORCE_FORWARD, FORCE_LATERAL, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, require
-
-VARIABLES = (
-    "history_phase",
-    "history_force_forward",
-    "history_force_lateral",
-    "history_velocity",
-    "history_amplitude",
-)
+from microslip.report.figures.data import at_one_poisson, columns
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the forward force with its mean over the last period, and below it the lateral force."""
-    require(name, "transverse", dataset, VARIABLES)
     dataset, _ = at_one_poisson(dataset)
     periods = phase_in_periods(dataset["history_phase"])
-    forward, lateral = (dataset[f"history_force_{way}"].values for way in ("forward", "lateral"))
-    velocity, amplitude = (float(dataset[f"history_{n}"]) for n in ("velocity", "amplitude"))
-
+    forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")
     figure = look.new_figure(look.SINGLE, 3.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.0))
     upper.plot(periods, forward, color=look.BLUE, gid="forward")
     last = periods >= periods[-1] - 1.0 - 1e-9
     mean = np.trapezoid(forward[last], periods[last]) / np.ptp(periods[last])
-    upper.plot(
-        [periods[0], periods[-1]],
-        [mean, mean],
-        color=look.VERMILLION,
-        linestyle=look.DASHED,
-        label=rf"mean of last period ${mean:.3f}$",
-        gid="mean",
-    )
-    lower.plot(periods, lateral, color=look.GREY, linewidth=1.0, gid="lateral")
+    label = rf"mean of last period ${mean:.3f}$"
+    upper.axhline(mean, color=look.VERMILLION, ls=look.DASHED, label=label, gid="mean")
+    lower.plot(periods, lateral, color=look.GREY, lw=1.0, gid="lateral")
 
-    upper.set(
-        ylabel=f"forward force\n{FORCE_FORWARD.math}", ylim=(min(0.0, 1.05 * forward.min()), 1.05)
-    )
-    lower.set(
-        ylabel=f"lateral force\n{FORCE_LATERAL.math}",
-        ylim=(-1.1, 1.1),
-        xlim=(periods[0], periods[-1]),
-    )
+    upper.set_ylabel(f"forward force\n{FORCE_FORWARD.math}")
+    upper.set_ylim(min(0.0, 1.05 * forward.min()), 1.05)
     upper.yaxis.set_major_locator(MultipleLocator(0.2))
-    lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
+    lower.set(ylabel=f"lateral force\n{FORCE_LATERAL.math}", ylim=(-1.1, 1.1))
+    lower.set(xlabel=r"phase in periods  $\omega t/(2\pi)$", xlim=(periods[0], periods[-1]))
     lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
     for axes in (upper, lower):
-        axes.grid(axis="x", color=look.PALE, linewidth=0.5)
+        axes.grid(axis="x", color=look.PALE, lw=0.5)
         axes.set_axisbelow(True)
     symbols = VELOCITY["transverse"].latex, AMPLITUDE["transverse"].latex
-    look.legend_above(upper, "a", look.conditions(zip(symbols, (velocity, amplitude), strict=True)))
-    look.letter(lower, "b")
+    values = (float(dataset[f"history_{n}"]) for n in ("velocity", "amplitude"))
+    panels.legend_above(upper, "a", look.conditions(zip(symbols, values, strict=True)))
+    panels.letter(lower, "b")
     return figure
 
 
 def phase_in_periods(phase: xr.DataArray) -> np.ndarray:
-    """The phase in periods: it is held in radians unless its `units` say periods or cycles."""
+    """The phase in periods. It is in radians unless its `units` are periods or cycles."""
     counted = phase.attrs.get("units", "rad") in ("period", "periods", "cycle", "cycles")
     return phase.values / (1.0 if counted else 2.0 * np.pi)

@@ -6,20 +6,41 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from microslip.report.figures import contour_labels, signed, ticks
+from microslip.report.figures import panels, signed
 from microslip.report.figures import style as look
+from microslip.report.figures.data import columns
 from microslip.report.figures.surface import refined, supported
 
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
 FEW = len(LINE_LEVELS)
 """Points along an axis below which they are drawn: more than one contour may pass between two."""
+POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
+POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
+HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
+
+
+def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
+    """Filled contours without white hairlines between the bands in a PDF."""
+    filled = axes.contourf(*table, **settings)
+    filled.set(edgecolor="face", linewidth=0.3)
+    return filled
+
+
+def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: float) -> None:
+    """Write their numbers on the contours of these levels once the panel has its final size."""
+
+    def write() -> None:
+        axes.clabel(contours, levels, fmt="%.1f", fontsize=size, inline_spacing=2)
+
+    panels.after_layout(axes.get_figure(root=True), write)
 
 
 def fill(
@@ -29,35 +50,34 @@ def fill(
     lines: np.ndarray = LINE_LEVELS,
     labelled: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
-) -> tuple[ContourSet, int]:
+) -> tuple[ContourSet, list[Artist], int]:
     """Fill a panel with `mu_macro` over velocity and amplitude, as `microslip.at` interpolates it.
 
-    Contours end where the points do not support them. Then the points are drawn, and where they are
-    few.
+    Contours end where the points do not support them. There, and on coarse maps, the points are
+    drawn.
 
-    fills, lines, labelled: levels of bands, of contours (dashed below 0, and heavier at 0 where
-    there are such) and of those that have a number, ascending; size: of the numbers. Returns the
-    bands, for a colour bar, and the number of hatched cells.
+    Parameters
+    ----------
+    fills, lines, labelled : ndarray
+        Levels of the bands, of the contours (dashed below 0, heavier at 0) and of the contours with
+        a number, ascending.
+    size : float
+        Of the numbers, in points.
+
+    Returns
+    -------
+    tuple
+        The bands, for a colour bar; entries of a legend; the number of hatched cells.
     """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
     if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
         raise ValueError("a map needs two amplitudes and two positive velocities at least")
     shown = shown.transpose("amplitude", "velocity", ...)
-    velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
-    points = velocity, amplitude, shown["mu_macro"].values
+    points = velocity, amplitude, _ = columns(shown, "velocity", "amplitude", "mu_macro")
     x, y, values = refined(*points)
-
     colours, norm = signed.scale(fills)
-    filled = axes.contourf(
-        x,
-        y,
-        np.clip(values, fills[0], fills[-1]),  # rounding beyond the ends must leave no white holes
-        levels=fills,
-        cmap=colours,
-        norm=norm,
-    )
-    filled.set_edgecolor("face")  # no hairlines between the bands in a PDF
-    filled.set_linewidth(0.3)
+    inside = np.clip(values, fills[0], fills[-1])  # rounding at the ends must leave no white holes
+    filled = bands(axes, x, y, inside, levels=fills, cmap=colours, norm=norm)
     known = supported((x, y, values), points, lines)
     contours = axes.contour(
         *known,
@@ -67,64 +87,34 @@ def fill(
         linewidths=[1.1 if level == 0 else 0.7 for level in lines],
     )
     contours.set_gid("contours")
-    axes.set_xscale("log")
-    axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
-    ticks.logarithmic(axes.xaxis)
-    if min(shown.sizes[dim] for dim in ("velocity", "amplitude")) < FEW or np.ma.count(
-        known[2]
-    ) < np.ma.count(values):
-        axes.plot(*(part.ravel() for part in np.meshgrid(velocity, amplitude)), **POINTS)
-    axes.tick_params(which="both", direction="out", top=False, right=False)
-    look.after_layout(axes.figure, lambda: contour_labels.label(axes, contours, labelled, size))
-    return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
-
-
-_HATCHED: dict[str, Any] = {
-    "facecolor": (1.0, 1.0, 1.0, 0.45),
-    "edgecolor": look.BLACK,
-    "linewidth": 0.0,
-    "hatch": "//////",
-}
-
-
-POINTS: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 3.0,
-    "color": look.BLACK,
-}
-POINTS |= {"markeredgecolor": "white", "markeredgewidth": 0.4, "clip_on": False, "gid": "points"}
-
-
-def shows_points(axes: Axes) -> bool:
-    """Whether `fill` has drawn the points of the map in a panel."""
-    return any(line.get_gid() == POINTS["gid"] for line in axes.get_lines())
-
-
-def computed_points() -> Line2D:
-    """Legend entry of the points of a map."""
-    return Line2D([], [], label="computed points", **POINTS)
-
-
-def unconverged(label: str) -> Patch:
-    """Legend entry of hatched cells."""
-    return Patch(label=label, **_HATCHED)
+    number_contours(axes, contours, labelled, size)
+    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
+    panels.logarithmic(axes.xaxis)
+    panels.ticks_outside(axes)
+    handles: list[Artist] = []
+    few = min(len(velocity), len(amplitude)) < FEW
+    if few or np.ma.count(known[2]) < np.ma.count(values):
+        axes.plot(*map(np.ravel, np.meshgrid(velocity, amplitude)), **POINTS)
+        handles.append(Line2D([], [], label="computed points", **POINTS))
+    hatched = _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
+    if hatched:
+        handles.append(Patch(label="not converged", **HATCHED))
+    return filled, handles, hatched
 
 
 def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
-    """Hatch the cell around every point that is not converged, and count them."""
-    x = np.exp(_cell_edges(np.log(velocity)))
-    y = _cell_edges(amplitude)
+    """Hatch the cell around every point that is not converged, and count the cells."""
+    x, y = np.exp(_edges(np.log(velocity))), _edges(amplitude)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
         for i, j in np.argwhere(~done)
     ]
-    if cells:
-        hatched = PolyCollection(cells, gid="unconverged", zorder=4, **_HATCHED)
-        axes.add_collection(hatched, autolim=False)
+    axes.add_collection(
+        PolyCollection(cells, gid="unconverged", zorder=4, **HATCHED), autolim=False
+    )
     return len(cells)
 
 
-def _cell_edges(points: np.ndarray) -> np.ndarray:
+def _edges(points: np.ndarray) -> np.ndarray:
     """Edges half-way between the points; the outer ones at the outermost points."""
     return np.concatenate(([points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]))

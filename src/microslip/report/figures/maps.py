@@ -7,27 +7,18 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures import ticks
-from microslip.report.figures.cuts import computed
-from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
-from microslip.report.figures.map_panel import (
-    LINE_LEVELS,
-    computed_points,
-    fill,
-    shows_points,
-    unconverged,
-)
+from microslip.report.figures.data import at_each_poisson, columns, curve, limit, require, sweep
+from microslip.report.figures.map_panel import LINE_LEVELS, fill
 from microslip.theory.catalogue import FORMS, STATIC
 
 NOTHING = 0.02
-"""A cut's panel ends where all of its curves have fallen below this."""
+"""A cut's panel ends where all of its curves are below this."""
 POISSONS = (
     (look.BLACK, "o"),
     (look.PURPLE, "s"),
@@ -36,9 +27,9 @@ POISSONS = (
     (look.VERMILLION, "v"),
     (look.ORANGE, "P"),
 )
-"""Colour and marker of the points at each of Poisson's ratios, from the first one on."""
-COLUMNS, ROW = 3, {2: 2.9, 3: 2.4}
-"""Columns of maps, and height in inches of a row of them, where there are several."""
+"""Colour and marker of the points at each Poisson's ratio, ascending."""
+ROW = {2: 2.9, 3: 2.4}
+"""Height in inches of a row of so many maps."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +43,9 @@ class Overlay:
     linewidth: float = 1.3
 
 
-def form(motion: str, name: str, color: str, linestyle: Any, linewidth: float = 1.3) -> Overlay:
+def _form(motion: str, name: str, *ink: Any) -> Overlay:
     """The Overlay of a closed form, under the name that the catalogue has for it."""
-    return Overlay(name, FORMS[motion][name].label, color, linestyle, linewidth)
+    return Overlay(name, FORMS[motion][name].label, *ink)
 
 
 @dataclass(frozen=True)
@@ -66,28 +57,28 @@ class Map:
     large: Overlay
 
 
-EXACT = form("transverse", STATIC, look.BLUE, look.SOLID)
+EXACT = _form("transverse", STATIC, look.BLUE, look.SOLID)
 EXACT_AT_0 = replace(EXACT, label=r"limit at $\nu = 0$")
-"""Exact for Poisson's ratio 0 alone; at any other it is shown as what it is."""
+"""The transverse limit where Poisson's ratio is not 0, for which alone it is exact."""
 
 MAPS = {
     "fig2_transverse_map": Map(
         key="transverse",
         static=(
-            form("transverse", "mu_static_slider", look.ORANGE, look.DASHDOT),
-            form("transverse", "mu_static_stick_zone", look.GREEN, look.DASHED),
+            _form("transverse", "mu_static_slider", look.ORANGE, look.DASHDOT),
+            _form("transverse", "mu_static_stick_zone", look.GREEN, look.DASHED),
             EXACT,
         ),
-        large=form("transverse", "mu_large_amplitude", look.VERMILLION, look.DASHED),
+        large=_form("transverse", "mu_large_amplitude", look.VERMILLION, look.DASHED),
     ),
     "fig6_bore_map": Map(
         key="bore",
         static=(
-            form("bore", "mu_static_stick_zone_printed", look.PURPLE, look.DOTTED, 1.0),
-            form("bore", "mu_static_stick_zone", look.GREEN, look.DASHED),
+            _form("bore", "mu_static_stick_zone_printed", look.PURPLE, look.DOTTED, 1.0),
+            _form("bore", "mu_static_stick_zone", look.GREEN, look.DASHED),
             EXACT,
         ),
-        large=form("bore", "mu_large_amplitude", look.VERMILLION, look.DASHED),
+        large=_form("bore", "mu_large_amplitude", look.VERMILLION, look.DASHED),
     ),
 }
 
@@ -95,82 +86,59 @@ MAPS = {
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map `name` with the static and the large-amplitude cut.
 
-    At several of Poisson's ratios there is a map for each, and the cuts show all of them; of more
-    than `POISSONS` has looks for, so many from the smallest to the largest, which is said.
+    Each Poisson's ratio has a map of its own; the cuts show all of them. If there are more than
+    `POISSONS` has looks for, that many are drawn, evenly chosen, and a title says so.
     """
-    plan = MAPS[name]
-    overlays = [overlay.variable for overlay in (*plan.static, plan.large)]
-    needed = ["amplitude", "velocity", "mu_macro", "mu_macro_error", "converged", *overlays]
-    require(name, plan.key, dataset, needed)
-    every = at_each_poisson(dataset)
+    plan, every = MAPS[name], at_each_poisson(dataset)
+    require(name, plan.key, dataset, ("amplitude", "velocity"))
     chosen = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
     shown = [sweep(every[k], ("amplitude", "velocity")) for k in chosen]
     if plan.key == "transverse" and any(poisson > 0 for _, poisson in shown):
         static = (EXACT_AT_0 if overlay is EXACT else overlay for overlay in plan.static)
         plan = replace(plan, static=tuple(static))
-    figure, panels, cuts = _page(len(shown))
+    figure, maps, static_cut, large_cut = _page(len(shown))
     if len(shown) < len(every):
         some = f"{len(shown)} of the {len(every)} of Poisson's ratios in the dataset"
         figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
-    letters = look.letters(len(shown) + 2)
-    for axes, letter, (part, poisson) in zip(panels, letters, shown, strict=False):
-        note = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
-        filled = _map(axes, part, plan, letter, note)
-    _colour_bar(panels, filled)
-    _static_cut(cuts[0], shown, plan, letters[-2])
-    _large_cut(cuts[1], shown, plan, letters[-1])
+    letters, alone = look.letters(len(shown) + 2), len(shown) == 1
+    quantities = (table[plan.key] for table in (VELOCITY, AMPLITUDE))
+    labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
+    for axes, letter, (part, poisson) in zip(maps, letters, shown, strict=False):
+        numbered = LINE_LEVELS if alone else LINE_LEVELS[::2]
+        filled, handles, hatched = fill(axes, part, labelled=numbered)
+        ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
+        panels.letter(axes, letter, ratio)
+        axes.set_xlabel(labels[0])
+        if handles:
+            if hatched:
+                handles[-1].set_label(f"not converged ({hatched} of {part['mu_macro'].size})")
+            above: look.Ink = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
+            above |= {"borderaxespad": 0.2}
+            axes.legend(handles=handles, **above)
+        if panels.place_of(axes).is_first_col():
+            axes.set_ylabel(labels[1])
+    friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
+    panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
+    _static_cut(static_cut, shown, plan, letters[-2])
+    _large_cut(large_cut, shown, plan, letters[-1])
     return figure
 
 
-def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
+def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     """A figure, panels for so many maps, and panels for the two cuts."""
-    if count == 1:
-        figure = look.new_figure(look.DOUBLE, 4.2)
-        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0), squeeze=False)[0]
-        return figure, [left.subplots()], list(right.subplots(2, 1))
-    columns = min(count, COLUMNS)
-    rows = -(-count // columns)
-    heights = rows * ROW[columns], 2.7
+    columns_ = min(count, 3)
+    rows = -(-count // columns_)
+    heights = (4.2,) if count == 1 else (rows * ROW[columns_], 2.7)
     figure = look.new_figure(look.DOUBLE, sum(heights))
-    upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
-    panels = list(upper.subplots(rows, columns, squeeze=False).ravel())
-    for axes in panels[count:]:
+    if count == 1:
+        first, second = figure.subfigures(1, 2, width_ratios=(1.3, 1.0), squeeze=False).flat
+    else:
+        first, second = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
+    maps = list(first.subplots(rows, columns_, squeeze=False).flat)
+    static, large = second.subplots(*((2, 1) if count == 1 else (1, 2)))
+    for axes in maps[count:]:
         axes.remove()
-    return figure, panels[:count], list(lower.subplots(1, 2))
-
-
-def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> ContourSet:
-    """A map with its letter, and its hatching explained above it; returns its bands."""
-    grid = axes.get_subplotspec()
-    assert grid is not None  # as of all panels of a grid
-    alone = grid.get_gridspec().nrows * grid.get_gridspec().ncols == 1
-    filled, hatched = fill(axes, dataset, labelled=LINE_LEVELS if alone else LINE_LEVELS[::2])
-    shown = [table[plan.key] for table in (VELOCITY, AMPLITUDE)]
-    shown = shown if alone else [replace(quantity, unit="") for quantity in shown]
-    axes.set_xlabel(look.axis(shown[0]))
-    axes.set_ylabel(look.axis(shown[1]) if grid.is_first_col() else "")
-    look.letter(axes, letter, note)
-    handles: list[Artist] = [computed_points()] if shows_points(axes) else []
-    if hatched:
-        text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
-        handles.append(unconverged(text))
-    if handles:
-        axes.legend(
-            handles=handles,
-            loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),
-            borderaxespad=0.2,
-        )
-    return filled
-
-
-def _colour_bar(panels: list[Axes], filled: ContourSet) -> None:
-    """One colour bar beside all maps, which share their colours."""
-    ticks = np.linspace(0, 1, 6)
-    bar = panels[0].figure.colorbar(filled, ax=panels, pad=0.02, aspect=32, ticks=ticks)
-    lines = "  (" if len(panels) == 1 else "\n("  # a row of small maps is not as high as the words
-    bar.set_label(look.FRICTION.replace("  (", lines))
-    bar.ax.tick_params(direction="out")
+    return figure, maps[:count], static, large
 
 
 def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
@@ -180,8 +148,8 @@ def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, le
         _overlay(axes, shown[0][0], overlay, velocity=velocity)
     _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in shown], "amplitude")
     where = "left edge" if velocity > 0 else "static limit"
-    note = f"{where}, {look.conditions([(VELOCITY[plan.key].latex, velocity)])}"
-    look.legend_above(axes, letter, note)
+    at = look.conditions([(VELOCITY[plan.key].latex, velocity)])
+    panels.legend_above(axes, letter, f"{where}, {at}")
     axes.set(xlabel=look.axis(AMPLITUDE[plan.key]), xlim=_where_not_zero(axes))
 
 
@@ -198,35 +166,26 @@ def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, let
     amplitude = float(shown[0][0]["amplitude"][-1])
     _overlay(axes, shown[0][0], plan.large, amplitude=amplitude)
     _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in shown], "velocity")
-    note = f"top edge, {look.conditions([(AMPLITUDE[plan.key].latex, amplitude)])}"
-    look.legend_above(axes, letter, note)
+    at = look.conditions([(AMPLITUDE[plan.key].latex, amplitude)])
+    panels.legend_above(axes, letter, f"top edge, {at}")
     velocity = shown[0][0]["velocity"].values
-    axes.set_xscale("log")
-    axes.set(xlabel=look.axis(VELOCITY[plan.key]), xlim=(velocity[velocity > 0][0], velocity[-1]))
-    ticks.logarithmic(axes.xaxis)
+    axes.set(xscale="log", xlim=(velocity[velocity > 0][0], velocity[-1]))
+    axes.set_xlabel(look.axis(VELOCITY[plan.key]))
+    panels.logarithmic(axes.xaxis)
 
 
 def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:
     """Draw a theory curve as the dataset holds it."""
-    x, y = curve(limit(dataset, overlay.variable), **at)
-    axes.plot(
-        x,
-        y,
-        label=overlay.label,
-        color=overlay.color,
-        linestyle=overlay.linestyle,
-        linewidth=overlay.linewidth,
-        gid=overlay.variable,
-    )
+    ink: look.Ink = {"color": overlay.color, "ls": overlay.linestyle, "lw": overlay.linewidth}
+    line = curve(limit(dataset, overlay.variable), **at)
+    axes.plot(*line, label=overlay.label, gid=overlay.variable, **ink)
 
 
 def _points(axes: Axes, lines: list[tuple[xr.Dataset, float]], dim: str) -> None:
     """Draw the computed points of a cut and give its panel the common vertical axis."""
-    columns = ("mu_macro", "mu_macro_error", "converged")
     for (line, poisson), (color, marker) in zip(lines, POISSONS, strict=False):
         ratio = rf", $\nu = {look.number(poisson)}$" if len(lines) > 1 else ""
-        mu, error, good = (line[name].values for name in columns)
-        ink: dict[str, Any] = {"color": color, "marker": marker}
-        computed(axes, line[dim].values, mu, error, good, f"computed{ratio}", **ink)
-    look.unit_range(axes)
-    axes.set_ylabel(look.FRICTION.replace("  (", "\n("))
+        points = columns(line, dim, "mu_macro", "mu_macro_error", "converged")
+        panels.computed(axes, *points, label=f"computed{ratio}", color=color, marker=marker)
+    panels.unit_range(axes)
+    axes.set_ylabel(look.FRICTION_IN_TWO_LINES)

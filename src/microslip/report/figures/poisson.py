@@ -1,9 +1,8 @@
-"""Effect of Poisson's ratio: both maps at several of its values, and their differences."""
+"""Effect of Poisson's ratio: maps at several of its values, and their differences."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -11,120 +10,94 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import MU_MACRO
-from microslip.report.figures import contour_labels, ticks
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import require
+from microslip.report.figures.data import columns
 from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.map_panel import bands, number_contours
 from microslip.report.figures.surface import refined, supported
 
-LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
+LEVELS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 LOOKS = (
     (look.BLACK, look.SOLID),
     (look.BLUE, look.DASHED),
     (look.VERMILLION, look.DOTTED),
     (look.GREEN, look.DASHDOT),
 )
-"""For up to so many of Poisson's ratios, from the smallest on."""
+"""Colour and line style at each Poisson's ratio, ascending."""
 MOST = 3
 """Datasets that a figure has room for."""
+MOST_LEVELS = 12
+"""Levels on one side of 0 from which on the two inner ones have no room for labels."""
 DIVERGING = "PuOr"
 """Pale in the middle, and evenly darker on both sides."""
 
 
-def shows(dataset: xr.Dataset) -> bool:
-    """Whether a dataset holds what several of Poisson's ratios change."""
-    return "mu_macro_change" in dataset and dataset.sizes.get("poisson", 1) > 1
-
-
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:
-    """Whether a figure can show all that these datasets hold."""
-    ratios = (dataset.sizes["poisson"] for dataset in datasets)
-    return len(datasets) <= MOST and max(ratios) <= len(LOOKS)
+    """Whether all datasets have differences between Poisson's ratios, and a figure has room."""
+    ratios = [d.sizes.get("poisson", 1) if "mu_macro_change" in d else 1 for d in datasets]
+    return len(datasets) <= MOST and min(ratios) > 1 and max(ratios) <= len(LOOKS)
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw a row of panels for each dataset, up to three: contours for every Poisson's ratio, and
-    beside them what the largest one changes."""
-    if len(datasets) > MOST:
-        raise ValueError(f"figure {name}: {len(datasets)} maps; allowed: up to {MOST}")
+    """Draw a row of panels for each dataset: contours at every Poisson's ratio, and beside them the
+    effect of the largest one."""
+    if not has_room(datasets):
+        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} of Poisson's ratios"
+        raise ValueError(f"figure {name}: no room for the datasets; allowed: {allowed}")
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
-    panels = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
+    grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
     letters = iter(look.letters(2 * len(datasets)))
-    for (left, right), dataset in zip(panels, datasets, strict=True):
-        key = dataset.attrs.get("title", name)
-        needed = ["amplitude", "velocity", "poisson", "mu_macro", "mu_macro_change"]
-        require(name, key, dataset, needed)
+    for (left, right), dataset in zip(grid, datasets, strict=True):
         shown = dataset.isel(velocity=dataset["velocity"].values > 0)
         shown = shown.sortby("poisson").transpose("poisson", "amplitude", "velocity", ...)
-        if not 2 <= shown.sizes["poisson"] <= len(LOOKS):
-            raise ValueError(f"figure {name}: two to {len(LOOKS)} of Poisson's ratios are needed")
         _contours(left, shown, next(letters))
         _change(right, shown, next(letters))
+        for axes in (left, right):
+            _axes(axes, shown)
     return figure
 
 
 def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    for index, (color, linestyle) in enumerate(LOOKS[: shown.sizes["poisson"]]):
+    """Contours of friction at each Poisson's ratio; those at the smallest one have numbers."""
+    for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
-        lines = axes.contour(
-            *supported(_refined(one, "mu_macro"), _points(one, "mu_macro"), LEVELS),
-            levels=LEVELS,
-            colors=[color],
-            linestyles=[linestyle],
-            linewidths=1.1,
-        )
+        points = columns(one, "velocity", "amplitude", "mu_macro")
+        known = supported(refined(*points), points, LEVELS)
+        lines = axes.contour(*known, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1)
         if index == 0:
-            look.after_layout(
-                axes.figure,
-                partial(contour_labels.label, axes, lines, LEVELS, look.SMALLEST),
-            )
+            number_contours(axes, lines, LEVELS, look.SMALLEST)
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
-        axes.plot([], [], color=color, linestyle=linestyle, label=label)
-    _share(axes, shown)
+        axes.plot([], [], color=color, ls=ls, label=label)
     key = "title" if "group" in shown.attrs else "motion"
     note = look.literal(shown.attrs.get(key, ""))
-    look.legend_above(axes, letter, note, ncols=shown.sizes["poisson"])
-
-
-def _refined(one: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The fine grid of a map, and a variable there."""
-    return refined(*_points(one, name))
-
-
-def _points(one: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Velocities and amplitudes of the points of a map, and a variable there."""
-    return one["velocity"].values, one["amplitude"].values, one[name].values
+    panels.legend_above(axes, letter, note, ncols=shown.sizes["poisson"])
 
 
 def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """Pale is what the errors of the points leave open: twice the tolerance."""
+    """The effect of the largest ratio. Changes within twice the tolerance, which the errors of the
+    points leave open, are pale."""
     last = shown.isel(poisson=-1)
-    x, y, values = _refined(last, "mu_macro_change")
+    x, y, values = refined(*columns(last, "velocity", "amplitude", "mu_macro_change"))
     step = 2.0 * float(shown.attrs["tolerance"])
-    if not step > 0.0:  # no tolerance was meant: what the points claim at most
+    if not step > 0.0:  # no tolerance was requested: the largest error estimate
         step = 2.0 * max(float(shown["mu_macro_error"].max()), 1e-3)
     count = max(2, int(np.ceil(np.abs(values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
-    filled = axes.contourf(x, y, values, levels, cmap=DIVERGING)
-    filled.set_edgecolor("face")
-    _share(axes, shown)
-    ends = (levels[0], -step, step, levels[-1])
-    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=24, ticks=ends)
-    first = look.number(float(shown["poisson"][0]))
-    at = look.number(float(last["poisson"]))
-    bar.set_label(rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$")
-    bar.ax.tick_params(direction="out")
-    look.letter(axes, letter, "")
+    filled = bands(axes, x, y, values, levels=levels, cmap=DIVERGING)
+    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else their labels would meet
+    ends = (levels[0], *inner, levels[-1])
+    first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
+    label = rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$"
+    panels.colour_bar(filled, axes, label, aspect=24, ticks=ends)
+    panels.letter(axes, letter)
 
 
-def _share(axes: Axes, shown: xr.Dataset) -> None:
-    velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
-    axes.set_xscale("log")
-    axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
-    velocity_unit, amplitude_unit = (
-        mathtext(shown[dim].attrs.get("formula", "")) for dim in ("velocity", "amplitude")
-    )
-    axes.set_xlabel(f"forward velocity  {velocity_unit}".strip())
-    axes.set_ylabel(f"amplitude  {amplitude_unit}".strip())
-    ticks.logarithmic(axes.xaxis)
-    axes.tick_params(which="both", direction="out", top=False, right=False)
+def _axes(axes: Axes, shown: xr.Dataset) -> None:
+    velocity, amplitude = columns(shown, "velocity", "amplitude")
+    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
+    units = (mathtext(shown[dim].attrs.get("formula", "")) for dim in ("velocity", "amplitude"))
+    axes.set_xlabel(f"forward velocity  {next(units)}".strip())
+    axes.set_ylabel(f"amplitude  {next(units)}".strip())
+    panels.logarithmic(axes.xaxis)
+    panels.ticks_outside(axes)

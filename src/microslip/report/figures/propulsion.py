@@ -8,23 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import finite_or_nan, require
-from microslip.report.figures.lines import LOOKS
+from microslip.report.figures.data import columns, finite_or_nan
 
-VARIABLES: tuple[str, ...] = (
-    "velocity",
-    "force",
-    "force_error",
-    "efficiency",
-    "efficiency_error",
-    "converged",
-)
-VARIABLES += ("panel", "title")
-ROWS = (
-    ("force", r"force  $F/(\mu F_z)$"),
-    ("efficiency", "efficiency  (dimensionless)"),
-)
+ROWS = {"force": r"force  $F/(\mu F_z)$", "efficiency": "efficiency  (dimensionless)"}
 """Quantities of the rows, and their labels."""
 WIDTH, HEIGHT = 2.36, 5.2
 VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
@@ -32,58 +20,46 @@ VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw a column for each panel of the dataset: force above, efficiency below."""
-    require(name, "propulsion", dataset, VARIABLES)
-    panels = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
-    figure = look.new_figure(max(WIDTH * len(panels), look.SINGLE), HEIGHT)
-    grid = figure.subplots(len(ROWS), len(panels), sharex="col", squeeze=False)
-    letters = look.letters(len(ROWS) * len(panels))
-    for column, panel in enumerate(panels):
-        chosen = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
-        if chosen.sizes["line"] > len(LOOKS):
-            allowed = f"allowed: up to {len(LOOKS)}"
-            raise ValueError(f"figure {name}: {chosen.sizes['line']} lines in {panel}; {allowed}")
-        for row, (variable, label) in enumerate(ROWS):
-            axes = grid[row, column]
+    names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
+    figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
+    grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)
+    letters = iter(look.letters(grid.size))
+    for row, (variable, label) in zip(grid, ROWS.items(), strict=True):
+        row[0].set_ylabel(label)
+        for axes, panel in zip(row, names, strict=True):
+            chosen = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
+            if (count := chosen.sizes["line"]) > len(look.LINES):
+                allowed = f"allowed: up to {len(look.LINES)}"
+                raise ValueError(f"figure {name}: {count} lines in {panel}; {allowed}")
             _lines(axes, chosen, variable)
-            note = look.literal(panel) if row == 0 else ""
-            look.letter(axes, letters[row * len(panels) + column], note, WIDTH - 0.5)
-            if column == 0:
-                axes.set_ylabel(label)
-        grid[-1, column].set_xlabel(VELOCITY)
-        _legend(grid[-1, column])
+            note = look.literal(panel) if variable == "force" else ""
+            panels.letter(axes, next(letters), note, WIDTH - 0.5)
+    for axes in grid[-1]:
+        axes.set_xlabel(VELOCITY)
+        _legend(axes)
     return figure
 
 
 def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
     """The lines of one panel; hollow marks where not all of a line converged."""
-    axes.axhline(0.0, color=look.PALE, linewidth=0.7, zorder=0.5)
-    for index, (color, marker, linestyle) in zip(range(dataset.sizes["line"]), LOOKS, strict=False):
-        one = dataset.isel(line=index)
-        axes.errorbar(
-            one["velocity"].values,
-            finite_or_nan(one[variable].values),
-            yerr=finite_or_nan(one[f"{variable}_error"].values),
-            color=color,
-            marker=marker,
-            markersize=3.2,
-            markeredgewidth=0.7,
-            markerfacecolor=color if bool(one["converged"]) else "white",
-            linestyle=linestyle,
-            linewidth=1.0,
-            elinewidth=0.7,
-            capsize=1.5,
-            label=look.literal(one["title"].values),
-            gid=variable,
-        )
+    axes.axhline(0.0, color=look.PALE, lw=0.7, zorder=0.5)
+    for k, (color, marker, ls) in zip(range(dataset.sizes["line"]), look.LINES, strict=False):
+        one = dataset.isel(line=k)
+        face = color if bool(one["converged"]) else "white"
+        ink: look.Ink = {"color": color, "marker": marker, "ms": 3.2, "mfc": face, "ls": ls}
+        ink |= {"lw": 1.0}
+        x, y, error = map(finite_or_nan, columns(one, "velocity", variable, f"{variable}_error"))
+        title = look.shown_in_legend(look.literal(one["title"].values))
+        ink |= {"label": look.wrapped(title, WIDTH - 0.9, 7.5), "gid": variable, "ms": 3.2}
+        axes.errorbar(x, y, yerr=error, **ink, **look.ERROR_BARS)
 
 
 def _legend(axes: Axes) -> None:
-    """Below the column, where it hides nothing."""
-    handles, labels = axes.get_legend_handles_labels()
-    shown = [f"\N{ZERO WIDTH SPACE}{text}" if text.startswith("_") else text for text in labels]
+    """The lines of a column, below it, where their names hide no data."""
+    containers = axes.get_legend_handles_labels()[0]
     axes.legend(
-        [handle.lines[0] for handle in handles if isinstance(handle, ErrorbarContainer)],
-        [look.wrapped(text, WIDTH - 0.9, 7.5) for text in shown],
+        handles=[bars.lines[0] for bars in containers if isinstance(bars, ErrorbarContainer)],
+        labels=[bars.get_label() for bars in containers],
         loc="upper left",
         bbox_to_anchor=(0.0, -0.2),
         fontsize=7.5,

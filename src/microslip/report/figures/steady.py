@@ -1,62 +1,81 @@
-"""Figure 4: forward friction and torque of the steady bore against the forward velocity."""
+"""Figures 4 and 5: the steady bore over the forward velocity, and how it is reached."""
 
 from __future__ import annotations
 
-from typing import Any
-
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures import ticks
-from microslip.report.figures.cuts import computed
-from microslip.report.figures.data import curve, limit, require, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit, require, sweep
 
-CURVES = (
-    ("force", "Eq 21", "mu_forward_theory", "mu_macro", look.BLUE, look.SOLID, "o"),
-    ("torque", "Eq 22", "mu_torque_theory", "mu_torque", look.VERMILLION, look.DASHED, "s"),
+QUANTITIES = (
+    ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
+    ("torque", "Eq 22", "torque", "mu_torque", "transient_torque", look.VERMILLION, look.DASHED),
 )
-"""Each quantity's name, its theory, its values and their error, and its look."""
+"""Name, equation, name of the closed form, steady value, history, colour and line style."""
+MARKERS = "os"
+LABEL = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
+STARTS = {
+    "stress-free": "full stick, no stress",
+    "full-rotation": "full rotational slip",
+    "full-slip": "full forward slip",
+}
+"""The paper's words for the starts; any other label is shown as it is."""
 
 
-def draw(name: str, dataset: xr.Dataset) -> Figure:
+def curves(name: str, dataset: xr.Dataset) -> Figure:
     """Draw Eqs 21 and 22 with the computed steady values."""
-    needed = [n for _, _, theory, values, *_ in CURVES for n in (theory, values)]
-    needed += ["velocity", "converged", "mu_macro_error", "mu_torque_error"]
-    require(name, "continuous_bore", dataset, needed)
+    require(name, "continuous_bore", dataset, ("velocity",))
     dataset, _ = sweep(dataset, ("velocity",))
     velocity = dataset["velocity"].values
-
     figure = look.new_figure(look.SINGLE, 2.7)
     axes = figure.add_subplot()
-    for what, equation, theory, values, color, linestyle, marker in CURVES:
-        label = f"{what}, {equation}"
-        line: dict[str, Any] = {
-            "color": color,
-            "linestyle": linestyle,
-            "label": label,
-            "gid": theory,
-        }
-        axes.plot(*curve(limit(dataset, theory)), **line)
-        columns = (values, f"{values}_error", "converged")
-        found, errors, converged = (dataset[name].values for name in columns)
-        computed(
-            axes,
-            velocity,
-            found,
-            errors,
-            converged,
-            label=f"{what}, computed",
-            color=color,
-            marker=marker,
-        )
+    for (what, equation, theory, value, _, color, ls), marker in zip(
+        QUANTITIES, MARKERS, strict=True
+    ):
+        form = f"mu_{theory}_theory"
+        line = curve(limit(dataset, form))
+        axes.plot(*line, color=color, ls=ls, label=f"{what}, {equation}", gid=form)
+        points = columns(dataset, "velocity", value, f"{value}_error", "converged")
+        panels.computed(axes, *points, label=f"{what}, computed", color=color, marker=marker)
+    axes.set_xlim(velocity[0], velocity[-1])
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
         axes.set_xscale("log")
-        ticks.logarithmic(axes.xaxis)
-    axes.set_xlim(velocity[0], velocity[-1])
-    axes.set_xlabel(look.axis(VELOCITY["continuous-bore"]))
-    axes.set_ylabel(f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}")
-    look.unit_range(axes)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.5)
+        panels.logarithmic(axes.xaxis)
+    axes.set(xlabel=look.axis(VELOCITY["continuous-bore"]), ylabel=LABEL)
+    panels.unit_range(axes)
+    panels.legend_of_figure(figure, axes.get_legend_handles_labels()[0], ncols=2)
+    return figure
+
+
+def transients(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw force and torque over the forward travel, one panel for each start."""
+    dataset, _ = at_one_poisson(dataset)
+    starts = [str(label) for label in dataset["start"].values]
+    figure = look.new_figure(look.DOUBLE, 2.45)
+    grid = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False)[0]
+    for index, start in enumerate(starts):
+        axes, at = grid[index], dataset.isel(start=index)
+        for (what, equation, _, _, history, color, _), marker in zip(
+            QUANTITIES, MARKERS, strict=True
+        ):
+            travel, values = columns(at, "transient_displacement", history)
+            known = np.isfinite(travel) & np.isfinite(values)  # runs differ in length
+            marks: look.Ink = {"marker": marker, "ms": 3.4, "markevery": (0.06, 0.12)}
+            marks |= {"gid": history}
+            label, theory = f"{what}, computed", f"transient_{what}_theory"
+            axes.plot(travel[known], values[known], color=color, label=label, **marks)
+            ink: look.Ink = {"color": color, "ls": look.DASHED, "lw": 1.0, "zorder": 1.5}
+            ink |= {"gid": theory}
+            axes.axhline(float(at[theory]), label=f"{what}, {equation}", **ink)
+        panels.letter(axes, look.letters(index + 1)[-1], STARTS.get(start, look.literal(start)))
+    grid[0].set(ylabel=LABEL, xlim=(0.0, float(dataset["transient_displacement"].max())))
+    grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
+    panels.unit_range(grid[0])
+    panels.legend_of_figure(figure, grid[0].get_legend_handles_labels()[0])
+    where = VELOCITY["continuous-bore"].latex, float(dataset["transient_velocity"])
+    grid[-1].text(0.97, 0.05, look.conditions([where]), transform=grid[-1].transAxes, ha="right")
     return figure

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import functools
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import AbstractContextManager
-from typing import Any, Literal
+from typing import Any
 
-import matplotlib
 import matplotlib.style
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
+from matplotlib.textpath import TextPath
 
 from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
+
+Ink = dict[str, Any]
+"""Keyword arguments of an artist."""
 
 SINGLE, DOUBLE = 3.39, 7.09
 """Journal column widths in inches (86 mm and 180 mm)."""
@@ -36,15 +36,22 @@ DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
 
-COMPUTED = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 3.2,
-    "color": BLACK,
-    "markeredgewidth": 0.7,
-    "zorder": 5,
-}
+COMPUTED: Ink = {"ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7, "zorder": 5}
 """Computed values: the same marker in every figure."""
+
+ERROR_BARS: Ink = {"mew": 0.7, "elinewidth": 0.7, "capsize": 1.8}
+
+LINES = (
+    (BLACK, "o", SOLID),
+    (BLUE, "s", DASHED),
+    (VERMILLION, "^", DASHDOT),
+    (GREEN, "D", DOTTED),
+    (ORANGE, "v", SOLID),
+    (PURPLE, "P", DASHED),
+    (SKY, "X", DASHDOT),
+    (GREY, "*", DOTTED),
+)
+"""Colour, marker and line style of the lines of a panel, in their order."""
 
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),
@@ -64,9 +71,11 @@ HEADING = 8.0
 LONGEST = 100
 """Characters of a text from outside that are drawn at most; the rest is an ellipsis."""
 
+DPI = 300
+
 RC = {
-    "figure.dpi": 300,  # the layout is solved for the PNG that is written
-    "savefig.dpi": 300,
+    "figure.dpi": DPI,  # the layout is solved for the PNG that is written
+    "savefig.dpi": "figure",
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
     "mathtext.fontset": "dejavusans",
@@ -99,6 +108,7 @@ RC = {
 # Every axis has words, then a symbol with its unit: a ratio shows by itself that it has none, and
 # of anything else it is said.
 FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
+FRICTION_IN_TWO_LINES = FRICTION.replace("  (", "\n(")
 
 
 def axis(quantity: Quantity) -> str:
@@ -112,17 +122,9 @@ def style() -> AbstractContextManager[None]:
     return matplotlib.style.context(RC, after_reset=True)
 
 
-def new_figure(
-    width: float, height: float, layout: Literal["constrained"] | None = "constrained"
-) -> Figure:
-    """An empty figure of that size in inches.
-
-    With its layout "constrained" it places its own panels without overlap. On a canvas of its own
-    a text is measured once, and not each time that someone asks how wide it is.
-    """
-    figure = Figure(figsize=(width, height), layout=layout)
-    FigureCanvasAgg(figure)
-    return figure
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of that size in inches, which places its own panels without overlap."""
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def number(value: float) -> str:
@@ -163,45 +165,31 @@ def literal(text: str) -> str:
     return plain.replace("$", r"\$")
 
 
-def wrapped(text: str, width: float, size: float, weight: str = "normal") -> str:
-    """The text with line breaks such that no line is wider than `width` inches.
+def shown_in_legend(text: str) -> str:
+    """A label, changed so that a legend shows it also if it begins with an underscore."""
+    return rf"$\_${text[1:]}" if text.startswith("_") else text
+
+
+def width(text: str, size: float) -> float:
+    """The width in inches of a text, with mathtext, set in `size` points."""
+    return TextPath((0, 0), text, size=size).get_extents().width / 72.0
+
+
+def wrapped(text: str, room: float, size: float) -> str:
+    """The text with line breaks such that no line is wider than `room` inches.
 
     Breaks are made at spaces outside mathtext, and within a word that is wider than a line.
     """
-    measure = measurer(size, weight)
-    lines: list[str] = []
+    lines = [""]
     for word in re.findall(r"(?:\\\$|\$(?:\\\$|[^$])*\$|[^\s$])+|\$", text):
-        if lines and measure(f"{lines[-1]} {word}") <= width:
-            lines[-1] += f" {word}"
-        else:
-            lines += _broken(word, width, measure)
+        fits = re.search(r"(?<!\\)\$", word) or width(word, size) <= room
+        for index, part in enumerate([word] if fits else re.findall(r"\\\$|.", word)):
+            longer = lines[-1] + ("" if index or not lines[-1] else " ") + part
+            if lines[-1] and width(longer, size) > room:
+                lines.append(part)
+            else:
+                lines[-1] = longer
     return "\n".join(lines)
-
-
-def _broken(word: str, width: float, measure: Callable[[str], float]) -> list[str]:
-    """A word, in pieces if it is wider than a line and no formula."""
-    if measure(word) <= width or re.search(r"(?<!\\)\$", word):
-        return [word]
-    pieces = [""]
-    for sign in re.findall(r"\\\$|.", word):
-        if pieces[-1] and measure(pieces[-1] + sign) > width:
-            pieces.append("")
-        pieces[-1] += sign
-    return pieces
-
-
-def measurer(size: float, weight: str = "normal") -> Callable[[str], float]:
-    """A function that tells the width in inches of a text set in that size."""
-    dpi = matplotlib.rcParams["figure.dpi"]
-    return lambda text: _width(text, size, weight, dpi)
-
-
-@functools.lru_cache(4096)
-def _width(text: str, size: float, weight: str, dpi: float) -> float:
-    """The width of a text in inches; a page asks for that of the same words many times."""
-    figure = new_figure(1.0, 1.0, layout=None)
-    probe = figure.text(0.0, 0.0, text, fontsize=size, fontweight=weight)
-    return probe.get_window_extent(dpi=dpi).width / dpi
 
 
 def power_of_ten(value: float) -> str:
@@ -219,42 +207,3 @@ def letters(count: int) -> list[str]:
 def heading(which: str, note: str = "") -> str:
     """The letter of a panel, bold and in brackets, and an optional note."""
     return rf"$\bf{{({which})}}$" + (rf"$\;$ {note}" if note else "")
-
-
-def letter(axes: Axes, which: str, note: str = "", width: float = np.inf) -> None:
-    """Head a panel with its letter and an optional note, above its left corner.
-
-    width: in inches, beyond which the note goes on in another line.
-    """
-    text = wrapped(heading(which, note), width, HEADING) if note else heading(which)
-    axes.set_title(text, loc="left", pad=5, fontsize=HEADING)
-
-
-def legend_above(axes: Axes, which: str, note: str, ncols: int = 2) -> None:
-    """Head a panel with its letter, a note and its legend, where it can hide nothing."""
-    legend = axes.legend(
-        title=heading(which, note),
-        alignment="left",
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=ncols,
-        handlelength=2.2,
-        handletextpad=0.6,
-        columnspacing=0.8,
-        borderaxespad=0.0,
-        borderpad=0.0,
-    )
-    legend.get_title().set_fontsize(HEADING)
-
-
-def after_layout(figure: Figure | SubFigure, finish: Callable[[], None]) -> None:
-    """Ask for something that needs the panels where they stay; it must not move them."""
-    whole: Any = figure.figure or figure  # of a subfigure, the one that it is in
-    whole.finishing = [*getattr(whole, "finishing", ()), finish]
-
-
-def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 0.04) -> None:
-    """Set the vertical range, with a margin, of a panel that shows shares of mu F_z."""
-    span = (high - low) * margin
-    axes.set_ylim(low - span, high + span)
-    axes.set_yticks([i / 5 for i in range(round(5 * low), round(5 * high) + 1)])

@@ -1,169 +1,149 @@
 """Accuracy against cost: the error of every trial over its time, or over its effort.
 
-One panel a point. All panels share their axes, so further down and to the left is better in every
-one. Models with the method that ships have a look each; runs by other methods are small grey marks
-of one kind, which `profile` tells apart. What has no place on the axes is drawn in strips along
-them, never left out: errors too small to judge at the bottom, trials without a result at the top,
-costs of zero at the left.
+One panel a point. All panels share their axes: further down and to the left is better in every one.
+Models with the shipped method have a look each; runs by other methods are small grey marks of one
+kind, which the profile tells apart. Trials without a place on the axes are drawn at their ends:
+errors too small to judge at the bottom, trials without a result at the top, costs of zero at the
+left.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from matplotlib import patheffects
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.legend import Legend
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.markers import CARETDOWN, CARETLEFT
 from matplotlib.patches import Patch
-from matplotlib.transforms import Bbox
 
 from microslip.config.quantities import AMPLITUDE, MU_MACRO, VELOCITY
+from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import require
-from microslip.report.figures.panels import (
-    COLUMNS,
-    PANEL,
-    TITLE,
-    Scale,
-    grid,
-    label_beside,
-    share_axes,
-)
+from microslip.report.figures.data import columns
 
 COSTS = {
-    "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run  $t$ (s)"),
-    "accuracy_vs_work": (
-        "effort",
-        "front_effort",
-        "effort: iterations $\\times$ unknowns\n(dimensionless)",
-    ),
+    "accuracy_vs_cost": ("seconds", "CPU time of a run  $t$ (s)"),
+    "accuracy_vs_work": ("effort", "effort: iterations $\\times$ unknowns\n(dimensionless)"),
 }
-"""Abscissa of each figure: the variable, the front in it, the label."""
-POINT: tuple[str, ...] = (
-    "point",
-    "point_title",
-    "point_motion",
-    "point_velocity",
-    "point_amplitude",
-)
-POINT += ("point_poisson", "reference_error")
-TRIAL: tuple[str, ...] = (
-    "trial_point",
-    "trial_model",
-    "trial_method",
-    "trial_level",
-    "trial_tolerance",
-)
-TRIAL += ("error", "converged")
-
+"""Abscissa of each figure: its variable and its label."""
+COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
+"""Panels side by side; in inches: width of a panel, height of a row, and of a line of
+the legend."""
 BELOW_REFERENCE = 3.0
-"""Errors so many times smaller than what is known of any reference are drawn in the strip."""
+"""Errors so many times smaller than the error of any reference are drawn at the bottom."""
 MOST = 1e6
-"""The largest error over the smallest that has a place above the strip."""
+"""The largest ratio of errors on the axis."""
 
-FRONT: dict[str, Any] = {
-    "color": "#EBD9A0",
-    "linewidth": 5.0,
-    "solid_capstyle": "round",
-    "zorder": 1,
-}
-UNKNOWN: dict[str, Any] = {
-    "facecolor": "none",
-    "edgecolor": "#A8A8A8",
-    "linewidth": 0.0,
-    "hatch": "/////",
-}
-SHIPPED: dict[str, Any] = {"linewidth": 1.1, "markersize": 4.2, "markeredgewidth": 0.8, "zorder": 5}
-OTHER: dict[str, Any] = {
-    "color": "#8C8C8C",
-    "marker": "o",
-    "linestyle": "none",
-    "markersize": 2.0,
-    "zorder": 3,
-}
-OTHER |= {"markeredgewidth": 0.0}
-AUTO: dict[str, Any] = {
-    "color": look.BLACK,
-    "marker": "D",
-    "linewidth": 0.8,
-    "markersize": 4.2,
-    "zorder": 7,
-}
-PAPER: dict[str, Any] = {
-    "color": look.BLACK,
-    "marker": "*",
-    "linestyle": "none",
-    "markersize": 9.0,
-    "zorder": 8,
-}
-CROSS: dict[str, Any] = {"color": look.BLACK, "marker": "x", "linestyle": "none", "markersize": 5.0}
-CROSS |= {"markeredgewidth": 0.7, "zorder": 9}
-ARROW: dict[str, Any] = {"color": look.BLACK, "linestyle": "none", "markersize": 3.6, "zorder": 9}
-MARKS = 7  # lines in the legend of marks
+FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
+UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
+SHIPPED: look.Ink = {"lw": 1.1, "ms": 4.2, "mew": 0.8, "zorder": 5}
+OTHER: look.Ink = {"color": "#8C8C8C", "marker": "o", "ls": "none", "ms": 2.0, "zorder": 3}
+OTHER |= {"mew": 0.0}
+AUTO: look.Ink = {"color": look.BLACK, "marker": "D", "lw": 0.8, "ms": 4.2, "zorder": 7}
+PAPER: look.Ink = {"color": look.BLACK, "marker": "*", "ls": "none", "ms": 9.0, "zorder": 8}
+CROSS: look.Ink = {"color": look.BLACK, "marker": "x", "ls": "none", "ms": 5.0, "mew": 0.7}
+CROSS |= {"zorder": 9}
+ARROW: look.Ink = {"color": look.BLACK, "ls": "none", "ms": 3.6, "zorder": 9}
+ARROW |= {"clip_on": False, "marker": CARETDOWN}
+AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7))
+"""Directions from a point in which its label may stand."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A logarithmic axis from low to high, and a strip beyond each end that has a name.
+
+    Values below `low` are drawn in the strip `below`, values that are not finite in `above`.
+    """
+
+    low: float
+    high: float
+    below: str = ""
+    above: str = ""
+
+    @property
+    def strip(self) -> float:
+        """Ratio of the ends of a strip."""
+        return (self.high / self.low) ** 0.1
+
+    def shown(self, values: np.ndarray) -> np.ndarray:
+        """Where values are drawn."""
+        inside = np.where(values < self.low, self.low / self.strip**0.5, values)
+        return np.where(np.isfinite(values), inside, self.high * self.strip**0.5)
+
+    def on(self, axes: Axes, axis: Axis) -> None:
+        """Set the ends of an axis, its ticks, and a line where a strip begins."""
+        first = self.low / (self.strip if self.below else 1.0)
+        last = self.high * (self.strip if self.above else 1.0)
+        decades = np.arange(np.ceil(np.log10(self.low)), np.floor(np.log10(self.high)) + 1)
+        # Labels at the ends would meet those of the next panel.
+        span = np.log10(last / first)
+        inner = np.abs(decades - np.log10(first * last) / 2) < 0.44 * span
+        decades = decades[inner][:: max(1, -(-inner.sum() // 5))]
+        ticks = {10.0**power: f"$10^{{{power:.0f}}}$" for power in decades}
+        if self.below == "0":
+            ticks = {place: text for place, text in ticks.items() if place > self.low * self.strip}
+            ticks[self.low / self.strip**0.5] = "0"
+        if self.above:
+            ticks = {place: text for place, text in ticks.items() if place < self.high / self.strip}
+            ticks[self.high * self.strip**0.5] = self.above
+        line = axes.axvline if axis is axes.xaxis else axes.axhline
+        for place, name in ((self.low, self.below), (self.high, self.above)):
+            if name:
+                line(place, color=look.GREY, lw=0.5, ls=look.DOTTED, zorder=2)
+        axis.set_ticks(list(ticks), list(ticks.values()))
+        axis.set_ticks([], minor=True)
+        (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(first, last)
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the figure `name`: errors over seconds, or over effort."""
-    cost, front, label = COSTS[name]
-    require(name, "accuracy_cost", dataset, (*POINT, *TRIAL, cost, front))
-    points = [dataset.isel(point=index) for index in range(dataset.sizes["point"])]
-    if not points or not dataset.sizes["trial"]:
+    cost, label = COSTS[name]
+    points = [dataset.isel(point=index) for index in range(dataset["point"].size)]
+    if not points or not dataset["error"].size:
         raise ValueError(f"figure {name}: the dataset holds no points or no trials")
-    of_point = dataset["trial_point"].values.astype(str)
-    scales = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
-    letters = look.letters(len(points))
-    titles = [_title(which, point) for which, point in zip(letters, points, strict=True)]
-    models = set(dataset["trial_model"].values.astype(str)) - {"auto"}
+    models = look.in_order(set(dataset["trial_model"].values.astype(str)) - {"auto"})
     others = bool(set(dataset["trial_method"].values.astype(str)) - {"shipped", "paper"})
-    # Beside a panel the lists stand one above the other.
-    figure, panels, below = grid(titles, len(models) + MARKS + 2, max(len(models), MARKS))
-    for index, (axes, point) in enumerate(zip(panels, points, strict=True)):
-        rows = dataset.isel(trial=of_point == str(point["point"].item()))
-        table = Table(rows, cost, *scales)
-        share_axes(axes, *scales)
-        _behind(axes, float(point["reference_error"]), table, rows[front].values != 0)
-        _trials(axes, table)
-        _labels(axes, table)
-        lowest = index + COLUMNS >= len(points)
-        axes.tick_params(labelleft=index % COLUMNS == 0, labelbottom=lowest)
-        axes.set_xlabel(label if lowest else "")
-        axes.set_ylabel("" if index % COLUMNS else f"error of {MU_MACRO.math}\n(dimensionless)")
-    _legends(below, models, others)
+    rows = -(-len(points) // COLUMNS)
+    heights = ROW * rows + 0.35, LINE * (max(len(models), 7) + 2.0)
+    figure = look.new_figure(look.DOUBLE, sum(heights))
+    page, foot = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
+    grid = page.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False).ravel()
+    costs, errors = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
+    of_point = dataset["trial_point"].values.astype(str)
+    letters = look.letters(len(points))
+    for index, (axes, letter, point) in enumerate(zip(grid, letters, points, strict=False)):
+        axes.set(xscale="log", yscale="log")
+        costs.on(axes, axes.xaxis)
+        errors.on(axes, axes.yaxis)
+        own = dataset.isel(trial=of_point == str(point["point"].item()))
+        _panel(axes, own.sortby("trial_level"), cost, costs, errors)
+        _reference(axes, float(point["reference_error"]))
+        _head(axes, letter, point)
+        if index + COLUMNS >= len(points):
+            axes.tick_params(labelbottom=True)
+            axes.set_xlabel(label)
+        if index % COLUMNS == 0:
+            axes.set_ylabel(f"error of {MU_MACRO.math}\n(dimensionless)")
+    for axes in grid[len(points) :]:
+        axes.remove()
+    _legends(foot, models, others)
     return figure
-
-
-class Table:
-    """The trials of one point as arrays: where they are drawn, and what they are."""
-
-    def __init__(self, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
-        order = np.lexsort((rows[cost].values, rows["trial_level"].values))
-        self.order = order
-        columns = ("trial_model", "trial_method")
-        self.model, self.method = (rows[name].values.astype(str)[order] for name in columns)
-        self.tolerance = rows["trial_tolerance"].values[order]
-        self.converged = rows["converged"].values[order] != 0
-        raw_cost, raw_error = (rows[name].values.astype(float)[order] for name in (cost, "error"))
-        self.finite = np.isfinite(raw_error)
-        self.x, self.y = costs.shown(raw_cost), errors.shown(raw_error)
-        self.left, self.low = raw_cost < costs.low, raw_error < errors.low
-        self.costs, self.errors = costs, errors
-        self.auto = self.model == "auto"
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
     """A scale that spans all costs above zero."""
-    costs = np.asarray(costs, dtype=float)
     counted = costs[np.isfinite(costs) & (costs > 0)]
     low, high = (counted.min(), counted.max()) if counted.size else (1.0, 10.0)
     margin = max((high / low) ** 0.05, 1.2)
-    below, above = bool((costs <= 0).any()), not np.isfinite(costs).all()
-    return Scale.over(low / margin, high * margin, below, above)
+    below, above = (costs <= 0).any(), not np.isfinite(costs).all()
+    return Scale(low / margin, high * margin, "0" * bool(below), "none" * bool(above))
 
 
 def _scale_of_errors(dataset: xr.Dataset) -> Scale:
@@ -171,127 +151,117 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
     errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
     counted = np.isfinite(errors) & (errors > 0)
     lows = []
-    columns = (dataset[name].values for name in ("point", "reference_error"))
-    for point, known in zip(*columns, strict=True):
+    for point, known in zip(*columns(dataset, "point", "reference_error"), strict=True):
         smallest = errors[counted & (of_point == str(point))].min(initial=np.inf) / 1.5
         known = known / BELOW_REFERENCE if np.isfinite(known) else 0.0
         lows.append(max(known, smallest) if np.isfinite(smallest) else known or np.inf)
     high = 1.5 * errors[counted].max(initial=1e-3)
     low = max(min(*lows, high / 100.0), high / MOST)
-    return Scale.over(low, high, bool((errors < low).any()), not np.isfinite(errors).all())
+    below, above = (errors < low).any(), not np.isfinite(errors).all()
+    return Scale(low, high, "below" * bool(below), "none" * bool(above))
 
 
-def _title(which: str, point: xr.Dataset) -> str:
-    """The heading of a panel: its letter, the title of its point, and the point's numbers."""
+def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
+    """Write the letter of a panel, the title of its point, and the point's numbers."""
     motion = str(point["point_motion"].item())
     known = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
     symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
-    numbers = [
-        rf"${symbol} = {look.number(value)}$"
-        for symbol, value in zip((*symbols, r"\nu"), values, strict=True)
-        if np.isfinite(value)
-    ]
-    title = look.heading(which, look.literal(point["point_title"].item()))
-    return look.wrapped(title, PANEL[0], TITLE) + "\n" + ",  ".join(numbers)
+    pairs = zip((*symbols, r"\nu"), values, strict=True)
+    numbers = look.conditions((symbol, value) for symbol, value in pairs if np.isfinite(value))
+    title = look.heading(letter, look.literal(point["point_title"].item()))
+    head = f"{look.wrapped(title, WIDTH, look.HEADING)}\n{numbers}"
+    axes.set_title(head, loc="left", pad=4, fontsize=look.HEADING, linespacing=1.15)
 
 
-def _behind(axes: Axes, known: float, table: Table, front: np.ndarray) -> None:
-    """Draw what lies behind the trials: the reference's error, hatched, and the Pareto front."""
+def _reference(axes: Axes, known: float) -> None:
+    """Hatch the errors within that of the reference; an unknown one is NaN."""
     bottom, top = axes.get_ylim()
-    if known > bottom:  # what is not known at all is NaN
+    if known > bottom:
         axes.axhspan(bottom, min(known, top), gid="reference", zorder=0.5, **UNKNOWN)
-    chosen = front[table.order]
-    x, y = table.x[chosen], table.y[chosen]
-    along = np.lexsort((-y, x))
-    axes.plot(x[along], y[along], drawstyle="steps-post", gid="front", **FRONT)
 
 
-def _trials(axes: Axes, table: Table) -> None:
+def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
     """Draw every trial of a point: curves over the levels, one a model, and marks of others."""
-    for model, method in dict.fromkeys(zip(table.model, table.method, strict=True)):
-        mine = (table.model == model) & (table.method == method)
-        color, marker, _ = look.model(model)
-        if method == "paper":
-            ink = PAPER
-        elif model == "auto":
-            ink = AUTO
-        elif method == "shipped":
-            ink = SHIPPED | {"color": color, "marker": marker}
-        else:
-            ink = OTHER
-        joined, failed = mine & table.finite, mine & ~(table.finite & table.converged)
-        axes.plot(table.x[joined], table.y[joined], gid=f"{model} {method}", **ink)
-        if ink is OTHER:
-            failed = failed & False  # the cross tells enough
-        ink = ink | {"linestyle": "none", "markerfacecolor": "white"}
-        axes.plot(table.x[failed], table.y[failed], gid="hollow", **ink)
-    failed = ~(table.finite & table.converged)
-    axes.plot(table.x[failed], table.y[failed], gid="not converged", **CROSS)
-    left, bottom = table.costs.first, table.errors.first
-    strips: list[tuple[np.ndarray, str, Any]]
-    strips = [(table.low, "low", CARETDOWN), (table.left, "left", CARETLEFT)]
-    for mine, gid, marker in strips:
-        x = np.full(mine.sum(), left) if gid == "left" else table.x[mine]
-        y = np.full(mine.sum(), bottom) if gid == "low" else table.y[mine]
-        if mine.any():
-            axes.plot(x, y, marker=marker, gid=gid, clip_on=False, **ARROW)
+    raw_x, raw_y, front = columns(rows, cost, "error", f"front_{cost}")
+    x, y, done = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
+    model, method = (rows[f"trial_{n}"].values.astype(str) for n in ("model", "method"))
+    best = np.flatnonzero(front)
+    best = best[np.lexsort((-y[best], x[best]))]
+    axes.plot(x[best], y[best], drawstyle="steps-post", gid="front", **FRONT)
+    failed = ~(np.isfinite(raw_y) & done)
+    for pair in dict.fromkeys(zip(model, method, strict=True)):
+        own = (model == pair[0]) & (method == pair[1])
+        ink = _ink(*pair)
+        joined = own & np.isfinite(raw_y)
+        axes.plot(x[joined], y[joined], gid=" ".join(pair), **ink)
+        if ink is not OTHER:
+            hollow: look.Ink = ink | {"ls": "none", "mfc": "white", "gid": "hollow"}
+            axes.plot(x[own & failed], y[own & failed], **hollow)
+    axes.plot(x[failed], y[failed], gid="not converged", **CROSS)
+    low, left = raw_y < errors.low, raw_x < costs.low
+    if low.any():
+        bottom = np.full(low.sum(), axes.get_ylim()[0])
+        axes.plot(x[low], bottom, gid="low", **ARROW)
+    if left.any():
+        side = np.full(left.sum(), axes.get_xlim()[0])
+        axes.plot(side, y[left], gid="left", **(ARROW | {"marker": CARETLEFT}))
+    auto, tolerances = model == "auto", rows["trial_tolerance"].values
+    texts = [f"${look.power_of_ten(tolerance)}$" for tolerance in tolerances[auto]]
+    marks = np.column_stack((x, y))
+    panels.after_layout(axes.get_figure(root=True), lambda: _label(axes, texts, auto, marks))
 
 
-def _labels(axes: Axes, table: Table) -> None:
-    """Name the tolerances where there is room; the list below tells the other marks."""
-    points = axes.transData.transform(np.column_stack((table.x, table.y)))
-    drawn = [points]
-    for line in axes.get_lines():
-        if " " in (line.get_gid() or "") and line.get_linestyle() != "None":  # those of a model
-            corners = axes.transData.transform(line.get_path().vertices)
-            drawn.append(np.concatenate([*map(_along, corners[:-1], corners[1:]), corners]))
-    taken: list[Bbox] = []
-    for index in np.flatnonzero(table.auto):
-        text = f"${look.power_of_ten(table.tolerance[index])}$"
-        label_beside(axes, text, points[index], np.concatenate(drawn), taken)
+def _ink(model: str, method: str) -> look.Ink:
+    """The look of the trials of a model by a method."""
+    if method == "paper":
+        return PAPER
+    if model == "auto":
+        return AUTO
+    color, marker, _ = look.model(model)
+    return SHIPPED | {"color": color, "marker": marker} if method == "shipped" else OTHER
 
 
-def _along(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Points of a line from start to end, in pixels, closer than letters are wide."""
-    return np.linspace(start, end, 20)
+def _label(axes: Axes, texts: list[str], labelled: np.ndarray, marks: np.ndarray) -> None:
+    """Write texts beside the marks that are labelled where they hide nothing, else leave them out.
+
+    marks: shape (n, 2), in data coordinates.
+    """
+    pixels, scale = axes.transData.transform(marks), look.DPI / 72.0
+    line = pixels[labelled]
+    taken = np.concatenate([pixels, *np.linspace(line[:-1], line[1:], 20)])
+    for text, place in zip(texts, pixels[labelled], strict=True):
+        size = np.array([look.width(text, look.SMALLEST) * 72.0, look.SMALLEST]) * scale
+        for way in np.array(AROUND):
+            middle = place + way * (size / 2 + 5.0 * scale)
+            low, high = middle - size / 2, middle + size / 2
+            hidden = ((taken > low - scale) & (taken < high + scale)).all(axis=1)
+            if not hidden.any() and axes.bbox.contains(*low) and axes.bbox.contains(*high):
+                white = [patheffects.withStroke(linewidth=1.5, foreground="white")]
+                at = axes.transData.inverted().transform(middle)
+                ink: look.Ink = {"fontsize": look.SMALLEST, "ha": "center", "va": "center"}
+                ink |= {"zorder": 10, "path_effects": white, "gid": "label"}
+                axes.text(at[0], at[1], text, **ink)
+                corners = np.stack(np.meshgrid(*np.linspace(low, high, 5).T), axis=-1)
+                taken = np.concatenate([taken, corners.reshape(-1, 2)])
+                break
 
 
-def _legends(below: Axes, models: set[str], others: bool) -> None:
-    """Two lists: the models, and the marks; side by side where there is room."""
-    shipped = [
-        Line2D([], [], label=name, color=look.model(name)[0], marker=look.model(name)[1], **SHIPPED)
-        for name in look.in_order(models)
+def _legends(figure: SubFigure, models: list[str], others: bool) -> None:
+    """Two lists side by side: the models, and the marks."""
+    shipped: list[Artist] = [
+        Line2D([], [], label=model, **_ink(model, "shipped")) for model in models
     ]
-    marks = [
+    marks: list[Artist] = [
         Line2D([], [], label="Pareto front", **FRONT),
         Line2D([], [], label="chosen by tolerance", **AUTO),
         Line2D([], [], label="paper's run", **PAPER),
         *([Line2D([], [], label="any other method", **OTHER)] if others else []),
         Line2D([], [], label="not converged, or none", **CROSS),
-        Line2D([], [], label="too small for the axis", **ARROW | {"marker": CARETDOWN}),
+        Line2D([], [], label="too small for the axis", **ARROW),
         Patch(label="within the reference's error", **UNKNOWN),
     ]
-    wide = below.get_position().width > 0.8
-    top = 1.0
-    lists: list[tuple[str, Sequence[Artist]]]
-    lists = [("shipped method", shipped), ("marks", marks)]
-    for index, (title, handles) in enumerate(lists):
-        if not handles:
-            continue
-        legend = Legend(
-            below,
-            handles,
-            [str(handle.get_label()) for handle in handles],
-            title=title,
-            loc="upper left",
-            bbox_to_anchor=(0.4 * index, 1.0) if wide else (0.0, top),
-            fontsize=look.SMALLEST,
-            title_fontsize=TITLE,
-            alignment="left",
-            borderaxespad=0.0,
-            borderpad=0.0,
-            handlelength=2.2,
-        )
-        below.add_artist(legend)
-        top -= legend.get_window_extent().height / below.bbox.height + 0.05
+    for title, handles, side in (("shipped method", shipped, "left"), ("marks", marks, "center")):
+        text: look.Ink = {"fontsize": look.SMALLEST, "title_fontsize": look.HEADING}
+        text |= {"alignment": "left", "title": title, "loc": f"upper {side}"}
+        figure.legend(handles=handles, **text)

@@ -1,0 +1,108 @@
+"""Accuracy study: performance profiles, and growth of the effort with the number of unknowns."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from microslip.report.figures import panels
+from microslip.report.figures import style as look
+from microslip.report.figures.data import columns
+
+NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
+"""Labels of the competitors that have a name of their own."""
+LEAST_RANGE = 10.0
+"""End of the axis of a profile if nothing is more expensive than the best."""
+GROWTH = {
+    "iterations": "iterations a step  (dimensionless)",
+    "seconds": "time a step (s)",
+    "memory": "memory (bytes)",
+}
+"""Quantities of the panels of `scaling`, and their labels."""
+
+
+def profile(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw the share of points that each competitor solves at which cost.
+
+    There is a panel for each contest, at the tightest tolerance.
+    """
+    if not dataset["point"].size or not dataset["competitor"].size:
+        raise ValueError(f"figure {name}: the dataset holds no points or no trials")
+    dataset = dataset.isel(map_tolerance=int(np.argmin(dataset["map_tolerance"].values)))
+    of_contest = dataset["competitor_contest"].values.astype(str)
+    contests = list(dict.fromkeys(of_contest))
+    rows = -(-len(contests) // 2)
+    figure = look.new_figure(look.DOUBLE, 3.1 * rows)
+    grid = figure.subplots(rows, 2, squeeze=False).ravel()
+    tolerance = look.power_of_ten(float(dataset["map_tolerance"]))
+    letters = look.letters(len(contests))
+    for axes, letter, contest in zip(grid, letters, contests, strict=False):
+        _profile(axes, dataset.isel(competitor=of_contest == contest), contest == contests[0])
+        panels.legend_above(axes, letter, rf"{contest}, error within ${tolerance}$")
+    for axes in grid[len(contests) :]:
+        axes.remove()
+    return figure
+
+
+def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
+    """A rising line for each competitor: the share of points within a ratio of the best."""
+    ratios = contest["profile_ratio"].transpose("competitor", "point").values
+    high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
+    names = contest["competitor"].values.astype(str)
+    # The shipped method first, in black; then in the order of the dataset.
+    order = np.argsort(names != "shipped", kind="stable")
+    for place, index in enumerate(order):
+        name, at = names[index], np.sort(ratios[index][np.isfinite(ratios[index])])
+        color = look.LINES[place % len(look.LINES)][0]
+        ls = look.LINES[(place + place // len(look.LINES)) % len(look.LINES)][2]
+        if of_models and name in look.MODELS:
+            color = look.model(name)[0]
+            ls = look.DOTTED if color == look.BLACK else ls  # a solid black line is the choice
+        if name == "auto":
+            color, ls = look.BLACK, look.SOLID
+        shares = np.array([0, *range(1, at.size + 1), at.size]) / ratios.shape[1]
+        ink: look.Ink = {"color": color, "ls": ls, "drawstyle": "steps-post"}
+        ink |= {"lw": 1.8 if name in ("shipped", "auto") else 1.3, "gid": f"profile {name}"}
+        label = NAMES.get(name, name) + ("" if at.size else ": never")
+        axes.plot([1.0, *at, high], shares, label=label, **ink)
+    axes.set(xscale="log", xlim=(1.0, high), ylabel="share of points  (dimensionless)")
+    axes.set_xlabel(r"CPU time over the least  $t/t_\mathrm{best}$")
+    panels.logarithmic(axes.xaxis)
+    panels.unit_range(axes)
+
+
+def scaling(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw one panel a quantity, one curve a model, with the fitted exponent in its label."""
+    figure = look.new_figure(look.DOUBLE, 3.1)
+    grid = figure.subplots(1, len(GROWTH), sharex=True)
+    for letter, axes, (quantity, label) in zip("abc", grid, GROWTH.items(), strict=True):
+        _growth(axes, dataset, quantity)
+        axes.set(xlabel="unknowns  $N$  (dimensionless)", ylabel=label)
+        panels.legend_above(axes, letter, "fitted growth", ncols=1)
+    return figure
+
+
+def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
+    """Draw one quantity of every model against the unknowns."""
+    axes.set(xscale="log", yscale="log")
+    for index, model in enumerate(dataset["scaling_model"].values.astype(str)):
+        of_model = dataset.isel(scaling_model=index).sortby("scaling_unknowns")
+        x, y = columns(of_model, "scaling_unknowns", f"scaling_{quantity}")
+        known = np.isfinite(x) & np.isfinite(y)
+        exponent = float(of_model[f"scaling_exponent_{quantity}"])
+        growth = rf"  $N^{{{exponent:.2f}}}$" if np.isfinite(exponent) else ""
+        color, marker, _ = look.model(model)
+        ink: look.Ink = {"color": color, "marker": marker, "ms": 4.0}
+        ink |= {"ls": look.LINES[index % 4][2]}
+        axes.plot(x[known], y[known], label=f"{model}{growth}", gid=quantity, **ink)
+        if quantity == "iterations" and known.any():
+            last = np.flatnonzero(known)[-1]
+            size = str(of_model["scaling_label"].values[last])
+            text: look.Ink = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom"}
+            text |= {"textcoords": "offset points", "gid": "size"}
+            axes.annotate(size, (x[last], y[last]), (-2, 3), **text)
+    axes.margins(0.06, 0.14)
+    for axis in (axes.xaxis, axes.yaxis):
+        panels.logarithmic(axis)

@@ -1,0 +1,149 @@
+"""Figures of the paper's claims: static limits with the share of the bound, and stick zones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from scipy.interpolate import griddata
+
+from microslip.config.quantities import AMPLITUDE, FORWARD, LATERAL, VELOCITY, Quantity
+from microslip.report.figures import panels
+from microslip.report.figures import style as look
+from microslip.report.figures.data import columns
+from microslip.theory.catalogue import FORMS, STATIC
+
+BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
+LIMIT = "limit", STATIC, look.BLUE, look.SOLID
+ZONE = "zone", "mu_static_stick_zone", look.GREEN, look.DASHED
+SLIDER = "slider", "mu_static_slider", look.ORANGE, look.DASHDOT
+PRINTED = "zone_printed", "mu_static_stick_zone_printed", look.ORANGE, look.DOTTED
+MOTIONS = (
+    ("transverse", "transverse oscillation", AMPLITUDE["transverse"], (LIMIT, ZONE, SLIDER)),
+    ("bore", "oscillating bore", BORE_AMPLITUDE, (LIMIT, ZONE, PRINTED)),
+)
+"""Each column: the motion, its name, its amplitude, and its curves: variable, closed form, colour
+and line style."""
+LIGHTEST = 0.82
+"""End of the shades for lines; lighter ones are too pale."""
+PIXELS = 401
+"""Pixels along a side of the picture of a contact; each shows the point next to it."""
+MOMENTS = {0: "before one turning point", 1: "mid-stroke", 2: "before the other"}
+"""The moments of `patches`, by their index in the dataset."""
+AREAS = (
+    ("patch_stick", "all", look.BLACK, look.SOLID),
+    ("patch_stick_right", "right half", look.BLUE, look.DASHED),
+    ("patch_stick_left", "left half", look.VERMILLION, look.DASHDOT),
+)
+
+
+def static(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw friction over amplitude above, shares of the bound over the radius below."""
+    figure = look.new_figure(look.DOUBLE, 6.4)
+    grid = figure.subplots(2, 2)
+    for column, (motion, title, quantity, curves) in enumerate(MOTIONS):
+        upper, lower = grid[:, column]
+        _friction(upper, dataset, motion, curves)
+        upper.set(xlabel=look.axis(quantity), ylabel=look.FRICTION)
+        panels.legend_above(upper, "ab"[column], title)
+        _shares(lower, dataset, motion, quantity)
+        panels.legend_above(lower, "cd"[column], "share of the friction bound")
+        panels.unit_range(upper)
+        panels.unit_range(lower)
+    return figure
+
+
+def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> None:
+    """The limit and formulas for it as lines; certified points and the paper's run as marks."""
+    amplitude = dataset[f"{motion}_curve_amplitude"].values
+    for variable, name, color, ls in curves:
+        label = FORMS[motion][name].equation or FORMS[motion][name].label
+        values = dataset[f"{motion}_curve_{variable}"].values
+        axes.plot(amplitude, values, color=color, ls=ls, label=label, zorder=3, gid=variable)
+    paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
+    for what, velocity, marker in (("slow", paper, "o"), ("march", slowest, "v")):
+        names = (f"{motion}_{n}" for n in ("amplitude", what, f"{what}_error"))
+        at, values, errors = columns(dataset, *names)
+        label = rf"$\tilde{{v}} = {look.number(velocity)}$"
+        points = at, values, errors, np.isfinite(errors)
+        panels.computed(axes, *points, label=label, marker=marker, clip_on=False)
+    label = rf"the paper's run, $\tilde{{v}} = {look.number(paper)}$"
+    ink: look.Ink = {"mfc": "none", "mec": look.VERMILLION, "mew": 1.1, "zorder": 6}
+    ink |= {"clip_on": False}
+    axes.plot(at, dataset[f"{motion}_paper"].values, "s", ms=6.5, label=label, gid="paper", **ink)
+    axes.set_xlim(0.0, amplitude[-1])
+
+
+def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
+    """Draw the share of the bound that the oscillation uses, solid, and the rest, dashed."""
+    radius, dim = dataset["share_radius"].values, f"{motion}_share_amplitude"
+    amplitudes = dataset[dim].values
+    shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
+    for index, (amplitude, color) in enumerate(zip(amplitudes, shades, strict=True)):
+        row = dataset.isel({dim: index})
+        used, rest = columns(row, f"{motion}_used_share", f"{motion}_left_share")
+        label = look.conditions([(quantity.latex, float(amplitude))])
+        axes.plot(radius, used, color=color, ls=look.SOLID, label=label, gid="used")
+        axes.plot(radius, rest, color=color, ls=look.DASHED, gid="left")
+    for ls, label in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
+        axes.plot([], [], color=look.BLACK, ls=ls, label=label)
+    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound  (dimensionless)")
+
+
+def patches(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw the contact at three moments of a bore above, the sticking area over a period below."""
+    figure = look.new_figure(look.DOUBLE, 5.2)
+    grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
+    contacts = [grid[which] for which in "abc"]
+    for axes, which, (moment, note) in zip(contacts, "abc", MOMENTS.items(), strict=True):
+        shade = _contact(axes, dataset.isel(patch_moment=moment))
+        panels.letter(axes, which, note)
+    contacts[0].set_ylabel(look.axis(FORWARD))
+    label = "traction over bound  $|q|/(\\mu p)$\nwhere it sticks"
+    panels.colour_bar(shade, contacts, label, shrink=0.8, pad=0.015, aspect=24)
+    _areas(grid["d"], dataset)
+    return figure
+
+
+def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
+    """Draw sticking points shaded by the share of the bound in use, and slipping points white."""
+    lateral, forward, share = columns(at, "patch_lateral", "patch_forward", "patch_share")
+    line = np.linspace(-1.0, 1.0, PIXELS)
+    x, y = np.meshgrid(line, line)
+    shown = griddata((lateral, forward), share, (x, y), method="nearest")
+    half = 0.5 * (line[1] - line[0])
+    frame: look.Ink = {"origin": "lower", "extent": 2 * (-1 - half, 1 + half)}
+    slips = (shown >= 1.0) | (np.hypot(x, y) >= 1.0)
+    scale: look.Ink = {"cmap": look.COLOURMAP, "vmin": 0.0, "vmax": 1.0, "interpolation": "nearest"}
+    shade = axes.imshow(np.ma.masked_where(slips, shown), gid="sticks", **scale, **frame)
+    axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
+    edge = columns(at, "patch_edge_lateral", "patch_edge_forward")
+    axes.plot(*edge, color=look.VERMILLION, ls=look.DASHED, gid="theory")
+    phase = float(at["patch_moment_phase"]) / np.pi
+    text = rf"{look.number(phase)}\,\pi" if abs(phase) > 1e-9 else "0"
+    axes.text(0.5, 0.04, rf"$\Omega t = {text}$", transform=axes.transAxes, ha="center")
+    axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=look.axis(LATERAL))
+    axes.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1))
+    return shade
+
+
+def _areas(axes: Axes, dataset: xr.Dataset) -> None:
+    """Shares of the contact's area that stick."""
+    phase = dataset["patch_phase"].values / np.pi
+    for variable, label, color, ls in AREAS:
+        axes.plot(phase, dataset[variable].values, color=color, ls=ls, label=label, gid=variable)
+    for moment in dataset["patch_moment_phase"].values[list(MOMENTS)] / np.pi:
+        axes.axvline(moment, color=look.GREY, lw=0.7, ls=look.DOTTED, zorder=0)
+    symbols = BORE_AMPLITUDE.latex, VELOCITY["bore"].latex
+    values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
+    at = look.conditions(zip(symbols, values, strict=True))
+    panels.legend_above(axes, "d", f"area that sticks, {at}", ncols=3)
+    axes.set(xlim=phase[[0, -1]], xlabel=r"phase  $\Omega t/\pi$")
+    axes.set_ylabel("share of the contact  (dimensionless)")
+    panels.unit_range(axes)
