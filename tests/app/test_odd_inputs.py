@@ -12,7 +12,7 @@ from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.si.materials import Material
 from microslip.si.predict import predict
-from microslip.si.quantities import si_value
+from microslip.si.quantities import read
 from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
@@ -38,11 +38,11 @@ def one_line(error, part):
 @pytest.mark.parametrize(("value", "unit", "expected"), QUANTITIES, ids=short)
 def test_a_quantity(value, unit, expected):
     if isinstance(expected, float):
-        found = si_value("size", value, unit, low=-math.inf)
+        found = read("size", value, unit, low=-math.inf).si
         assert found == pytest.approx(expected, rel=LAST_DIGITS, abs=0.0)
         return
     with pytest.raises(InputError) as caught:
-        si_value("size", value, unit, low=-math.inf)
+        read("size", value, unit, low=-math.inf).si
     one_line(caught.value, expected)
 
 
@@ -57,7 +57,7 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    for module in ("static_limit", "reduction", "pulled"):
+    for module in ("static_limit", "request"):
         monkeypatch.setattr(f"microslip.si.{module}.solve", work)
 
 
@@ -83,8 +83,7 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
             seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
             return RIGID
 
-        monkeypatch.setattr("microslip.si.static_limit.solve", solve)
-        monkeypatch.setattr("microslip.si.reduction.solve", solve)
+        monkeypatch.setattr("microslip.si.request.solve", solve)
         found = predict("transverse", **BALL | words)
         return [*seen[0], found.contact_radius_m, found.u_lim_m]
 
@@ -155,7 +154,7 @@ def friction():
         {"mu_macro": (axes, mu), "mu_macro_error": (axes, 0.0 * mu + 1e-3)},
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
         {"motion": "transverse", "tolerance": 1e-2},
-    ).friction
+    ).microslip
 
 
 @pytest.mark.filterwarnings("error")

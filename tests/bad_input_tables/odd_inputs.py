@@ -351,7 +351,7 @@ CALLS += [
     (
         "fit",
         {**ONE_ROW, "measured": ROW | {"mu": [math.nan]}},
-        "mu = nan: empty in row 1",
+        "mu = None: empty; allowed: a number in every row",
     ),
     ("fit", {"confidence": 95}, "confidence = 95: allowed is a number above 0 and below 1, such"),
     ("Material", {"young": HUGE}, "young = "),

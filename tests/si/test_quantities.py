@@ -6,7 +6,7 @@ import pytest
 from bad_input_tables.odd_quantities import ROWS, Q
 
 from microslip.foundation.errors import InputError
-from microslip.si.quantities import si_value
+from microslip.si.quantities import read
 
 HALF_A_DIGIT = 3e-16
 """Relative: what the last bit of a float and of pi leave open."""
@@ -16,12 +16,12 @@ HALF_A_DIGIT = 3e-16
 @pytest.mark.parametrize(("value", "unit", "expected"), ROWS, ids=repr)
 def test_an_odd_quantity_is_its_value_or_is_refused(value, unit, expected):
     if not isinstance(expected, str):
-        found = si_value("size", value, unit, low=-math.inf)
+        found = read("size", value, unit, low=-math.inf).si
         assert type(found) is float
         assert found == pytest.approx(expected, rel=HALF_A_DIGIT, abs=0.0)
         return
     with pytest.raises(InputError) as caught:
-        si_value("size", value, unit, low=-math.inf)
+        read("size", value, unit, low=-math.inf).si
     assert (caught.value.argument, caught.value.value is value) == ("size", True)
     line = str(caught.value)
     assert line.startswith("size = ") and "allowed is" in line and "\n" not in line
@@ -48,11 +48,11 @@ def test_equal_quantities_are_equal_to_the_last_bit(texts, unit):
 @pytest.mark.parametrize("value", ["0.3 um", "7 mm", "1.1 in"])
 def test_a_pint_quantity_is_what_its_text_is(value):
     number, unit = value.split()
-    assert si_value("size", Q(float(number), unit), "m") == si_value("size", value, "m")
+    assert read("size", Q(float(number), unit), "m") == si_value("size", value, "m").si
 
 
 def test_limits_are_said_with_the_value_as_it_was_given():
     with pytest.raises(InputError, match=r"^size = '-5 mm': allowed is a finite value above 0 m$"):
-        si_value("size", "-5 mm", "m")
+        read("size", "-5 mm", "m").si
     with pytest.raises(InputError, match="'150 %': .* at least 0 and at most 1$"):
-        si_value("share", "150 %", "", low_open=False, high=1.0)
+        read("share", "150 %", "", low_open=False, high=1.0).si
