@@ -112,7 +112,10 @@ DRIVEN = [
     ({"tolerance": "1e-9"}, "at least 1e-06 and at most 0.1"),
 ]
 FOUND = [
-    ({"reduction": "50 %"}, "--reduction = '50 %': allowed without an amplitude, a speed or a load"),
+    (
+        {"reduction": "50 %"},
+        "--reduction = '50 %': allowed without an amplitude, a speed",
+    ),
     (SOUGHT | {"load": None}, "one thing can be looked for, and amplitude and load are not given"),
     (SOUGHT | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
     (SOUGHT | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
@@ -121,7 +124,10 @@ FOUND = [
     (SOUGHT | FORCED, "--reduction = '50 %': allowed where a speed alone pulls"),
     (SOUGHT | SPRUNG, "--reduction = '50 %': allowed where a speed alone pulls"),
     (SOUGHT | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
-    ({"reduction": "50 %", "load": None, "amplitude": "0 m"}, "allowed is above 0 with a reduction"),
+    (
+        {"reduction": "50 %", "load": None, "amplitude": "0 m"},
+        "allowed is above 0 with a reduction",
+    ),
 ]
 UNCERTAIN = [
     ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is a spread below the value"),
@@ -129,7 +135,11 @@ UNCERTAIN = [
     ({"load": "10 +- 1 N"}, "in it '10': 10 is a number without a unit"),
     ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
 ]
-PREDICTIONS = MOVED + PRESSED + BODIES + DRIVEN + FOUND + UNCERTAIN
+OTHERS = [
+    ({"output": "found.nc"}, "--output = 'found.nc': allowed with --table alone"),
+    ({"points": "3"}, "--points = '3': allowed with --propulsion alone"),
+]
+PREDICTIONS = OTHERS + MOVED + PRESSED + BODIES + DRIVEN + FOUND + UNCERTAIN
 
 SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
 PROPELLED = {"motion": SELF_PROPELLED, "speed": None}

@@ -9,7 +9,6 @@ import pytest
 
 import microslip
 from microslip.app import cli
-from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 
 EIGHT = "elliptic:forward_cycles=2,phase=0"
@@ -89,34 +88,3 @@ def test_the_command_line_says_the_same(capsys):
     assert force == number_text(found.force_N[1], found.force_error_N[1])
     assert efficiency == number_text(found.efficiency[1], found.efficiency_error[1])
     assert all(" +- " in cell for cell in (power_out, power_in))
-
-
-REFUSED = {
-    "no drive": ("transverse", {}, "MOTION = 'transverse': allowed is a self-propelled motion"),
-    "a speed": (
-        EIGHT,
-        {"speed": "1 mm/s"},
-        "--speed = '1 mm/s': allowed is none with --propulsion",
-    ),
-    "no amplitude": (EIGHT, {"amplitude": None}, "--amplitude: needed"),
-    "no length": (EIGHT, {"amplitude": "1 deg"}, "--amplitude = '1 deg': "),
-    "no points": (EIGHT, {"points": "1"}, "--points = 1: allowed is a whole number"),
-    "a rotation": (
-        "normal:forward=1,angle=1,phase=90",
-        {},
-        "MOTION = 'normal:forward=1,angle=1,phase=90': allowed is a motion without a rotation",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_bad_input_gets_one_line(name, capsys):
-    motion, more, expected = REFUSED[name]
-    assert cli.main(words(motion, **more)) == 2
-    line = capsys.readouterr().err
-    assert line.count("\n") == 1 and expected in line
-
-
-def test_an_amplitude_beyond_all_sizes_is_refused():
-    with pytest.raises(InputError, match="times u_lim; allowed is at most"):
-        microslip.predict_propulsion(EIGHT, **BALL, amplitude="1 m", frequency="1 Hz")

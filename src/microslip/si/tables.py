@@ -167,9 +167,7 @@ def _headings(
         if name in units:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
         if names.get(name) and not unit:
-            raise ValueError(
-                f"line {where}: {name} has no unit; allowed is one, as in speed [mm/s]"
-            )
+            raise ValueError(f"line {where}: {name} has no unit; {allowed}")
         units[name] = unit
     return separator, units
 
