@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
+from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
 from microslip.si.motions import COMBINED, is_along_the_pull, unit_of_amplitude
-from microslip.si.prediction import (
-    Forced,
-    Oscillating,
-    Prediction,
-    Rest,
-    Search,
-    Sliding,
-    SteadySpin,
-    Travel,
-)
+from microslip.si.prediction import Forced, Prediction, Rest
 from microslip.si.printed_lines import (
     EXCLUDED,
     FIRST_ORDER,
@@ -80,282 +72,231 @@ NO_SPREAD_OF_SPEED = "none of the speed: the contact may run away"
 """Text where a speed within the uncertainties is infinite."""
 STAYS_WITHIN_SPREADS = "none of the speed: the contact may move"
 """Text where the contact stays one standard deviation around the inputs, but may move further."""
-PLAIN = ("", 1.0)
-"""The unit of dimensionless numbers."""
-RADIAN = ("rad", 1.0)
+OUTCOMES = {
+    "moves": "it moves, cycle by cycle",
+    "stays": "it stays: the force is below the threshold",
+    "runs away": "{runs_away}",
+    "undecided": "the error does not tell whether it moves: by {fastest} at most",
+}
+"""Sentences about the outcome of a force."""
 
 
 def prediction_text(found: Prediction) -> str:
     """All lines of a Prediction."""
-    return "\n".join(_Text(found).lines())
+    show, forced = _Texts(found).show, isinstance(found, Forced)
+    lines = [
+        line(name.replace("_", " "), found.understood[name])
+        for name in UNDERSTOOD
+        if name in found.understood
+    ]
+    lines += ["", *show("contact radius", "{contact_radius_m}")]
+    lines += show("indentation", "{indentation_m}", not math.isnan(found.indentation_m))
+    lines += show("u_lim", "{u_lim_m}") + show("largest pressure", "{largest_pressure_Pa}")
+    lines += show("amplitude", "{size}, dimensionless {amplitude}", found.motion not in COMBINED)
+    lines += show("amplitude", "the largest is dimensionless {amplitude}", found.motion in COMBINED)
+    lines += show("velocity", "dimensionless {velocity}", not forced)
+    found_one = "{sought} {sought_text}, {least} takes {understood[reduction]} away"
+    lines += show("found", found_one + "; all other lines are for {sought_exact}")
+    for name in ("force", "stiffness", "mass", "damping"):
+        lines += show(name, f"dimensionless {{{name}}}")
+    lines += show("groups", REFERENCE_LOADS, bool(found.load_amplitude_N and found.regime))
+    lines += show("regime", "{regime_text}")
+    lines += show(
+        "natural frequency", "{natural_frequency_Hz}, of the mass on a contact that sticks"
+    )
+    lines += _outcome(found, show) if forced else _friction(found, show)
+    lines += _spread(found, show)
+    lines += show("torque", "{torque_N_m}")
+    lines += show("power", "{vibration_power_W} for the {added}")
+    lines += show("", "{drag_power_W} for the drag", found.power is not None)
+    lines += show("energy", "{energy_per_cycle_J} a cycle turn into heat") + not_converged(found)
+    lines += [f"warning: {text}" for text in found.warnings]
+    return "\n".join(lines + [f"not checked: {text}" for text in found.not_checked])
 
 
-class _Text:
-    """A Prediction with the units in which its quantities are shown."""
+def _friction(found: Prediction, show: Show) -> list[str]:
+    """Lines of the friction at a speed: which number is a ratio, which a coefficient."""
+    lines = show("mu_macro", "{mu_macro}: ratio of friction with {added} to friction without")
+    coefficient = "coefficient of friction with {added}, instead of {understood[mu]}"
+    lines += show("mu_apparent", f"{{mu_apparent}}: {coefficient}")
+    force = "{friction_force_N} instead of {friction_force_still_N}: {reduction} less"
+    lines += show("friction force", force)
+    static = "{mu_static_apparent}: coefficient of friction at vanishing speed"
+    lines += show("static friction", static) + show("", "{mu_static_apparent_interval}")
+    if found.mu_static is not None:
+        threshold, along = found.force_threshold_N, is_along_the_pull(found.motion)
+        lines += show("", UNKNOWN_THRESHOLD, threshold is None and along)
+        apart = threshold is not None and not _moves_at_static_friction(found)
+        lines += show("", ALONG_THE_PULL, apart)
+    return lines + _threshold(found, show)
+
+
+def _threshold(found: Prediction, show: Show) -> list[str]:
+    """Lines of the force that moves the contact, if it is known."""
+    value, error = found.force_threshold_N, found.force_threshold_error_N
+    if value is None or error is None:
+        return []
+    rounding = ROUNDING * found.load_N  # as for static friction, times the load
+    if value > max(error, rounding):
+        sentence = "{force_threshold_N}: no smaller constant force moves the contact"
+    elif value <= error <= rounding:
+        sentence = "{zero_N}: any constant force moves the contact"
+    else:
+        sentence = "{zero_threshold_N}: any constant force beyond that moves the contact"
+    known = value > max(error, rounding) or bool(found.force_threshold_high_N)
+    lines = show("force threshold", sentence)
+    return lines + show("", "{force_threshold_interval_N}", known)
+
+
+def _moves_at_static_friction(found: Prediction) -> bool:
+    """Whether the force threshold is the static friction."""
+    static, threshold = found.mu_static, found.force_threshold_N
+    if static is None or threshold is None:
+        return False
+    return math.isclose(threshold, found.friction_force_still_N * static, abs_tol=0.0)
+
+
+def _outcome(found: Prediction, show: Show) -> list[str]:
+    """Lines of a contact under a force: its threshold, its outcome, and its way."""
+    lines, factor, columns = _threshold(found, show), found.safety_factor, found.uncertainty
+    safe = factor is not None and (factor > found.safety_factor_error or found.safety_factor_high)
+    lines += show("safety factor", "{safety_factor}: threshold over force", bool(safe))
+    lines += show("", "{safety_factor_interval}", bool(safe))
+    if found.outcome is not None:
+        central = "with the central values " if "probability_error" in columns else ""
+        lines += show("outcome", central + OUTCOMES[found.outcome])
+    shares = [
+        f"{probability_text(columns[name], columns['probability_error'])} that it {words}"
+        for name, words in PROBABILITIES.items()
+        if name in columns
+    ]
+    if shares and "probability_stays" not in columns:
+        shares.append("not computed: that it stays or moves")
+    lines += show("probability", ", ".join(shares), bool(shares))
+    if found.outcome == "moves":
+        lines += show("speed", "{speed_m_s}")
+        lines += show("displacement", "{displacement_per_cycle_m} a cycle")
+        way = "{time_to_1_mm_s}, the contact radius of {contact_radius_m} in"
+        lines += show("walks", f"1 mm in {way} {{time_to_contact_radius_s}}")
+    if isinstance(found, Rest):
+        most = "the vibration adds nothing"
+        if found.cycles_to_rest:
+            cycles = f"about {found.cycles_to_rest:.2g} cycles"
+            most = f"nine tenths of what the vibration adds within {cycles}"
+        lines += show("displacement", f"{{displacement_m}} forward, then no further: {most}")
+        unknown = found.displacement_m is None
+        lines += show("displacement", "not known: {displacement_reason}", unknown)
+    return lines
+
+
+def _spread(found: Prediction, show: Show) -> list[str]:
+    """The line of the standard uncertainties that follow from those of the inputs."""
+    if not found.uncertainty:
+        return []
+    parts = ["{mu_apparent_spread} of mu_apparent", "{friction_force_spread_N} of the force"]
+    if isinstance(found, Forced):
+        spread, moves = found.speed_spread_m_s, found.probability_moves or 0.0
+        if math.isinf(spread):
+            return show("spread", NO_SPREAD_OF_SPEED)
+        if spread == 0.0 and moves > EXCLUDED:
+            return show("spread", STAYS_WITHIN_SPREADS)
+        parts = ["{speed_spread_m_s} of the speed"]
+    text = "standard uncertainties that follow from those of the inputs"
+    if found.sought is not None:
+        parts.insert(0, "{sought_spread_text} of the {sought}")
+        text += ", as does the {sought}"
+    if found.power is not None:
+        text += "; none is computed for torque, power and energy"
+    return show("spread", f"{', '.join(parts)}: {text}")
+
+
+class _Texts(dict[str, Any]):
+    """Texts of the columns of a Prediction: numbers with their errors, each in its unit."""
 
     def __init__(self, found: Prediction):
-        self.found = found
-        self.length = length_unit(found.u_lim_m)
-        self.speed = f"{self.length[0]}/s", self.length[1]
-        self.force = force_unit(found.friction_force_still_N)
-        self.turned = unit_of_amplitude(found.motion) == "rad"
-        self.added = ADDED.get(found.motion, "vibration")
-
-    def number(self, name: str, si: str = "", unit: tuple[str, float] = PLAIN) -> str:
-        """A quantity with its error, si: the SI unit at the end of its column."""
-        end = f"_{si}" if si else ""
-        error = getattr(self.found, f"{name}_error{end}")
-        return in_unit(getattr(self.found, name + end), error, unit)
-
-    def interval(
-        self, name: str, si: str = "", unit: tuple[str, float] = PLAIN, *, linear: bool = True
-    ) -> list[str]:
-        """The line of the 95 % interval of a quantity, if there is one.
-
-        linear: whether the method of the interval of static friction is that of this one, too.
-        """
-        end, columns = f"_{si}" if si else "", self.found.uncertainty
-        if f"{name}_low{end}" not in columns:
-            return []
-        low, high = (columns[f"{name}_{side}{end}"] / unit[1] for side in ("low", "high"))
-        error = getattr(self.found, f"{name}_error{end}") / unit[1]
-        first_order = linear and columns.get("interval_method") == FIRST_ORDER
-        origin = FROM_LINEAR_MODEL if first_order else FROM_INPUTS
-        text = interval_text(low, high, unit[0], error=error)
-        return [line("", f"95 % interval {text}, {origin}")]
-
-    def lines(self) -> Iterator[str]:
-        found = self.found
-        for name in UNDERSTOOD:
-            if name in found.understood:
-                yield line(name.replace("_", " "), found.understood[name])
-        yield ""
-        yield from self.contact()
-        if isinstance(found, Sliding) and found.search is not None:
-            yield self.sought(found.search)
-        yield from self.groups_of_drive()
-        if isinstance(found, Forced):
-            yield from self.threshold()
-            yield from self.safety(found)
-            yield from self.outcome(found)
-        else:
-            yield from self.friction()
-        yield from self.spread()
-        yield from self.energy()
-        yield from not_converged(found)
-        yield from (f"warning: {text}" for text in found.warnings)
-        yield from (f"not checked: {text}" for text in found.not_checked)
-
-    def contact(self) -> Iterator[str]:
-        found = self.found
-        unit = self.length
-        if found.contact_radius_m >= LARGEST_NUMBER * unit[1]:
+        length, force = length_unit(found.u_lim_m), force_unit(found.friction_force_still_N)
+        powers = [found.drag_power_W or 0.0, found.vibration_power_W or 0.0]
+        watts = prefixed(max(map(abs, powers)) or 1.0, "W")
+        speed, self.found = (f"{length[0]}/s", length[1]), found
+        self.units = {"_m_s": speed, "_m": length, "_N": force, "_W": watts, "_Pa": ("MPa", 1e6)}
+        super().__init__(understood=found.understood, added=ADDED.get(found.motion, "vibration"))
+        self["zero_N"] = in_unit(0.0, 0.0, force)
+        less = 100.0 * found.force_reduction, 100.0 * found.mu_macro_error
+        self["reduction"] = number_text(*less, "%")
+        if math.isinf(found.largest_pressure_Pa):
+            self["largest_pressure_Pa"] = "infinite, at the tip"
+        if found.contact_radius_m >= LARGEST_NUMBER * length[1]:
             unit = unit_for(found.contact_radius_m, LENGTHS)
-        yield line("contact radius", in_unit(found.contact_radius_m, 0.0, unit))
-        if not math.isnan(found.indentation_m):
-            yield line("indentation", in_unit(found.indentation_m, 0.0, self.length))
-        yield line("u_lim", in_unit(found.u_lim_m, 0.0, self.length))
-        pressure = "infinite, at the tip"
-        if math.isfinite(found.largest_pressure_Pa):
-            pressure = in_unit(found.largest_pressure_Pa, 0.0, ("MPa", 1e6))
-        yield line("largest pressure", pressure)
-        if isinstance(found, Oscillating):
-            size = "the largest is "
-            if found.motion not in COMBINED:
-                unit = RADIAN if self.turned else self.length
-                size = f"{in_unit(found.amplitude_si or 0.0, 0.0, unit)}, "
-            yield line("amplitude", f"{size}dimensionless {number_text(found.amplitude)}")
-        if found.velocity is not None and not isinstance(found, Forced):
-            yield line("velocity", f"dimensionless {number_text(found.velocity)}")
-
-    def unit_of_sought(self, search: Search) -> tuple[str, float]:
-        if search.sought == "amplitude":
-            return RADIAN if self.turned else self.length
-        return self.speed if search.sought == "speed" else force_unit(self.found.load_N)
-
-    def sought(self, search: Search) -> str:
-        """The line of the quantity with the wanted reduction."""
-        size, unit = self.found.sought_value, self.unit_of_sought(search)
-        value, exact = in_unit(size, search.sought_error, unit), in_unit(size, 0.0, unit)
-        end = "the least that" if search.sought == "amplitude" else "the largest at which vibration"
-        share = f"takes {self.found.understood['reduction']} away"
-        here = f"all other lines are for {exact}"
-        return line("found", f"{search.sought} {value}, {end} {share}; {here}")
-
-    def groups_of_drive(self) -> Iterator[str]:
-        """Lines of the groups of the drive, and of its regime."""
-        found = self.found
-        groups = {"force": found.force} if isinstance(found, Forced) else {}
-        body = found.body if isinstance(found, Oscillating) else None
-        if body is not None:
-            groups |= {name: getattr(body, name) for name in ("stiffness", "mass", "damping")}
-        for name, group in groups.items():
-            if group is not None:
-                yield line(name, f"dimensionless {number_text(group)}")
-        if body is None:
-            return
-        if found.load_amplitude_N:
-            yield line("groups", REFERENCE_LOADS)
-        yield line("regime", REGIMES[body.regime])
-        if body.natural_frequency is not None:
-            frequency = body.natural_frequency * found.frequency_Hz
-            text = in_unit(frequency, 0.0, prefixed(frequency, "Hz"))
-            yield line("natural frequency", f"{text}, of the mass on a contact that sticks")
-
-    def friction(self) -> Iterator[str]:
-        """Lines of the friction at a given speed: which number is a ratio, which a coefficient."""
-        found, added = self.found, self.added
-        still = in_unit(found.friction_force_still_N, 0.0, self.force)
-        less = number_text(100.0 * found.force_reduction, 100.0 * found.mu_macro_error, "%")
-        ratio = f"ratio of friction with {added} to friction without"
-        yield line("mu_macro", f"{self.number('mu_macro')}: {ratio}")
-        coefficient = f"coefficient of friction with {added}, instead of {found.understood['mu']}"
-        yield line("mu_apparent", f"{self.number('mu_apparent')}: {coefficient}")
-        force = self.number("friction_force", "N", self.force)
-        yield line("friction force", f"{force} instead of {still}: {less} less")
-        if found.mu_static is not None:
-            value = self.number("mu_static_apparent")
-            yield line("static friction", f"{value}: coefficient of friction at vanishing speed")
-            yield from self.interval("mu_static_apparent")
-            if found.force_threshold_N is not None:
-                if not self.moves_at_static_friction():
-                    yield line("", ALONG_THE_PULL)
-            elif is_along_the_pull(found.motion):
-                yield line("", UNKNOWN_THRESHOLD)
-        yield from self.threshold()
-
-    def moves_at_static_friction(self) -> bool:
-        """Whether the force threshold is the static friction."""
-        still, static = self.found.friction_force_still_N, self.found.mu_static
-        return static is not None and math.isclose(
-            self.found.force_threshold_N or 0.0, still * static, abs_tol=0.0
-        )
-
-    def threshold(self) -> Iterator[str]:
-        """Lines of the force that moves the contact, if it is known."""
-        value, error = self.found.force_threshold_N, self.found.force_threshold_error_N
-        if value is None or error is None:
-            return
-        rounding = ROUNDING * self.found.load_N  # as for static friction, times the load
-        nothing = value <= max(error, rounding)
-        if nothing:
-            most = 0.0 if value <= error <= rounding else value + error
-            text, words = in_unit(0.0, most, self.force), "any constant force"
-            words += " beyond that" if most else ""
-        else:
-            text, words = in_unit(value, error, self.force), "no smaller constant force"
-        yield line("force threshold", f"{text}: {words} moves the contact")
-        if not nothing or self.found.force_threshold_high_N:
-            linear = self.moves_at_static_friction()
-            yield from self.interval("force_threshold", "N", self.force, linear=linear)
-
-    def safety(self, found: Forced) -> Iterator[str]:
-        factor, error = found.safety_factor, found.safety_factor_error
-        if factor is None or error is None:
-            return
-        if factor > error or found.safety_factor_high:
-            yield line("safety factor", f"{number_text(factor, error)}: threshold over force")
-            yield from self.interval("safety_factor", linear=self.moves_at_static_friction())
-
-    def outcome(self, found: Forced) -> Iterator[str]:
-        """Lines of the outcome of a force, and of its probabilities."""
-        if found.outcome is not None:
-            verdict = {
-                "moves": "it moves, cycle by cycle",
-                "stays": "it stays: the force is below the threshold",
-                "runs away": runs_away(found),
-                "undecided": "the error does not tell whether it moves: by "
-                + in_unit(found.speed_m_s + found.speed_error_m_s, 0.0, self.speed)
-                + " at most",
-            }[found.outcome]
-            central = "with the central values " if "probability_error" in found.uncertainty else ""
-            yield line("outcome", central + verdict)
-        yield from self.probability()
-        if found.travel is not None:
-            yield from self.way(found, found.travel)
-        if isinstance(found, Rest):
-            yield from self.rest(found)
-
-    def probability(self) -> Iterator[str]:
-        """The line of the probabilities of each outcome."""
-        columns = self.found.uncertainty
-        shares = [
-            f"{probability_text(columns[name], columns['probability_error'])} that it {words}"
-            for name, words in PROBABILITIES.items()
-            if name in columns
-        ]
-        if shares and "probability_stays" not in columns:
-            shares.append("not computed: that it stays or moves")
-        if shares:
-            yield line("probability", ", ".join(shares))
-
-    def way(self, found: Forced, travel: Travel) -> Iterator[str]:
-        """Lines of the speed of a contact that moves."""
-        yield line("speed", self.number("speed", "m_s", self.speed))
-        if isinstance(found, Oscillating):
-            way = self.number("displacement_per_cycle", "m", self.length)
-            yield line("displacement", f"{way} a cycle")
-        radius = in_unit(found.contact_radius_m, 0.0, self.length)
-        short = self.number("time_to_1_mm", "s", unit_for(travel.time_to_1_mm_s, TIMES))
-        unit = unit_for(travel.time_to_contact_radius_s, TIMES)
-        long = self.number("time_to_contact_radius", "s", unit)
-        yield line("walks", f"1 mm in {short}, the contact radius of {radius} in {long}")
-
-    def rest(self, found: Rest) -> Iterator[str]:
-        """The line of the displacement of a contact that stays."""
-        text = f"not known: {found.displacement_reason}"
-        if found.displacement_m is not None:
-            most = "the vibration adds nothing"
-            if found.cycles_to_rest:
-                cycles = f"about {found.cycles_to_rest:.2g} cycles"
-                most = f"nine tenths of what the vibration adds within {cycles}"
-            way = self.number("displacement", "m", self.length)
-            text = f"{way} forward, then no further: {most}"
-        yield line("displacement", text)
-
-    def spread(self) -> Iterator[str]:
-        """The line of the standard uncertainties that follow from those of the inputs."""
-        found, columns = self.found, self.found.uncertainty
-        if not columns:
-            return
+            self["contact_radius_m"] = in_unit(found.contact_radius_m, 0.0, unit)
+        turned = ("rad", 1.0) if unit_of_amplitude(found.motion) == "rad" else length
+        if found.amplitude_si is not None:
+            self["size"] = in_unit(found.amplitude_si, 0.0, turned)
+        if found.sought is not None:
+            self._seek({"amplitude": turned, "speed": speed, "load": force_unit(found.load_N)})
+        if found.force_threshold_N is not None:
+            most = found.force_threshold_N + (found.force_threshold_error_N or 0.0)
+            self["zero_threshold_N"] = in_unit(0.0, most, force)
         if isinstance(found, Forced):
-            spread = columns["speed_spread_m_s"]
-            if math.isinf(spread):
-                yield line("spread", NO_SPREAD_OF_SPEED)
-                return
-            if spread == 0.0 and columns.get("probability_moves", 0.0) > EXCLUDED:
-                yield line("spread", STAYS_WITHIN_SPREADS)
-                return
-            shares = {"the speed": (spread, self.speed)}
-        else:
-            shares = {
-                "mu_apparent": (columns["mu_apparent_spread"], PLAIN),
-                "the force": (columns["friction_force_spread_N"], self.force),
-            }
-        text = "standard uncertainties that follow from those of the inputs"
-        if isinstance(found, Sliding) and found.search is not None:
-            sought, unit = found.search.sought, self.unit_of_sought(found.search)
-            shares = {f"the {sought}": (columns["sought_spread"], unit)} | shares
-            text += f", as does the {sought}"
-        if found.power is not None:
-            text += "; none is computed for torque, power and energy"
-        parts = [
-            f"{number_text(value / size, unit=name, digits=2)} of {what}"
-            for what, (value, (name, size)) in shares.items()
-        ]
-        yield line("spread", f"{', '.join(parts)}: {text}")
+            self["fastest"] = in_unit(found.speed_m_s + found.speed_error_m_s, 0.0, speed)
+            if found.outcome == "runs away":
+                self["runs_away"] = runs_away(found)
+        if found.regime is not None:
+            self["regime_text"] = REGIMES[found.regime]
+        if found.natural_frequency is not None:
+            frequency = found.natural_frequency * found.frequency_Hz
+            self["natural_frequency_Hz"] = in_unit(frequency, 0.0, prefixed(frequency, "Hz"))
 
-    def energy(self) -> Iterator[str]:
-        """Lines of torque and power, where they are known and more than the force tells."""
-        found, power = self.found, self.found.power
-        if power is None:
-            return
-        if isinstance(found, SteadySpin):
-            unit = prefixed(found.torque_N_m or 0.0, "N m")
-            yield line("torque", self.number("torque", "N_m", unit))
-        largest = max(abs(found.drag_power_W or 0.0), abs(power.vibration_power_W)) or 1.0
-        unit = prefixed(largest, "W")
-        yield line("power", f"{self.number('vibration_power', 'W', unit)} for the {self.added}")
-        yield line("", f"{self.number('drag_power', 'W', unit)} for the drag")
-        heat = self.number("energy_per_cycle", "J", prefixed(power.energy_per_cycle_J, "J"))
-        yield line("energy", f"{heat} a cycle turn into heat")
+    def _seek(self, units: dict[str, tuple[str, float]]) -> None:
+        """Add the texts of the sought quantity."""
+        found, unit = self.found, units[self.found.sought]
+        self["sought_text"] = in_unit(found.sought_value, found.sought_error, unit)
+        self["sought_exact"] = in_unit(found.sought_value, 0.0, unit)
+        least = "the least that" if found.sought == "amplitude" else None
+        self["least"] = least or "the largest at which vibration"
+        spread = found.sought_spread
+        if spread is not None:
+            self["sought_spread_text"] = number_text(spread / unit[1], 0.0, unit[0], digits=2)
+
+    def show(self, title: str, template: str, when: bool = True) -> list[str]:
+        """The line of a template, none where a column in it is unknown."""
+        try:
+            return [line(title, template.format_map(self))] if when else []
+        except KeyError:
+            return []
+
+    def __missing__(self, name: str) -> str:
+        """The text of a column, of an interval, or of a spread; KeyError where it is unknown."""
+        end = next((end for end in ENDS if name.endswith(end)), "")
+        stem = name.removesuffix(end)
+        if stem.endswith("_interval"):
+            return self._interval(stem.removesuffix("_interval"), end)
+        value = getattr(self.found, name, None)
+        if value is None:
+            raise KeyError(name)
+        if isinstance(value, str):
+            return value
+        unit = self.units.get(end, ("", 1.0))
+        if end == "_s":
+            unit = unit_for(value, TIMES)
+        elif end in ("_J", "_N_m"):
+            unit = prefixed(value, end[1:].replace("_", " "))
+        if stem.endswith("_spread"):
+            return number_text(value / unit[1], 0.0, unit[0], digits=2)
+        error = getattr(self.found, f"{stem}_error{end}", None)
+        return in_unit(value, error or 0.0, unit)
+
+    def _interval(self, stem: str, end: str) -> str:
+        """The text of a 95 % interval, and where it follows from."""
+        columns, (name, size) = self.found.uncertainty, self.units.get(end, ("", 1.0))
+        low, high = (columns[f"{stem}_{side}{end}"] / size for side in ("low", "high"))
+        error = getattr(self.found, f"{stem}_error{end}") / size
+        of_static = stem == "mu_static_apparent" or _moves_at_static_friction(self.found)
+        first_order = of_static and columns.get("interval_method") == FIRST_ORDER
+        origin = FROM_LINEAR_MODEL if first_order else FROM_INPUTS
+        return f"95 % interval {interval_text(low, high, name, error=error)}, {origin}"
+
+
+ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
+"""Ends of columns that name their unit."""
+Show = Callable[..., list[str]]
+"""show(title, template, when) -> lines"""
