@@ -113,33 +113,6 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
 
 
 @pytest.mark.slow
-def test_a_line_that_cannot_be_names_columns_and_options(folder, capsys):
-    """A column by its heading, what has none by its option: not by the argument of Python."""
-    table = "load,speed,drive_stiffness [N/mm],amplitude\n10 N,1 mm/s,{},{}\n10 N,1 mm/s,,1 um\n"
-    command = [word for word in COMMAND if word not in ("--radius", SHARED["radius"])]
-    given = ["--contact-radius", "1 mm", "--tolerance", "0.05"]
-    cases = [
-        ("-5", "1 um", given, "drive_stiffness = '-5 N/mm': allowed is a finite value above 0 N/m"),
-        ("", "", given, "amplitude: transverse needs it"),
-    ]
-    command = [word for word in command if word not in ("--tolerance", "0.01")]
-    for stiffness, amplitude, words, error in cases:
-        (folder / "contacts.csv").write_text(table.format(stiffness, amplitude))
-        assert cli.main([*command, *words, "--json", "--output", "found.csv"]) == 1
-        said = capsys.readouterr()
-        assert said.err == f"microslip predict: line 2: {error}\n"
-        assert json.loads(said.out)[0]["error"] == error
-        assert pd.read_csv(folder / "found.csv").error[0] == error
-    (folder / "contacts.csv").write_text("load,speed,radius\n10 N,1 mm/s,\n10 N,1 mm/s,5 mm\n")
-    assert cli.main([*command, "--amplitude", "1 um", "--tolerance", "0.05"]) == 1
-    assert "line 2: radius: needed, or --contact-radius in its place" in capsys.readouterr().err
-    text = "load,speed,contact_radius\n10 N,1 mm/s,\n10 N,1 mm/s,1 mm\n"
-    (folder / "contacts.csv").write_text(text)
-    assert cli.main([*command, "--amplitude", "1 um", "--tolerance", "0.05"]) == 1
-    assert "line 2: --radius: needed, or a contact_radius in its place" in capsys.readouterr().err
-
-
-@pytest.mark.slow
 def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(folder, capsys):
     """Without vibration the threshold is mu times the load: 0.15 * 800 N = 120 N.
 

@@ -13,7 +13,6 @@ import microslip
 from microslip.app import cli
 from microslip.estimate.estimate import Estimate
 from microslip.si.materials import Material
-from microslip.si.motions import MOTIONS
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
 EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency": "20 kHz"}
@@ -106,32 +105,6 @@ def test_the_command_line_answers_in_json(capsys):
     expected = "contact_radius_m indentation_m u_lim_m velocity amplitude mu_macro mu_macro_error"
     assert said.keys() >= {*expected.split(), "mu_apparent", "warnings"}
     assert said == microslip.predict("transverse", **asked).to_dict()
-
-
-def test_the_command_line_answers_in_words(capsys):
-    """What was understood, as it was given, comes before what was found."""
-    for name, motion, said_first in (
-        ("transverse", {"amplitude": "1 um", "frequency": "20 kHz"}, ["20 kHz\n", "1 um\n"]),
-        ("bore", {"amplitude": "0.5 deg", "frequency": "50 Hz"}, ["0.5 deg = 0.00872665 rad\n"]),
-        ("continuous-bore", {"rotation": "60 rpm"}, ["60 rpm = 6.28319 rad/s\n"]),
-    ):
-        assert cli.main(["predict", name, *options(material="steel", **BALL, **motion)]) == 0
-        said = capsys.readouterr().out
-        understood, _, found = said.partition("contact radius")
-        assert "54.57 um" in found
-        assert "warning: " in found
-        for text in (
-            f"{name}: the sphere {MOTIONS[name]}",
-            "rigid, as none was given",
-            *said_first,
-        ):
-            assert text in understood
-        for line in ("5 mm", "10 N", "0.3", "1 mm/s", "steel (E = 210 GPa, nu = 0.3"):
-            assert f"  {line}" in understood
-        numbers = {line.split()[0]: line for line in found.splitlines()}
-        assert "ratio of friction" in numbers["mu_macro"]
-        assert "coefficient of friction" in numbers["mu_apparent"]
-        assert "coefficient of friction" in numbers.get("static", "coefficient of friction")
 
 
 def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import microslip
-from microslip.app import cli, predict_command
+from microslip.app import cli
 from microslip.si import request
 
 BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "frequency": "20 kHz"}
@@ -85,31 +85,6 @@ def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
     assert "NOT CONVERGED: mu_macro" not in text
     found = microslip.predict("transverse", **BALL | SLOW)
     assert found.converged and found.mu_static_reason == "lost on the way"
-
-
-def test_the_help_groups_all_options(capsys):
-    with pytest.raises(SystemExit):
-        cli.main(["predict", "--help"])
-    text = capsys.readouterr().out
-    titles = re.findall(r"^(\w+):$", text, re.MULTILINE)
-    assert titles[-5:] == ["bodies", "load", "motion", "drive", "output"]
-    for name in (name for options in predict_command.GROUPS.values() for name in options):
-        assert f"  --{name} " in text, name
-
-
-@pytest.mark.long
-def test_an_answer_names_both_reference_loads(capsys):
-    given = BALL | {"load-amplitude": "3 N", "speed": "10 mm/s", "tolerance": "0.1"}
-    given |= {"drive-stiffness": "10 N/um"}
-    text = said(capsys, "normal", **given)
-    assert "over mu times the load without oscillation (the reference load)" in text
-
-
-def test_the_power_of_a_steady_spin_is_named_after_the_spin(capsys):
-    given = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
-    del given["frequency"]
-    assert cli.main(["predict", "continuous-bore", *words(**given), "--power"]) == 0
-    assert re.search(r"^power +\S+ mW for the spin$", capsys.readouterr().out, re.MULTILINE)
 
 
 @pytest.mark.slow

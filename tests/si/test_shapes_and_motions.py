@@ -238,21 +238,6 @@ def test_an_oscillating_load_alone_is_its_closed_form():
     assert found.mu_macro > found.mu_static and found.load_amplitude_N == 5.0
 
 
-@pytest.mark.slow
-def test_the_command_line_takes_them_and_says_so(capsys):
-    words = [word for k, v in ASKED.items() for word in (f"--{k}", str(v))]
-    more = ["--contact-radius", "0.1 mm", "--pressure", "ring:inner=0.5", "--tolerance", "0.02"]
-    assert cli.main(["predict", "transverse", *words, *more]) == 0
-    said = capsys.readouterr().out
-    assert "\ncontact radius    0.1 mm\npressure          ring:inner=0.5\n" in said
-    assert "indentation" not in said  # which the load of a ring does not tell
-    more = ["--radius", "5 mm", "--rotation-amplitude", "0.3 deg", "--phase", "90 deg"]
-    assert cli.main(["predict", "transverse-bore", *words, *more, "--tolerance", "0.02"]) == 0
-    said = capsys.readouterr().out
-    assert "\nrotation amplitude 0.3 deg = 0.00523599 rad\nphase             90 deg" in said
-    assert "\namplitude         the largest is dimensionless " in said
-
-
 # Motions of one's own
 
 OWN = {

@@ -50,15 +50,6 @@ def test_both_lines_of_eq_24_agree():
     assert hertz.lubkin_angle(c, contact.poisson) * contact.u_lim / a == pytest.approx(first)
 
 
-@pytest.mark.parametrize(
-    ("field", "value"), [("radius", 0.0), ("load", -1.0), ("mu", math.nan), ("radius", math.inf)]
-)
-def test_a_contact_refuses_bad_values(field, value):
-    good = {"first": STEEL, "second": RIGID, "radius": 0.01, "load": 50.0, "mu": 0.2}
-    with pytest.raises(ValueError, match=rf"^{field} = {value}: allowed is .*{field}"):
-        TwoBodies(**good | {field: value})
-
-
 def test_a_steel_ball_of_10_mm_on_steel_by_hand():
     """E* = 210/(2 * 0.91) GPa; a^3 = 3 * 10 * 0.005 / (4 E*); p0 = 3 F/(2 pi a^2)."""
     contact = TwoBodies(STEEL, STEEL, 0.005, 10.0, 0.3)
@@ -159,16 +150,9 @@ def test_a_material_may_be_given_as_a_record():
     ("values", "named", "said"),
     [
         ((0.0, 0.3), "young", "above 0"),
-        ((-210e9, 0.3), "young", "above 0"),
         ((math.nan, 0.3), "young", "not finite"),
-        ((-math.inf, 0.3), "young", "not finite"),
         (("210", 0.3), "young", "without a unit"),
-        (([210e9], 0.3), "young", "list"),
-        ((True, 0.3), "young", "bool"),
         ((210e9, 0.7), "poisson", "at most 0.5"),
-        ((210e9, -0.1), "poisson", "at least 0"),
-        ((210e9, None), "poisson", "NoneType"),
-        ((210e9, "0,3"), "poisson", "decimals follow a point"),
         ((210e9, 0.3, -7850.0), "density", "above 0"),
         ((210e9, 0.3, None, "7 N"), "hardness", "units of Pa"),
         ((210e9, 0.3, None, None, 5), "source", "a text"),
@@ -258,23 +242,6 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
     assert read_hardness("hardness", text).si == pytest.approx(pressure, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("80 HRC", "20 to 68 HRC"),
-        ("HV", "the text is empty"),
-        ("-3 HV", "above 0"),
-        ("7", "unit"),
-        ("200 HB", "about 211 HV"),  # HB = 0.95 HV, ISO 18265
-        ("90 HRB", "Vickers and Rockwell C"),
-    ],
-)
-def test_a_hardness_that_is_none_is_refused(text, said):
-    with pytest.raises(InputError, match=said) as caught:
-        read_hardness("hardness", text)
-    assert caught.value.value == text
-
-
 def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
     """2 pi R W for a small hard sphere, 3/2 pi R W for a large soft one."""
     motion = RealMotion("transverse", 1e-3, 1e-8, 1e3)
@@ -319,12 +286,7 @@ def test_a_missing_property_is_said_with_its_body():
     ],
 )
 def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rounding):
-    assert microslip.predict("transverse", **MILD | _of(name)).u_lim_m > 0.0
     assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=rounding)
-
-
-def _of(name):
-    return {"material": name, "young": None, "nu": None}
 
 
 def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():

@@ -41,6 +41,20 @@ EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displ
 PARTS = ("body", "travel", "search", "power", "uncertainty")
 """Fields of records that have columns of their own."""
 
+UNITS = {
+    **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
+    **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
+    "_s": "s",
+}
+"""Ends of names of columns, and the units that they stand for; the first that fits counts."""
+OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
+
+
+def unit_of(column: str) -> str:
+    """SI unit of a column by its name, "1" without one; an error has the unit of its quantity."""
+    ends = (unit for end, unit in UNITS.items() if column.endswith(end))
+    return OTHER_UNITS.get(column) or next(ends, "1")
+
 
 @dataclass(frozen=True)
 class DrivenBody:

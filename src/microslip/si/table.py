@@ -11,7 +11,7 @@ import numpy as np
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.predict import NOTHING, predicted, unattained
-from microslip.si.prediction import COLUMNS, NoPrediction, Prediction
+from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, unit_of
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
 from microslip.si.tables import LABELS, Table, is_table, table_of
@@ -23,13 +23,6 @@ if TYPE_CHECKING:
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "power"}
 """Columns of a file: arguments of predict, none of which needs a unit in its heading."""
-UNITS = {
-    **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
-    **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
-    "_s": "s",
-}
-"""Ends of names of columns, and the units that they stand for; the first that fits counts."""
-OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
 """Columns of texts that no case may have; what no case has besides is a number."""
 
@@ -183,6 +176,5 @@ def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
     given = [value for value in values if value is not None]
     if all(isinstance(value, str) for value in given) and (given or name in TEXTS):
         return "case", ["" if value is None else value for value in values], {}
-    ends = (unit for end, unit in UNITS.items() if name.endswith(end))
-    unit = OTHER_UNITS.get(name) or next(ends, "1")
-    return "case", [np.nan if value is None else float(value) for value in values], {"units": unit}
+    numbers = [np.nan if value is None else float(value) for value in values]
+    return "case", numbers, {"units": unit_of(name)}

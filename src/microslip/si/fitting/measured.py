@@ -73,6 +73,11 @@ class Measured:
         return self.load if self.quantity == "friction" else np.ones_like(self.load)
 
     @property
+    def omega(self) -> np.ndarray:
+        """Angular frequency, rad/s, (n,)."""
+        return 2.0 * math.pi * self.frequency
+
+    @property
     def distinct(self) -> int:
         """How many different conditions there are."""
         return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
