@@ -4,7 +4,7 @@ import io
 import json
 import math
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import pytest
 from bad_input_tables.odd_quantities import Q
@@ -12,6 +12,7 @@ from bad_input_tables.odd_quantities import Q
 import microslip
 from microslip.app import cli
 from microslip.estimate.estimate import Estimate
+from microslip.si import prediction
 from microslip.si.materials import Material
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
@@ -136,3 +137,31 @@ def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):
     assert cli.main(["predict", "continuous-bore", *words]) == 0
     sys.stdout.flush()
     assert b"5000 \\u03bcm" in said.getvalue() and b"3600 \xb0/s = 62.8319" in said.getvalue()
+
+
+# Records
+
+
+@pytest.mark.parametrize(
+    ("motion", "drive", "record"),
+    [
+        ("transverse", {"speed": "1 mm/s"}, prediction.Sliding),
+        ("transverse", {"force": "1 N"}, prediction.Rest),
+        ("transverse", {"force": "4 N"}, prediction.Drift),
+        ("continuous-bore", {"speed": "1 mm/s"}, prediction.SteadySpin),
+        ("continuous-bore", {"force": "1 N"}, prediction.SpinDrift),
+    ],
+)
+def test_each_question_has_a_record_of_its_own_and_all_have_the_same_columns(motion, drive, record):
+    moved = {"amplitude": "0.1 um", "frequency": "20 kHz"}
+    moved = {"rotation": "10 Hz"} if motion == "continuous-bore" else moved
+    ball = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "material": "steel", "tolerance": 0.05}
+    found = microslip.predict(motion, **ball, **moved, **drive)
+    assert type(found) is record
+    assert tuple(found.to_dict()) == prediction.COLUMNS
+    own = {field.name for field in fields(found)}
+    assert ("outcome" in own) == ("force" in drive)
+    assert ("mu_static" in own) == ("amplitude" in moved) != ("torque_N_m" in own)
+    assert (found.outcome is None) == ("force" not in drive)
+    with pytest.raises(AttributeError, match="no column 'mu_marco'"):
+        _ = found.mu_marco

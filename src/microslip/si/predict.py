@@ -233,10 +233,22 @@ def unattained(request: Request, reason: str) -> Prediction:
     return Sliding(**parts, search=Search(request.sought, math.nan))
 
 
+def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
+    """Fields of a quantity and of its error; unit: its unit in the SI, si: the name of that."""
+    value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
+    return {f"{name}{si}": value, f"{name}_error{si}": error}
+
+
 def _common(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
     """Fields of every Prediction except the velocity."""
     contact, still, friction = request.contact, request.still, answer.friction
     return {
+        **_columns("mu_macro", friction),
+        **_columns("mu_apparent", friction, contact.mu),
+        **_columns("friction_force", friction, still, "_N"),
+        **_columns("force_threshold", threshold, still, "_N"),
+        "friction_force_still_N": still,
+        "force_reduction": 1.0 - friction.value,
         "understood": request.understood,
         "motion": request.motion.name,
         "pressure": contact.pressure,
@@ -248,16 +260,6 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
         "poisson": contact.poisson,
         "load_N": contact.load * request.carriers.count,
         "speed_m_s": math.nan if request.motion.speed is None else request.motion.speed,
-        "mu_macro": friction.value,
-        "mu_macro_error": friction.error,
-        "mu_apparent": contact.mu * friction.value,
-        "mu_apparent_error": contact.mu * friction.error,
-        "friction_force_N": still * friction.value,
-        "friction_force_error_N": still * friction.error,
-        "friction_force_still_N": still,
-        "force_reduction": 1.0 - friction.value,
-        "force_threshold_N": None if threshold is None else still * threshold.value,
-        "force_threshold_error_N": None if threshold is None else still * threshold.error,
         "model": answer.model,
         "converged": answer.converged,
         "reason": answer.reason,
@@ -278,9 +280,8 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     }
     if limit is None:
         return fields
-    fields |= {"mu_static": limit.mu_macro, "mu_static_error": limit.mu_macro_error}
-    fields["mu_static_apparent"] = mu * limit.mu_macro
-    fields["mu_static_apparent_error"] = mu * limit.mu_macro_error
+    fields |= _columns("mu_static", limit.friction)
+    fields |= _columns("mu_static_apparent", limit.friction, mu)
     fields["mu_static_reason"] = limit.reason
     fields["displacement_per_cycle_m"] = motion.known_speed / motion.rate
     fields["displacement_per_cycle_error_m"] = 0.0

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from microslip.foundation.errors import InputError
+from microslip.si.prediction_text import prediction_text
 
 _NAMES = """
     motion contact_radius_m indentation_m u_lim_m largest_pressure_Pa poisson speed_m_s
@@ -248,8 +249,6 @@ class Prediction:
 
     def __str__(self) -> str:
         """The lines that `microslip predict` prints."""
-        from microslip.si.prediction_text import prediction_text
-
         return prediction_text(self)
 
 

@@ -8,7 +8,6 @@ from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
 from microslip.si.motions import COMBINED, is_along_the_pull, unit_of_amplitude
-from microslip.si.prediction import Forced, Prediction, Rest
 from microslip.si.printed_lines import (
     EXCLUDED,
     FIRST_ORDER,
@@ -81,9 +80,9 @@ OUTCOMES = {
 """Sentences about the outcome of a force."""
 
 
-def prediction_text(found: Prediction) -> str:
-    """All lines of a Prediction."""
-    show, forced = _Texts(found).show, isinstance(found, Forced)
+def prediction_text(found: Any) -> str:
+    """All lines of a prediction.Prediction."""
+    show, forced = _Texts(found).show, found.force_N is not None
     lines = [
         line(name.replace("_", " "), found.understood[name])
         for name in UNDERSTOOD
@@ -114,7 +113,7 @@ def prediction_text(found: Prediction) -> str:
     return "\n".join(lines + [f"not checked: {text}" for text in found.not_checked])
 
 
-def _friction(found: Prediction, show: Show) -> list[str]:
+def _friction(found: Any, show: Show) -> list[str]:
     """Lines of the friction at a speed: which number is a ratio, which a coefficient."""
     lines = show("mu_macro", "{mu_macro}: ratio of friction with {added} to friction without")
     coefficient = "coefficient of friction with {added}, instead of {understood[mu]}"
@@ -131,7 +130,7 @@ def _friction(found: Prediction, show: Show) -> list[str]:
     return lines + _threshold(found, show)
 
 
-def _threshold(found: Prediction, show: Show) -> list[str]:
+def _threshold(found: Any, show: Show) -> list[str]:
     """Lines of the force that moves the contact, if it is known."""
     value, error = found.force_threshold_N, found.force_threshold_error_N
     if value is None or error is None:
@@ -148,7 +147,7 @@ def _threshold(found: Prediction, show: Show) -> list[str]:
     return lines + show("", "{force_threshold_interval_N}", known)
 
 
-def _moves_at_static_friction(found: Prediction) -> bool:
+def _moves_at_static_friction(found: Any) -> bool:
     """Whether the force threshold is the static friction."""
     static, threshold = found.mu_static, found.force_threshold_N
     if static is None or threshold is None:
@@ -156,7 +155,7 @@ def _moves_at_static_friction(found: Prediction) -> bool:
     return math.isclose(threshold, found.friction_force_still_N * static, abs_tol=0.0)
 
 
-def _outcome(found: Prediction, show: Show) -> list[str]:
+def _outcome(found: Any, show: Show) -> list[str]:
     """Lines of a contact under a force: its threshold, its outcome, and its way."""
     lines, factor, columns = _threshold(found, show), found.safety_factor, found.uncertainty
     safe = factor is not None and (factor > found.safety_factor_error or found.safety_factor_high)
@@ -178,7 +177,7 @@ def _outcome(found: Prediction, show: Show) -> list[str]:
         lines += show("displacement", "{displacement_per_cycle_m} a cycle")
         way = "{time_to_1_mm_s}, the contact radius of {contact_radius_m} in"
         lines += show("walks", f"1 mm in {way} {{time_to_contact_radius_s}}")
-    if isinstance(found, Rest):
+    if found.outcome == "stays":
         most = "the vibration adds nothing"
         if found.cycles_to_rest:
             cycles = f"about {found.cycles_to_rest:.2g} cycles"
@@ -189,12 +188,12 @@ def _outcome(found: Prediction, show: Show) -> list[str]:
     return lines
 
 
-def _spread(found: Prediction, show: Show) -> list[str]:
+def _spread(found: Any, show: Show) -> list[str]:
     """The line of the standard uncertainties that follow from those of the inputs."""
     if not found.uncertainty:
         return []
     parts = ["{mu_apparent_spread} of mu_apparent", "{friction_force_spread_N} of the force"]
-    if isinstance(found, Forced):
+    if found.force_N is not None:
         spread, moves = found.speed_spread_m_s, found.probability_moves or 0.0
         if math.isinf(spread):
             return show("spread", NO_SPREAD_OF_SPEED)
@@ -213,7 +212,7 @@ def _spread(found: Prediction, show: Show) -> list[str]:
 class _Texts(dict[str, Any]):
     """Texts of the columns of a Prediction: numbers with their errors, each in its unit."""
 
-    def __init__(self, found: Prediction):
+    def __init__(self, found: Any):
         length, force = length_unit(found.u_lim_m), force_unit(found.friction_force_still_N)
         powers = [found.drag_power_W or 0.0, found.vibration_power_W or 0.0]
         watts = prefixed(max(map(abs, powers)) or 1.0, "W")
@@ -236,7 +235,7 @@ class _Texts(dict[str, Any]):
         if found.force_threshold_N is not None:
             most = found.force_threshold_N + (found.force_threshold_error_N or 0.0)
             self["zero_threshold_N"] = in_unit(0.0, most, force)
-        if isinstance(found, Forced):
+        if found.force_N is not None:
             self["fastest"] = in_unit(found.speed_m_s + found.speed_error_m_s, 0.0, speed)
             if found.outcome == "runs away":
                 self["runs_away"] = runs_away(found)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from decimal import Decimal
+from typing import Any
 
 from microslip.foundation.number_text import error_text, number_text
-from microslip.si.prediction import Prediction
 
 WIDTH = 18
 """Columns of the name in front of a line."""
@@ -84,7 +84,7 @@ def length_unit(u_lim: float) -> tuple[str, float]:
     return unit_for(u_lim, LENGTHS, LEAST_LENGTH)
 
 
-def not_converged(found: Prediction) -> list[str]:
+def not_converged(found: Any) -> list[str]:
     """Lines for every quantity whose error is larger than its tolerance."""
     lines = []
     if not found.converged and found.outcome != "runs away":
@@ -97,7 +97,7 @@ def not_converged(found: Prediction) -> list[str]:
     return lines
 
 
-def runs_away(found: Prediction) -> str:
+def runs_away(found: Any) -> str:
     """Sentence about a contact that accelerates without end."""
     if found.force < 1.0:
         return f"it {found.reason}"

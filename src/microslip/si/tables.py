@@ -4,8 +4,9 @@ load [N],speed [mm/s],counterbody
 10,1,steel
 20,1,"70 GPa, 0.22"
 
-`pandas.read_csv` does not serve here: it fills a line with missing cells, lets an unclosed quote
-swallow the lines behind it, and does not tell the lines of the cells that it has read.
+`pandas.read_csv` does not serve here.  Under the heading "load [N],mu" it reads the line "1" as a
+load with an empty mu, and the line "1,5,0.3" as a load of 5; an unclosed quote refuses the whole
+file, a column that is there twice gets another name, and no message has the line of its cell.
 """
 
 from __future__ import annotations
