@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from microslip.app.option_parser import format_as_options
-from microslip.app.question import Answer, add_json, add_options, given, respond
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError
 from microslip.si.motions import UNIT_OF_AMPLITUDE
@@ -67,7 +67,7 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip import fit
 
     _refuse_endings(options)
-    arguments = {name: value for name, value in given(options).items() if name not in FILES}
+    arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
     if options.map is not None:
         arguments["map"] = _opened(options.map)
     found = fit(options.motion, options.measured, **arguments)

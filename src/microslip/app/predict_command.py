@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from microslip.app import predicted_propulsion, predicted_table
-from microslip.app.question import Answer, add_json, add_options, given, respond
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
 from microslip.foundation.errors import InputError
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
@@ -152,7 +152,7 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip import predict
     from microslip.app.progress import Elapsed
 
-    arguments = given(options)
+    arguments = typed_options(options)
     if options.table is not None:
         return predicted_table.answer(options, arguments)
     for name in ("output", "decimal", "encoding"):

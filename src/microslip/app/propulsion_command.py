@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from microslip.app.question import Answer, add_json, add_options, given, respond
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
 from microslip.foundation import spec
 from microslip.foundation.number_text import aligned, number_text
 
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip import propulsion
 
-    arguments = given(options)
+    arguments = typed_options(options)
     for name in arguments.keys() & {*REALS, "points"}:
         arguments[name] = spec.read(name, arguments[name], whole=name == "points")
     line = propulsion(options.motion, arguments.pop("amplitude"), **arguments)

@@ -46,7 +46,7 @@ def add_json(parser: Any) -> None:
     )
 
 
-def given(options: argparse.Namespace) -> dict[str, Any]:
+def typed_options(options: argparse.Namespace) -> dict[str, Any]:
     """Values of the options that were typed, by their arguments."""
     return {name: getattr(options, name) for name in getattr(options, "said", {})}
 

@@ -31,7 +31,7 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         torque, error = unit * answer.torque.value, unit * answer.torque.error
         fields |= {"torque_N_m": torque, "torque_error_N_m": error}
         power, power_error, reason = torque * motion.turn, error * motion.turn, None
-    elif request.given["power"] and not motion.steady:
+    elif request.arguments["power"] and not motion.steady:
         found = _vibration_power(request, answer)
         unit = still * contact.u_lim * motion.turn
         power, power_error, reason = unit * found.value, unit * found.error, found.reason

@@ -75,6 +75,10 @@ def read_argument(
     return read(title or name, value, unit or usual, **ranges)
 
 
+Arguments = Mapping[str, Any]
+"""Arguments of predict by their names; None for those that are missing."""
+
+
 class Body(NamedTuple):
     """A material, and its properties in words, as they were given."""
 
@@ -82,18 +86,18 @@ class Body(NamedTuple):
     text: str
 
 
-def read_bodies(given: Mapping[str, Any]) -> tuple[Body, Body]:
+def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
     """The body and the counterbody, of arguments by their names; raises InputError."""
-    body = _body(*(given[name] for name in ("young", "nu", "material")))
-    return _completed(body, "", given), _completed(
-        _counterbody(given["counterbody"]), "counter_", given
+    body = _body(*(arguments[name] for name in ("young", "nu", "material")))
+    return _completed(body, "", arguments), _completed(
+        _counterbody(arguments["counterbody"]), "counter_", arguments
     )
 
 
-def _completed(body: Body, side: str, given: Mapping[str, Any]) -> Body:
+def _completed(body: Body, side: str, arguments: Arguments) -> Body:
     """The body with its hardness and density; side: "counter_" or nothing."""
     for name in ("hardness", "density"):
-        argument, value = f"{side}{name}", given[f"{side}{name}"]
+        argument, value = f"{side}{name}", arguments[f"{side}{name}"]
         if value is None:
             continue
         if body.material.rigid:
@@ -120,17 +124,17 @@ def _body(young: object, nu: object, material: Any) -> Body:
         raise InputError("material", material, f"{error.allowed}, or a Material") from None
 
 
-def _counterbody(given: Any) -> Body:
+def _counterbody(body: Any) -> Body:
     """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid."""
-    if given is None:
+    if body is None:
         return Body(RIGID, "rigid, as none was given")
-    if isinstance(given, Material):
-        return Body(given, _numbers(given))
-    pair = isinstance(given, tuple | list)
-    if not (pair or isinstance(given, str)):
+    if isinstance(body, Material):
+        return Body(body, _numbers(body))
+    pair = isinstance(body, tuple | list)
+    if not (pair or isinstance(body, str)):
         allowed = f"allowed is a text, {EXAMPLE}, a pair of both, or a Material"
-        raise InputError("counterbody", given, allowed)
-    parts = list(given) if pair else [part.strip() for part in given.split(",")]
+        raise InputError("counterbody", body, allowed)
+    parts = list(body) if pair else [part.strip() for part in body.split(",")]
     try:
         if len(parts) == 1 and not pair:
             return _named(parts[0])
@@ -141,9 +145,9 @@ def _counterbody(given: Any) -> Body:
         problem = f"{error.allowed}, or {EXAMPLE}"
         if len(parts) == 2:
             problem = f"its {error.argument} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
-        raise InputError("counterbody", given, problem) from None
+        raise InputError("counterbody", body, problem) from None
     count = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
-    raise InputError("counterbody", given, f"{count}; allowed: {EXAMPLE}")
+    raise InputError("counterbody", body, f"{count}; allowed: {EXAMPLE}")
 
 
 def _elastic(young: Given, nu: Given) -> Body:
@@ -168,23 +172,23 @@ def _numbers(body: Material) -> str:
 
 
 def read_contact(
-    bodies: tuple[Body, Body], given: Mapping[str, Any], *, load: object, contacts: int = 1
+    bodies: tuple[Body, Body], arguments: Arguments, *, load: object, contacts: int = 1
 ) -> tuple[TwoBodies, dict[str, str]]:
     """The contact, and texts of what was understood; raises InputError.
 
     given: arguments that describe the shape, and mu; load: that of all contacts, of which this one
     carries the mean.
     """
-    sized = given["pressure"] is not None or given["contact_radius"] is not None
+    sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
-        _refuse_radii(given)
-    elif given["radius"] is None:
+        _refuse_radii(arguments)
+    elif arguments["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius in its place")
     name = "contact_radius" if sized else "radius"
-    size = read_argument(name, given[name])
-    force, mu = read_argument("load", load), read_argument("mu", given["mu"])
+    size = read_argument(name, arguments[name])
+    force, mu = read_argument("load", load), read_argument("mu", arguments["mu"])
     materials = bodies[0].material, bodies[1].material
-    radii, texts = ((), {}) if sized else _radii(size.si, given)
+    radii, texts = ((), {}) if sized else _radii(size.si, arguments)
     if materials[0].rigid and materials[1].rigid:
         allowed = "allowed is an elastic body where the counterbody is rigid"
         raise InputError("material", "rigid", allowed)
@@ -192,17 +196,17 @@ def read_contact(
     plain = TwoBodies(*materials, radius, force.si / contacts, mu.si, radii)
     texts = {"body": bodies[0].text, "counterbody": bodies[1].text} | texts
     texts[name] = size.text
-    pressure = "hertz" if given["pressure"] is None else given["pressure"]
+    pressure = "hertz" if arguments["pressure"] is None else arguments["pressure"]
     if sized:
         texts["pressure"] = pressure
     texts |= {"load": force.text, "mu": mu.text}
     if sized:
-        return _of_size(plain, size.si, pressure, given), texts
-    _refuse_senseless(plain, given["counter_radius"], given, load)
-    across = given["radius_across"]
+        return _of_size(plain, size.si, pressure, arguments[name]), texts
+    _refuse_senseless(plain, arguments["counter_radius"], arguments, load)
+    across = arguments["radius_across"]
     if across is None:
         return plain, texts
-    if given["counter_radius"] is not None:
+    if arguments["counter_radius"] is not None:
         allowed = "allowed is none beside a counter_radius: give the relative curvatures"
         raise InputError("radius_across", across, allowed)
     second = read_argument("radius_across", across)
@@ -210,25 +214,26 @@ def read_contact(
         contact = elliptic(plain, second.si)
     except InputError as error:
         raise error.renamed("radius_across", across) from None
-    _refuse_senseless(contact, across, given, load)
+    _refuse_senseless(contact, across, arguments, load)
     return contact, texts | {"radius_across": second.text}
 
 
-def _refuse_radii(given: Mapping[str, Any]) -> None:
+def _refuse_radii(arguments: Arguments) -> None:
     """Raise InputError unless a contact has a size and no radii."""
     for name in ("radius", "counter_radius", "radius_across"):
-        if given[name] is not None:
+        if arguments[name] is not None:
             cause = "a contact_radius"
-            if given["contact_radius"] is None:
+            if arguments["contact_radius"] is None:
                 cause = "a pressure, which needs a contact_radius in place of radii"
-            raise InputError(name, given[name], f"allowed is none beside {cause}")
-    if given["contact_radius"] is None:
+            raise InputError(name, arguments[name], f"allowed is none beside {cause}")
+    if arguments["contact_radius"] is None:
         allowed = "needed beside a pressure: half the longer side of the contact"
         raise InputError("contact_radius", None, allowed)
 
 
-def _of_size(plain: TwoBodies, size: float, pressure: str, given: Mapping[str, Any]) -> TwoBodies:
-    """A contact of known size, m, and pressure; plain: the same with any radius."""
+def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> TwoBodies:
+    """A contact of known size, m, and pressure; plain: the same with any radius; argument: the size
+    as it was given."""
     try:
         contact = of_size(plain, size, pressure)
         sizes = (contact.u_lim, contact.load / size**2)
@@ -238,13 +243,13 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, given: Mapping[str, A
             raise
         good = False
     if not good:
-        raise InputError("contact_radius", given["contact_radius"], OUT_OF_RANGE)
+        raise InputError("contact_radius", argument, OUT_OF_RANGE)
     return contact
 
 
-def _radii(radius: float, given: Mapping[str, Any]) -> tuple[tuple[float, float], dict[str, str]]:
+def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], dict[str, str]]:
     """Radii of the sphere and the counterbody, m, the second infinite where it is flat."""
-    text, counter, argument = "flat, as none was given", math.inf, given["counter_radius"]
+    text, counter, argument = "flat, as none was given", math.inf, arguments["counter_radius"]
     if argument is not None:
         second = read_argument("counter_radius", argument)
         if second.si == 0.0:
@@ -253,7 +258,7 @@ def _radii(radius: float, given: Mapping[str, Any]) -> tuple[tuple[float, float]
         counter = second.si
     for name, one in (("radius", radius), ("counter_radius", counter)):
         if math.isinf(1.0 / one):
-            raise InputError(name, given[name], OUT_OF_RANGE)
+            raise InputError(name, arguments[name], OUT_OF_RANGE)
     curvature = 1.0 / radius + 1.0 / counter
     if math.isinf(curvature):
         raise InputError("counter_radius", argument, OUT_OF_RANGE)
@@ -264,7 +269,7 @@ def _radii(radius: float, given: Mapping[str, Any]) -> tuple[tuple[float, float]
 
 
 def _refuse_senseless(
-    contact: TwoBodies, second: object, given: Mapping[str, Any], load: object
+    contact: TwoBodies, second: object, arguments: Arguments, load: object
 ) -> None:
     """Raise InputError where Hertz's theory does not describe these bodies; second: the radius of
     the counterbody, or that across, as it was given."""
@@ -273,7 +278,7 @@ def _refuse_senseless(
         if a >= SENSELESS * smallest:
             name, value = "counter_radius", second
             if smallest == abs(contact.radii[0]):
-                name, value = "radius", given["radius"]
+                name, value = "radius", arguments["radius"]
             raise InputError(
                 name,
                 value,
@@ -290,7 +295,7 @@ def _refuse_senseless(
 
 
 def read_motion(
-    motion: str, given: Mapping[str, Any], sought: str | None
+    motion: str, arguments: Arguments, sought: str | None
 ) -> tuple[RealMotion, dict[str, str]]:
     """The motion, and texts of what was understood; raises InputError.
 
@@ -300,20 +305,22 @@ def read_motion(
     steady = motions.is_steady(motion)
     needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
     for name in MOVED:
-        if name not in (*needed, *TAKES.get(motion, ())) and given[name] is not None:
-            raise InputError(name, given[name], f"{motion} has none")
+        if name not in (*needed, *TAKES.get(motion, ())) and arguments[name] is not None:
+            raise InputError(name, arguments[name], f"{motion} has none")
     for name in needed:
-        if given[name] is None and name != sought:
+        if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
     unit = motions.unit_of_amplitude(motion)
     found = {
-        name: read_argument(name, given[name], unit if name == "amplitude" else None)
+        name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
         for name in ("speed", *MOVED)
-        if given[name] is not None
+        if arguments[name] is not None
     }
     values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in found.items()}
     if motion in COMBINED and not any(values.get(name) for name in PARTS):
-        raise InputError(needed[0], given[needed[0]], "allowed is above 0 where no other one is")
+        raise InputError(
+            needed[0], arguments[needed[0]], "allowed is above 0 where no other one is"
+        )
     texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
     return RealMotion(motion, **values), texts | {name: one.text for name, one in found.items()}
 
@@ -325,10 +332,10 @@ PULLED = {"force": "force", "drive_stiffness": "stiffness", "mass": "mass", "dam
 
 
 def read_drive(
-    motion: RealMotion, given: Mapping[str, Any], sought: str | None
+    motion: RealMotion, arguments: Arguments, sought: str | None
 ) -> tuple[RealDrive, dict[str, str]]:
     """The drive, and texts of what was understood; raises InputError."""
-    speed, force, spring = (given[name] for name in ("speed", "force", "drive_stiffness"))
+    speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
     if speed is None and force is None and sought != "speed":
         raise InputError("speed", None, "needed, or a force in its place")
     if speed is not None and force is not None:
@@ -345,11 +352,13 @@ def read_drive(
         refused = {"mass": which.format("a force or a drive_stiffness")}
         refused["damping"] = which.format("a drive_stiffness")
     for name, allowed in refused.items():
-        if given[name] is not None:
-            raise InputError(name, given[name], allowed)
+        if arguments[name] is not None:
+            raise InputError(name, arguments[name], allowed)
     if spring is not None and motion.name == "longitudinal" and motion.speed == 0.0:
         allowed = "allowed is a speed above 0 where a spring pulls a longitudinal motion"
         raise InputError("speed", speed, allowed)
-    found = {name: read_argument(name, given[name]) for name in PULLED if given[name] is not None}
+    found = {
+        name: read_argument(name, arguments[name]) for name in PULLED if arguments[name] is not None
+    }
     values = {PULLED[name]: one.si for name, one in found.items()}
     return RealDrive(**values), {name: one.text for name, one in found.items()}

@@ -27,7 +27,7 @@ from microslip.si.prediction import (
     Travel,
 )
 from microslip.si.pulled import answer_of
-from microslip.si.reduction import reduced
+from microslip.si.reduction import reduce_friction
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.request import Request, request_of
 from microslip.si.static_limit import force_threshold, static_limit
@@ -164,8 +164,8 @@ def predict(
         what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
-    given = dict(locals())  # all arguments, and nothing else yet
-    return predicted(given.pop("motion"), given)
+    arguments = dict(locals())  # all arguments, and nothing else yet
+    return predict_plain(arguments.pop("motion"), arguments)
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
@@ -173,20 +173,20 @@ NOTHING["power"] = False
 """The arguments of predict that nobody has given."""
 
 
-def predicted(motion: str, given: Mapping[str, object]) -> Prediction:
+def predict_plain(motion: str, arguments: Mapping[str, object]) -> Prediction:
     """The Prediction for arguments of predict by their names, some of which may be uncertain."""
-    plain, uncertain = without_uncertainty(motion, {**NOTHING, **given})
-    found = answered(request_of(motion, plain))
+    plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
+    found = answer_request(request_of(motion, plain))
     if not uncertain:
         return found
-    return with_uncertainty(found, motion, plain, uncertain, answered)
+    return with_uncertainty(found, motion, plain, uncertain, answer_request)
 
 
-def answered(request: Request) -> Prediction:
+def answer_request(request: Request) -> Prediction:
     """The Prediction of a request whose inputs are exact."""
     parts: dict[str, Any] = {}
     if request.sought is not None:
-        found, error = reduced(request)
+        found, error = reduce_friction(request)
         parts["search"] = Search(request.sought, error)
         load = found.contact.load
         request = found if request.sought != "load" else request.under(load)
@@ -222,7 +222,7 @@ def answered(request: Request) -> Prediction:
     return Drift(**parts)
 
 
-def unattained(request: Request, reason: str) -> Prediction:
+def without_solution(request: Request, reason: str) -> Prediction:
     """The Prediction where nothing has the wanted reduction: NaN for what would follow from it."""
     assert request.sought is not None  # as of every request with a reduction
     nothing: dict[str, Any] = {"motion": request.motion.name, "pressure": request.contact.pressure}

@@ -153,15 +153,15 @@ def predict_propulsion(
     InputError
         For bad input; it names the argument.
     """
-    given = dict(locals())
-    refuse_uncertainty(given, "propulsion")
+    arguments = dict(locals())
+    refuse_uncertainty(arguments, "propulsion")
     for name in ("amplitude", "frequency"):
-        if given[name] is None:
+        if arguments[name] is None:
             raise InputError(name, None, "needed")
     size, rate = read("amplitude", amplitude, "m"), read_argument("frequency", frequency)
     accepted = read("tolerance", tolerance, "", low_open=False)
     spheres = dict.fromkeys(("radius_across", "contact_radius", "pressure"))
-    contact, understood = read_contact(read_bodies(given), given | spheres, load=load)
+    contact, understood = read_contact(read_bodies(arguments), arguments | spheres, load=load)
     group = size.si / contact.u_lim
     if not group <= LARGEST["amplitude"]:
         allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"

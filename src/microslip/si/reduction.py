@@ -49,7 +49,7 @@ class _Line:
     rate: float = 1.0
 
 
-def reduced(request: Request) -> tuple[Request, float]:
+def reduce_friction(request: Request) -> tuple[Request, float]:
     """The request with the least amplitude, the largest speed or the largest load at which
     vibration takes the wanted share of friction away, and the error of that quantity in its SI
     unit.
@@ -65,7 +65,8 @@ def reduced(request: Request) -> tuple[Request, float]:
     """
     from scipy.optimize import brentq
 
-    share, tolerance, given = request.share, request.tolerance, request.given["reduction"]
+    share, tolerance = request.share, request.tolerance
+    reduction = request.arguments["reduction"]
     assert share is not None and request.sought is not None  # as of every request with a reduction
     _refuse_share(request, share)
     line = _LINES[request.sought](request, share)
@@ -86,14 +87,14 @@ def reduced(request: Request) -> tuple[Request, float]:
     try:
         if missing(line.low) < 0.0:
             problem = f"{line.every} takes more away: {100.0 * min(seen):.3g} %"
-            raise NotAttainedError("reduction", given, problem)
+            raise NotAttainedError("reduction", reduction, problem)
         high = line.start
         if line.end is not None and missing(line.end) > 0.0:
             high = math.inf
         while high > line.high or missing(high) > 0.0:
             if high >= line.high:
                 problem = f"{line.none} takes more than {100.0 * max(seen):.3g} % away"
-                raise NotAttainedError("reduction", given, problem)
+                raise NotAttainedError("reduction", reduction, problem)
             high = min(high + math.log(2.0), line.high)
         place = brentq(missing, line.low, high, xtol=0.1 * tolerance)
         here = missing(place)
@@ -117,7 +118,7 @@ def _refuse_share(request: Request, share: float) -> None:
         allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % less the tolerance"
         allowed += ": at a speed some friction is left"
     if allowed:
-        raise InputError("reduction", request.given["reduction"], allowed)
+        raise InputError("reduction", request.arguments["reduction"], allowed)
 
 
 def _amplitudes(request: Request, _share: float) -> _Line:

@@ -55,7 +55,7 @@ class Request:
 
     Attributes
     ----------
-    given : Mapping
+    arguments : Mapping
         Arguments of predict, as they were given.
     bodies : tuple of Body
         Bodies of the contact.
@@ -71,7 +71,7 @@ class Request:
         Texts of what was read.
     """
 
-    given: Mapping[str, Any]
+    arguments: Mapping[str, Any]
     bodies: tuple[Body, Body]
     contact: TwoBodies
     motion: RealMotion
@@ -91,10 +91,10 @@ class Request:
     def under(self, load: float) -> Request:
         """The request under a load that was found, N; raises InputError where it is none."""
         try:
-            contact, _ = read_contact(self.bodies, self.given, load=load)
+            contact, _ = read_contact(self.bodies, self.arguments, load=load)
         except InputError as error:
             problem = f"it takes a load of {load:.3g} N; {error}"
-            raise InputError("reduction", self.given["reduction"], problem) from None
+            raise InputError("reduction", self.arguments["reduction"], problem) from None
         return replace(self, contact=contact)
 
     @cached_property
@@ -160,75 +160,75 @@ class Request:
     def _in_si(self, error: InputError) -> InputError:
         """An error about an argument of the solver, with the argument of predict and its value."""
         name = ARGUMENTS.get(error.argument)
-        if name is None or self.given[name] is None:
+        if name is None or self.arguments[name] is None:
             return error
         group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
-        return InputError(name, self.given[name], f"dimensionless {group}: {error.allowed}")
+        return InputError(name, self.arguments[name], f"dimensionless {group}: {error.allowed}")
 
     def refuse_out_of_range(self) -> None:
         """Raise InputError for a group that the solver cannot take, with the value as it was
         given."""
-        given, (velocity, size) = self.given, self.groups
+        arguments, (velocity, size) = self.arguments, self.groups
         if velocity is not None and not math.isfinite(velocity):
-            raise InputError("speed", given["speed"], f"over that of the vibration, {BEYOND}")
+            raise InputError("speed", arguments["speed"], f"over that of the vibration, {BEYOND}")
         most = LARGEST["amplitude"]
         if (self.motion.load_amplitude or 0.0) > most * self.contact.load:
             allowed = f"allowed is at most {most:g} times the load"
-            raise InputError("load_amplitude", given["load_amplitude"], allowed)
+            raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
         if size is not None and not size <= most:
             unit = "the angle that leaves half of the contact sticking"
             if not self.motion.spins:
                 unit = f"the {self.contact.u_lim:.3g} m that let the whole contact slide"
             allowed = f"{size:.3g} times {unit}; allowed is at most {most:g} times"
-            raise InputError("amplitude", given["amplitude"], allowed)
+            raise InputError("amplitude", arguments["amplitude"], allowed)
         for name, value in self.drive_groups.items():
             if not math.isfinite(value):
                 argument = ARGUMENTS[name]
                 problem = f"over that of the contact, {BEYOND}"
-                raise InputError(argument, given[argument], problem)
+                raise InputError(argument, arguments[argument], problem)
 
 
-def request_of(motion: str, given: Mapping[str, Any]) -> Request:
+def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
     """The request of the arguments of predict, all of them by their names.
 
     Raises InputError for each of them that cannot be used.
     """
-    for name, value in given.items():
+    for name, value in arguments.items():
         if name != "counterbody" and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
-    if not isinstance(given["power"], bool):
-        raise InputError("power", given["power"], "allowed is True or False")
-    if given["mu"] is None:
+    if not isinstance(arguments["power"], bool):
+        raise InputError("power", arguments["power"], "allowed is True or False")
+    if arguments["mu"] is None:
         raise InputError("mu", None, "needed")
-    sought = _sought(motion, given)
-    real, moved = read_motion(motion, given, sought)
-    drive, pulls = read_drive(real, given, sought)
-    tolerance = given["tolerance"]
+    sought = _sought(motion, arguments)
+    real, moved = read_motion(motion, arguments, sought)
+    drive, pulls = read_drive(real, arguments, sought)
+    tolerance = arguments["tolerance"]
     if tolerance is None:
-        tolerance = TOLERANCE if given["force"] is None else TOLERANCE_OF_SPEED
+        tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
     accepted = read("tolerance", tolerance, "", low_open=False, **limits)
-    bodies = read_bodies(given)
+    bodies = read_bodies(arguments)
     carriers, several = read_carriers(
-        given["contacts"], reduction=given["reduction"], power=given["power"]
+        arguments["contacts"], reduction=arguments["reduction"], power=arguments["power"]
     )
-    load = ANY_LOAD if sought == "load" else given["load"]
-    contact, touched = read_contact(bodies, given, load=load, contacts=carriers.count)
+    load = ANY_LOAD if sought == "load" else arguments["load"]
+    contact, touched = read_contact(bodies, arguments, load=load, contacts=carriers.count)
     loaded = real.load_amplitude
     if several and loaded is not None and loaded * carriers.widest > contact.load:
         allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
-        raise InputError("load_amplitude", given["load_amplitude"], allowed)
+        raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
     understood, share = touched | moved | pulls | several, None
     if sought is not None:
         if pulls:
             allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
-            raise InputError("reduction", given["reduction"], allowed)
-        wanted = read_argument("reduction", given["reduction"])
+            raise InputError("reduction", arguments["reduction"], allowed)
+        wanted = read_argument("reduction", arguments["reduction"])
         share, understood["reduction"] = wanted.si, wanted.text
         understood.pop(sought, None)
     parts = (contact, real, drive, carriers, sought, share, accepted.si, understood)
-    request = Request(given, bodies, *parts)
+    request = Request(arguments, bodies, *parts)
     if sought is None:
         request.refuse_out_of_range()
     if several:
@@ -244,19 +244,19 @@ def _is_sequence(value: object) -> bool:
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
-def _sought(motion: str, given: Mapping[str, Any]) -> str | None:
+def _sought(motion: str, arguments: Mapping[str, Any]) -> str | None:
     """Name of the quantity to be found for a reduction, the missing one; None without a reduction.
 
     Raises InputError where more than one quantity or none is missing.
     """
     motions.check_motion(motion)
-    reduction = given["reduction"]
+    reduction = arguments["reduction"]
     if reduction is None:
-        if given["load"] is None:
+        if arguments["load"] is None:
             raise InputError("load", None, "needed")
         return None
-    missing = [name for name in SOUGHT if given[name] is None]
-    if "speed" in missing and given["force"] is not None:
+    missing = [name for name in SOUGHT if arguments[name] is None]
+    if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
     if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
         what = "several amplitudes" if motion in motions.COMBINED else "no amplitude"

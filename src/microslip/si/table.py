@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
-from microslip.si.predict import NOTHING, predicted, unattained
+from microslip.si.predict import NOTHING, predict_plain, without_solution
 from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, unit_of
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
@@ -90,10 +90,10 @@ def predictions(
         {**shared, **{name: values[case] for name, values in arguments.items()}}
         for case in range(count)
     ]
-    for case, given in enumerate(cases):
+    for case, arguments in enumerate(cases):
         if case not in wrong:
             try:
-                _request(motion, given)
+                _request(motion, arguments)
             except InputError as error:
                 wrong[case] = error
     if len(wrong) == count:
@@ -102,26 +102,26 @@ def predictions(
                 where = f"line {table.lines[case]}" if table.lines else f"case {case}"
                 raise InputError(one.argument, one.value, f"in {where}: {one.allowed}")
     return (
-        NoPrediction(wrong[case]) if case in wrong else _prediction(motion, given)
-        for case, given in enumerate(cases)
+        NoPrediction(wrong[case]) if case in wrong else _prediction(motion, arguments)
+        for case, arguments in enumerate(cases)
     )
 
 
-def _prediction(motion: str, given: Mapping[str, object]) -> Prediction | NoPrediction:
+def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | NoPrediction:
     try:
-        return predicted(motion, given)
+        return predict_plain(motion, arguments)
     except NotAttainedError as error:
-        return unattained(_request(motion, given), error.allowed)
+        return without_solution(_request(motion, arguments), error.allowed)
     except InputError as error:
         return NoPrediction(error)
 
 
-def _request(motion: str, given: Mapping[str, object]) -> Request:
+def _request(motion: str, arguments: Mapping[str, object]) -> Request:
     """The checked request; raises the errors that predict raises before it solves anything."""
-    for name, value in given.items():
+    for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
-    plain, _ = without_uncertainty(motion, given)
+    plain, _ = without_uncertainty(motion, arguments)
     return request_of(motion, NOTHING | plain)
 
 
@@ -173,8 +173,8 @@ def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
         return "case", ["; ".join(texts) for texts in values], {}
     if any(isinstance(value, bool) for value in values):
         return "case", values, {}
-    given = [value for value in values if value is not None]
-    if all(isinstance(value, str) for value in given) and (given or name in TEXTS):
+    arguments = [value for value in values if value is not None]
+    if all(isinstance(value, str) for value in arguments) and (arguments or name in TEXTS):
         return "case", ["" if value is None else value for value in values], {}
     numbers = [np.nan if value is None else float(value) for value in values]
     return "case", numbers, {"units": unit_of(name)}

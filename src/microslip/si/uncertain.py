@@ -68,7 +68,7 @@ def _parts(value: object) -> tuple[str, str] | None:
     return None if match is None else (match[1], match[2])
 
 
-def _uncertain(name: str, given: str, parts: tuple[str, str], unit: str) -> UncertainInput:
+def _uncertain(name: str, arguments: str, parts: tuple[str, str], unit: str) -> UncertainInput:
     """An uncertain input in the SI; raises InputError for an uncertainty that is none."""
     text, spread = parts
     try:
@@ -79,10 +79,10 @@ def _uncertain(name: str, given: str, parts: tuple[str, str], unit: str) -> Unce
             size = read(name, spread, unit, low_open=False).si
     except InputError as error:
         allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
-        raise InputError(name, given, allowed) from None
+        raise InputError(name, arguments, allowed) from None
     if not size < abs(value):
-        raise InputError(name, given, "allowed is a spread below the value")
-    return UncertainInput(name, " ".join(given.split()), value - size, value + size)
+        raise InputError(name, arguments, "allowed is a spread below the value")
+    return UncertainInput(name, " ".join(arguments.split()), value - size, value + size)
 
 
 def with_uncertainty(
@@ -90,7 +90,7 @@ def with_uncertainty(
     motion: str,
     plain: Mapping[str, Any],
     uncertain: list[UncertainInput],
-    answered: Callable[[Request], Prediction],
+    answer: Callable[[Request], Prediction],
 ) -> Prediction:
     """A Prediction for central values, with the uncertainty that follows from the inputs.
 
@@ -102,7 +102,7 @@ def with_uncertainty(
 
     def at_end(name: str, end: float) -> Prediction | None:
         try:
-            return answered(request_at({name: end}))
+            return answer(request_at({name: end}))
         except NotAttainedError:
             return None
         except InputError as error:
