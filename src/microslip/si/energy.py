@@ -9,7 +9,6 @@ from microslip.adaptive.vibration_power import VibrationPower, vibration_power
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
-from microslip.si.dimensionless import solver_motion
 from microslip.si.prediction import Power
 from microslip.si.request import Request
 
@@ -50,7 +49,5 @@ def _vibration_power(request: Request, answer: Result) -> VibrationPower:
     if not velocity or not size:
         name = "amplitude" if velocity else "speed"
         raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
-    contact, name = request.contact, solver_motion(request.motion, request.contact)
-    settings: dict[str, Any] = {"poisson": contact.poisson, "pressure": contact.pressure}
-    velocity = min(velocity, LARGEST["velocity"])
-    return vibration_power(name, velocity, size, tolerance=request.tolerance, **settings)
+    point = request.solver_motion, min(velocity, LARGEST["velocity"]), size
+    return vibration_power(*point, tolerance=request.tolerance, **request.settings)

@@ -13,7 +13,6 @@ from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
 from microslip.pressures.by_name import pressure_named
-from microslip.si.dimensionless import solver_motion
 from microslip.si.energy import energy_fields
 from microslip.si.prediction import (
     Drift,
@@ -165,16 +164,17 @@ def predict(
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
     arguments = dict(locals())  # all arguments, and nothing else yet
-    return predict_plain(arguments.pop("motion"), arguments)
+    return predict_arguments(arguments.pop("motion"), arguments)
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
 NOTHING["power"] = False
-"""The arguments of predict that nobody has given."""
+"""Arguments of predict besides the motion, each missing."""
 
 
-def predict_plain(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for arguments of predict by their names, some of which may be uncertain."""
+def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
+    """The Prediction for arguments of predict by their names, with its uncertainty if some are
+    uncertain."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
     found = answer_request(request_of(motion, plain))
     if not uncertain:
@@ -344,10 +344,9 @@ def _way_to_rest(request: Request) -> dict[str, Any]:
         return {"displacement_reason": "computed for one contact without mass only"}
     if not pressure_named(contact.pressure).is_round:
         return {"displacement_reason": "computed for a round contact only"}
-    settings: dict[str, Any] = {"pressure": contact.pressure, "poisson": contact.poisson}
-    motion, size = solver_motion(request.motion, contact), request.groups[1]
+    point = request.solver_motion, request.groups[1], drive["force"]
     try:
-        found = shakedown(motion, size, drive["force"], **settings)
+        found = shakedown(*point, **request.settings)
     except InputError as error:  # a motion that exerts a forward force by itself
         return {"displacement_reason": error.allowed}
     if not found.converged:

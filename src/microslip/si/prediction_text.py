@@ -94,8 +94,8 @@ def prediction_text(found: Any) -> str:
     lines += show("amplitude", "{size}, dimensionless {amplitude}", found.motion not in COMBINED)
     lines += show("amplitude", "the largest is dimensionless {amplitude}", found.motion in COMBINED)
     lines += show("velocity", "dimensionless {velocity}", not forced)
-    found_one = "{sought} {sought_text}, {least} takes {understood[reduction]} away"
-    lines += show("found", found_one + "; all other lines are for {sought_exact}")
+    sentence = "{sought} {sought_text}, {least} takes {understood[reduction]} away"
+    lines += show("found", sentence + "; all other lines are for {sought_exact}")
     for name in ("force", "stiffness", "mass", "damping"):
         lines += show(name, f"dimensionless {{{name}}}")
     lines += show("groups", REFERENCE_LOADS, bool(found.load_amplitude_N and found.regime))

@@ -26,6 +26,7 @@ from microslip.si.dimensionless import (
 )
 from microslip.si.inputs import (
     PULLED,
+    Arguments,
     Body,
     read_argument,
     read_bodies,
@@ -71,7 +72,7 @@ class Request:
         Texts of what was read.
     """
 
-    arguments: Mapping[str, Any]
+    arguments: Arguments
     bodies: tuple[Body, Body]
     contact: TwoBodies
     motion: RealMotion
@@ -122,12 +123,17 @@ class Request:
 
         Raises InputError about `contacts` where the motion or the pressure excludes them.
         """
-        settings: dict[str, Any] = {"contacts": self.carriers.text} | self._settings
-        name = solver_motion(self.motion, self.contact)
-        return checked_driven_problem(name, 0.0, self.groups[1], **settings)
+        settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
+        return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
 
     @property
-    def _settings(self) -> dict[str, Any]:
+    def solver_motion(self) -> str:
+        """The motion as microslip.solve takes it."""
+        return solver_motion(self.motion, self.contact)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Further arguments of microslip.solve for one contact."""
         return {"poisson": self.contact.poisson, "pressure": self.contact.pressure}
 
     def solve(
@@ -141,10 +147,11 @@ class Request:
     ) -> Result:
         """The dimensionless answer of microslip.solve.
 
-        velocity: None under a force; above the largest that the solver takes the vibration does
-        nothing.  amplitude, poisson: in place of those of the request.  drive: groups of the drive.
+        velocity: None under a force; a velocity above the largest one of the solver is replaced by
+        it, since the vibration has no effect there.  amplitude, poisson: in place of those of the
+        request.  drive: groups of the drive.
         """
-        settings = self._settings | drive | {"tolerance": tolerance}
+        settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
             settings["poisson"] = poisson
         if self.carriers.text is not None:
@@ -153,7 +160,7 @@ class Request:
             velocity = min(velocity, LARGEST["velocity"])
         size = self.groups[1] if amplitude is None else amplitude
         try:
-            return solve(solver_motion(self.motion, self.contact), velocity, size, **settings)
+            return solve(self.solver_motion, velocity, size, **settings)
         except InputError as error:
             raise (self._in_si(error) if drive else error) from None
 
@@ -188,7 +195,7 @@ class Request:
                 raise InputError(argument, arguments[argument], problem)
 
 
-def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
+def request_of(motion: str, arguments: Arguments) -> Request:
     """The request of the arguments of predict, all of them by their names.
 
     Raises InputError for each of them that cannot be used.
@@ -244,7 +251,7 @@ def _is_sequence(value: object) -> bool:
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
-def _sought(motion: str, arguments: Mapping[str, Any]) -> str | None:
+def _sought(motion: str, arguments: Arguments) -> str | None:
     """Name of the quantity to be found for a reduction, the missing one; None without a reduction.
 
     Raises InputError where more than one quantity or none is missing.

@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
-from microslip.si.predict import NOTHING, predict_plain, without_solution
+from microslip.si.predict import NOTHING, predict_arguments, without_solution
 from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, unit_of
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
@@ -109,7 +109,7 @@ def predictions(
 
 def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | NoPrediction:
     try:
-        return predict_plain(motion, arguments)
+        return predict_arguments(motion, arguments)
     except NotAttainedError as error:
         return without_solution(_request(motion, arguments), error.allowed)
     except InputError as error:
