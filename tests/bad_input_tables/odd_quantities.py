@@ -99,6 +99,7 @@ LENGTHS = [
     ([5], "list"),
     (True, "bool"),
     (1j, "complex"),
+    (np.array([1.0, 2.0]), "an array of shape (2,)"),
     (np.array(5e-3).view(Tagged), "Tagged"),
     (np.timedelta64(5, "s"), "timedelta64"),
     (Q(5, ""), "that of a pure number"),

@@ -236,3 +236,14 @@ def test_draws_above_the_largest_physical_value_count_as_that_value():
 def test_a_probability_is_printed_with_its_error_or_a_bound(chance, error, text):
     """The bound includes the error: 0.4 % + 1.23 % is rounded up to 1.7 %."""
     assert probability_text(chance, error) == text
+
+
+@pytest.mark.slow
+def test_a_contact_that_stays_one_deviation_around_its_inputs_may_move():
+    """The force is 1.5 of its deviations below the threshold, which 6.68 % of draws are above."""
+    given = JOINT | {"mu": 0.15, "amplitude": "0.25 um"}
+    threshold = microslip.predict("transverse", **given, speed=0.0).force_threshold_N
+    found = microslip.predict("transverse", **given, force=f"{threshold - 3.0!r} N +- 2 N")
+    assert found.outcome == "stays" and found.speed_spread_m_s == 0.0
+    assert found.probability_moves == pytest.approx(0.0668, abs=2e-3)
+    assert "none of the speed: the contact may move" in str(found)

@@ -158,6 +158,7 @@ def test_a_cone_yields_at_its_tip_and_says_so_once():
     for hardness in ({}, {"hardness": "7 GPa"}):
         found = microslip.predict("transverse", **ASKED | cone | hardness, tolerance=0.1)
         assert found.largest_pressure_Pa == math.inf
+        assert "largest pressure  infinite, at the tip" in str(found)
         (about,) = [text for text in found.warnings if "pressure" in text and "tip" in text]
         mean = 10.0 / (math.pi * 1e-8)
         assert f"the mean pressure is {mean:.2g} Pa" in about

@@ -7,6 +7,7 @@ import pytest
 
 import microslip
 from microslip.app import cli
+from microslip.foundation.errors import InputError
 from microslip.si.uncertain import without_uncertainty
 
 BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3}
@@ -80,3 +81,8 @@ def test_the_command_line_takes_spreads(capsys):
 def test_a_spread_in_per_cent_is_a_share_of_the_value(mu, ends):
     plain, (one,) = without_uncertainty("transverse", {"mu": mu})
     assert (one.low, one.high) == pytest.approx(ends) and "+-" not in plain["mu"]
+
+
+def test_an_end_that_predict_refuses_is_named():
+    with pytest.raises(InputError, match="^mu = '9': at an end of its spread, 14: mu: allowed is"):
+        microslip.predict("continuous-bore", **SPIN | {"mu": "9 +- 5"})
