@@ -82,7 +82,7 @@ BAD = [
     (["measured.csv", *SHARED, "--figure", "fit.jpg"], "--figure = 'fit.jpg': allowed is a name"),
     (["measured.csv", *SHARED, "--output", "fit.csv"], "--output = 'fit.csv': allowed is a name"),
     (["measured.csv", *SHARED, "--map", "none.nc"], "none.nc is not there"),
-    (["measured.csv", *SHARED, "--map", "map.nc", "--nu", "0.3"], "--nu = 0.3: allowed is 0"),
+    (["measured.csv", *SHARED, "--map", "map.nc", "--nu", "0.3"], "--nu = '0.3': allowed is 0"),
     (["measured.csv", *SHARED, "--confidence", "95"], "--confidence = '95'"),
     (["measured.csv", *SHARED, "--mu", "0.3"], "unknown option --mu"),
 ]

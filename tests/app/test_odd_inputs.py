@@ -1,18 +1,14 @@
 """Odd inputs: the right answer, or one line that says what is wrong with what was given."""
 
-import math
-
 import numpy as np
 import pytest
 import xarray as xr
-from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTITIES, SAME
+from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, SAME
 
 import microslip
-from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.si.materials import Material
 from microslip.si.predict import predict
-from microslip.si.quantities import si_value
 from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
@@ -35,41 +31,10 @@ def one_line(error, part):
     assert part in line
 
 
-@pytest.mark.parametrize(("value", "unit", "expected"), QUANTITIES, ids=short)
-def test_a_quantity(value, unit, expected):
-    if isinstance(expected, float):
-        found = si_value("size", value, unit, low=-math.inf)
-        assert found == pytest.approx(expected, rel=LAST_DIGITS, abs=0.0)
-        return
-    with pytest.raises(InputError) as caught:
-        si_value("size", value, unit, low=-math.inf)
-    one_line(caught.value, expected)
-
-
 # A contact
 
 BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
 BALL |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
-
-
-@pytest.fixture
-def nothing_runs(monkeypatch):
-    def work(*_, **__):
-        raise AssertionError("work has started")
-
-    for module in ("static_limit", "reduction", "pulled"):
-        monkeypatch.setattr(f"microslip.si.{module}.solve", work)
-
-
-@pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=short)
-def test_a_contact_is_refused_in_one_line(changed, part, nothing_runs, capsys):
-    given = {"motion": "transverse"} | BALL | changed
-    motion = given.pop("motion")
-    words = [(f"--{name.replace('_', '-')}", text) for name, text in given.items() if text]
-    assert cli.main(["predict", motion, *(word for pair in words for word in pair)]) == 2
-    out, line = capsys.readouterr()
-    assert out == "" and line.endswith("\n")
-    one_line(line[:-1], part)
 
 
 @pytest.mark.parametrize(("changed", "same"), SAME, ids=short)
@@ -83,8 +48,7 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
             seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
             return RIGID
 
-        monkeypatch.setattr("microslip.si.static_limit.solve", solve)
-        monkeypatch.setattr("microslip.si.reduction.solve", solve)
+        monkeypatch.setattr("microslip.si.request.solve", solve)
         found = predict("transverse", **BALL | words)
         return [*seen[0], found.contact_radius_m, found.u_lim_m]
 
@@ -92,14 +56,6 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
 
 
 RIGID = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
-
-
-@pytest.mark.parametrize("motion", ["transverse", "longitudinal"])
-def test_all_static_friction_is_taken_by_the_stroke_that_lets_the_contact_slide(motion):
-    """At vanishing speed nothing resists from u_lim on, and something does below it."""
-    words = {name: text for name, text in BALL.items() if name != "amplitude"}
-    found = predict(motion, **words | {"speed": "0 m/s", "counterbody": "steel"}, reduction="100 %")
-    assert found.amplitude_si == pytest.approx(found.u_lim_m, rel=1e-6)
 
 
 # Python
@@ -155,7 +111,7 @@ def friction():
         {"mu_macro": (axes, mu), "mu_macro_error": (axes, 0.0 * mu + 1e-3)},
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
         {"motion": "transverse", "tolerance": 1e-2},
-    ).friction
+    ).microslip
 
 
 @pytest.mark.filterwarnings("error")

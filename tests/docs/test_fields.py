@@ -12,7 +12,7 @@ import microslip
 from microslip.config import load
 from microslip.datasets import certified_map, sweep_dataset
 from microslip.datasets.query.drift import Drift
-from microslip.si.predict import Prediction
+from microslip.si.prediction import COLUMNS
 from microslip.studies import registry
 from microslip.sweeps import batches, map_rounds
 from microslip.sweeps.cache import Store
@@ -38,7 +38,6 @@ def section(title):
 
 
 RECORDS = {
-    "A real contact": Prediction,
     "A fit": microslip.Fit,
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
@@ -46,6 +45,10 @@ RECORDS = {
     "The line of a self-propelled motion": microslip.PropulsionLine,
     "A self-propelled motion, in units": microslip.RealPropulsionLine,
 }
+
+
+def test_every_column_of_a_prediction_is_in_its_table_and_no_other():
+    assert set(section("A real contact")) == set(COLUMNS)
 
 
 @pytest.mark.parametrize("title", RECORDS)

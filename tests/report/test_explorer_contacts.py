@@ -1,6 +1,5 @@
 """Questions about real contacts: what the page answers is what predict and solve answer."""
 
-import importlib
 import itertools
 import math
 from types import SimpleNamespace
@@ -16,7 +15,6 @@ from microslip.datasets.query.accessor import Friction
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified, si_form
-from microslip.si.dimensionless import groups
 from microslip.si.materials import MATERIALS
 from microslip.si.quantities import read
 from microslip.sweeps.batches import key_of
@@ -122,7 +120,6 @@ def over_ratios(request):
 @pytest.fixture
 def predicted(monkeypatch):
     """microslip.predict with a map in the place of the solver."""
-    module = importlib.import_module("microslip.si.predict")
 
     def by(dataset):
         def solve(name, velocity, amplitude, *, poisson, **_):
@@ -137,11 +134,7 @@ def predicted(monkeypatch):
             friction = Estimate(pair[0], {"model": pair[1]})
             return SimpleNamespace(**found, friction=friction, **rest)
 
-        def answer_of(contact, motion, pulling, tolerance, carriers, threshold):
-            return solve(motion.name, *groups(motion, contact), poisson=contact.poisson)
-
-        monkeypatch.setattr("microslip.si.static_limit.solve", solve)
-        monkeypatch.setattr(module, "answer_of", answer_of)
+        monkeypatch.setattr("microslip.si.request.solve", solve)
         return microslip.predict
 
     return by

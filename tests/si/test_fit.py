@@ -106,7 +106,7 @@ def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
     size = size if motion == "transverse" else size * 1e4
     speed, frequency = np.array([1e-3, 1e-2, 0.1]), np.array([10.0, 1e3, 2e4])
     rows = Measured(speed, size, frequency, load, load, load, "friction", {})
-    scale = Modulus(rows, motion == "bore", 0.3, alike, 5e-3)
+    scale = Modulus(rows, 0.3, motion == "bore", alike, 5e-3)
     points = scale.points(0.25, 80e9)
     body = Material(2.0 * 80e9 * 1.3, 0.3)
     for k in range(3):
@@ -254,14 +254,12 @@ def test_rows_that_tell_neither_are_refused(closed):
         ({"speed": [1e-3] * 4, "amplitude": [1e-7] * 4, "friction": [1.0] * 4}, "one condition"),
         ({"friction": None}, "neither friction nor mu"),
         ({"mu": [0.3] * 16}, "both friction and mu"),
-        ({"mu_error": [0.3] * 16}, "mu_error without mu"),
         ({"friction": [1.0] * 15}, "several lengths"),
-        ({"friction": [1.0] * 15 + [math.nan]}, "empty in row 16; allowed: a number in every row"),
-        ({"friction": [1.0] * 15 + [math.inf]}, "finite numbers"),
-        ({"friction": ["1"] * 16}, "a sequence of numbers"),
+        ({"friction": [1.0] * 15 + [math.nan]}, "in every row.*, in row 16"),
+        ({"friction": ["1"] * 16}, "without a unit"),
         ({"friction_error": [0.1] * 15 + [0.0]}, "above 0"),
-        ({"speed": -np.ones(16)}, "at least 0"),
         ({"time": np.ones(16)}, "a column 'time'"),
+        ({"speed": 1e-3}, "a sequence of numbers"),
         ({"load": np.ones(16)}, "load = 10.0: it is both a column and given for all rows"),
         ({"speed": None}, "speed = None: it is missing"),
         ({"amplitude": np.zeros(16)}, "nothing vibrates"),

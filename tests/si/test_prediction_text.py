@@ -6,9 +6,8 @@ from dataclasses import replace
 import pytest
 
 import microslip
-from microslip.app import cli, predict_command
-from microslip.estimate.refine import UNKNOWN
-from microslip.si import pulled, static_limit
+from microslip.app import cli
+from microslip.si import request
 
 BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "frequency": "20 kHz"}
 SLOW = {"amplitude": "0.1 um", "speed": "1 mm/s", "tolerance": "0.01"}
@@ -70,65 +69,22 @@ def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
     assert "not the force threshold" not in text
 
 
-def failed(*given, **settings):
-    found = microslip.solve(*given, **settings)
+def failed(motion, velocity, *given, **settings):
+    found = microslip.solve(motion, velocity, *given, **settings)
+    if velocity > 0.0:
+        return found
     friction = replace(found.friction, by_source={"resolution": 0.26})
     return replace(found, friction=friction, converged=False, reason="lost on the way")
 
 
 def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
     """The static limit beside friction at a speed is not what was requested."""
-    monkeypatch.setattr(static_limit, "solve", failed)
+    monkeypatch.setattr(request, "solve", failed)
     text = said(capsys, "transverse", code=0, **BALL | SLOW)
     assert "NOT CONVERGED: static friction: lost on the way" in text
     assert "NOT CONVERGED: mu_macro" not in text
     found = microslip.predict("transverse", **BALL | SLOW)
     assert found.converged and found.mu_static_reason == "lost on the way"
-
-
-def test_a_line_names_the_quantity_that_is_not_converged(monkeypatch, capsys):
-    def lost(*given, **settings):
-        found = microslip.solve(*given, **settings | {"force": 0.1})
-        unknown = {"mean_velocity": UNKNOWN, "converged": False}
-        return replace(found, **unknown, reason="lost on the way")
-
-    monkeypatch.setattr(pulled, "solve", lost)
-    text = said(capsys, "transverse", code=1, **BALL | {"amplitude": "0.1 um", "force": "2.5 N"})
-    assert "NOT CONVERGED: speed: lost on the way" in text
-
-
-def test_the_help_groups_all_options(capsys):
-    with pytest.raises(SystemExit):
-        cli.main(["predict", "--help"])
-    text = capsys.readouterr().out
-    titles = re.findall(r"^(\w+):$", text, re.MULTILINE)
-    assert titles[-5:] == ["bodies", "load", "motion", "drive", "output"]
-    for name in predict_command.OPTIONS:
-        assert f"  --{name} " in text, name
-
-
-def test_both_reference_loads_are_named_where_they_meet(capsys):
-    """In the help of predict and of point, and beside the groups of a body on a spring."""
-    for command in (["predict", "--help"], ["point", "normal", "--help"]):
-        with pytest.raises(SystemExit):
-            cli.main(command)
-        text = " ".join(capsys.readouterr().out.split())
-        assert "without oscillation" in text and "mean" in text
-
-
-@pytest.mark.long
-def test_an_answer_names_both_reference_loads(capsys):
-    given = BALL | {"load-amplitude": "3 N", "speed": "10 mm/s", "tolerance": "0.1"}
-    given |= {"drive-stiffness": "10 N/um"}
-    text = said(capsys, "normal", **given)
-    assert "over mu times the load without oscillation (the reference load)" in text
-
-
-def test_the_power_of_a_steady_spin_is_named_after_the_spin(capsys):
-    given = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
-    del given["frequency"]
-    assert cli.main(["predict", "continuous-bore", *words(**given), "--power"]) == 0
-    assert re.search(r"^power +\S+ mW for the spin$", capsys.readouterr().out, re.MULTILINE)
 
 
 @pytest.mark.slow

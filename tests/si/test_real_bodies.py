@@ -7,7 +7,6 @@ import pytest
 
 import microslip
 from microslip.app import cli
-from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive
 from microslip.si.materials import RIGID, Material
@@ -141,39 +140,6 @@ def test_warnings_are_about_the_largest_load_of_a_period():
         for one in ("1.4 N", "1.8 N")
     ]
     assert ["hardness" in text for text in texts] == [False, True]
-
-
-REFUSED = {
-    "no text": ({"contacts": 2}, "contacts", "allowed is a text such as"),
-    "a reduction": (
-        {"contacts": AGAINST, "reduction": 0.5, "amplitude": None},
-        "reduction",
-        "for one contact only",
-    ),
-    "power": ({"contacts": AGAINST, "power": True}, "power", "for one contact only"),
-    "an ellipse": (
-        {"contacts": "load=2;load=1", "radius_across": "7 mm"},
-        "contacts",
-        "allowed are equal loads",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_what_does_not_go_with_several_contacts_gets_one_line(name):
-    given, argument, expected = REFUSED[name]
-    ball = BALL | {"load": 10.0, "amplitude": "0.5 um", "speed": "1 mm/s"}
-    with pytest.raises(InputError) as refused:
-        microslip.predict("transverse", **ball | given)
-    assert refused.value.argument == argument and expected in refused.value.allowed
-
-
-def test_nothing_steady_has_several_contacts():
-    ball = {"radius": "5 mm", "mu": 0.3, "young": "210 GPa", "nu": 0.0, "load": 1.0}
-    with pytest.raises(InputError, match="does not oscillate"):
-        microslip.predict(
-            "continuous-bore", rotation="1 Hz", speed="1 mm/s", contacts="phase=0", **ball
-        )
 
 
 @pytest.mark.slow

@@ -65,11 +65,10 @@ def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({}, "^reduction = '50 %': allowed without an amplitude, a speed or a load"),
-        ({"load": None, "speed": None}, "speed and load are not given"),
-        ({"load": None, "reduction": None}, "^load = None: needed$"),
-        ({"load": None, "amplitude": 0.0}, "^amplitude = 0.0: allowed is above 0"),
-        ({"load": None, "force": "1 N"}, "^force = '1 N': allowed is a force or a speed"),
+        (
+            {"amplitude": None, "speed": "1 m/s", "reduction": 0.99},
+            "^reduction = 0.99: no amplitude",
+        ),
         # At vanishing speed an amplitude of u_lim/100 leaves more than nine tenths.
         ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed takes"),
         # Fast sliding feels nothing of any vibration.
@@ -80,13 +79,6 @@ def test_what_cannot_be_looked_for_is_refused(changed, said):
     asked = LATERAL | GIVEN | {"reduction": "50 %"} | changed
     with pytest.raises(InputError, match=said):
         microslip.predict("transverse", **asked)
-
-
-def test_no_bore_takes_all_of_static_friction_away():
-    """The centre of a twisted contact always sticks."""
-    asked = BALL | {"load": "10 N", "speed": "0 mm/s", "frequency": "20 kHz", "reduction": "100 %"}
-    with pytest.raises(InputError, match="^reduction = '100 %': allowed is less than all"):
-        microslip.predict("bore", **asked)
 
 
 def test_a_load_that_hertz_theory_does_not_know_is_refused():
@@ -102,10 +94,3 @@ def test_the_largest_amplitude_is_tried():
     found = microslip.predict("transverse", **given, reduction="98.75 %")
     assert found.force_reduction == pytest.approx(0.9875, abs=1e-3)
     assert 5e3 < found.amplitude < 1e4
-
-
-def test_all_of_it_is_refused_at_a_speed():
-    """What is left there is never 0, and the error of mu_macro does not tell how little it is."""
-    with pytest.raises(InputError, match="^reduction = '100 %': allowed is at most 99.9 %"):
-        given = BALL | {"load": "10 N", "speed": "1 mm/s", "frequency": "20 kHz"}
-        microslip.predict("transverse", **given, reduction="100 %")

@@ -10,7 +10,6 @@ from scipy.integrate import quad
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.si import quantities
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups
 from microslip.si.hardness import read_hardness
@@ -49,15 +48,6 @@ def test_both_lines_of_eq_24_agree():
     a = contact.contact_radius
     first = contact.mu * contact.E_star * a / (math.pi * contact.G * contact.radius) * hertz.D(c)
     assert hertz.lubkin_angle(c, contact.poisson) * contact.u_lim / a == pytest.approx(first)
-
-
-@pytest.mark.parametrize(
-    ("field", "value"), [("radius", 0.0), ("load", -1.0), ("mu", math.nan), ("radius", math.inf)]
-)
-def test_a_contact_refuses_bad_values(field, value):
-    good = {"first": STEEL, "second": RIGID, "radius": 0.01, "load": 50.0, "mu": 0.2}
-    with pytest.raises(ValueError, match=rf"^{field} = {value}: allowed is .*{field}"):
-        TwoBodies(**good | {field: value})
 
 
 def test_a_steel_ball_of_10_mm_on_steel_by_hand():
@@ -117,15 +107,6 @@ def test_a_prediction_is_what_the_solver_says_of_its_groups():
     assert found.mu_static == pytest.approx(0.0, abs=found.mu_static_error)  # slides in each stroke
 
 
-def test_units_do_not_matter():
-    other = {"radius": 0.005, "load": "0.01 kN", "young": "2.1e11 Pa", "amplitude": "1e-3 mm"}
-    assert microslip.predict("transverse", **EXAMPLE | other) == microslip.predict(
-        "transverse", **EXAMPLE
-    )
-    metre = quantities.registry().Quantity(1.0, "m")
-    assert quantities.si_value("radius", 5e-3 * metre, "m") == pytest.approx(0.005)
-
-
 def test_two_balls_are_one_ball_of_half_the_radius():
     both = microslip.predict("transverse", **EXAMPLE | {"counter_radius": "5 mm"})
     half = microslip.predict("transverse", **EXAMPLE | {"radius": "2.5 mm"})
@@ -155,13 +136,6 @@ def test_the_amplitude_that_halves_friction_does(name, motion):
         assert sign * (near.mu_macro - 0.5) > 0.01
 
 
-@pytest.mark.slow
-def test_a_reduction_that_no_amplitude_gives_is_refused():
-    with pytest.raises(ValueError, match=r"^reduction = 0\.99: no amplitude"):
-        fast = BALL | {"speed": "1 m/s", "frequency": "20 kHz"}
-        microslip.predict("transverse", reduction=0.99, young="210 GPa", nu=0, **fast)
-
-
 # Materials
 
 
@@ -176,16 +150,9 @@ def test_a_material_may_be_given_as_a_record():
     ("values", "named", "said"),
     [
         ((0.0, 0.3), "young", "above 0"),
-        ((-210e9, 0.3), "young", "above 0"),
         ((math.nan, 0.3), "young", "not finite"),
-        ((-math.inf, 0.3), "young", "not finite"),
         (("210", 0.3), "young", "without a unit"),
-        (([210e9], 0.3), "young", "list"),
-        ((True, 0.3), "young", "bool"),
         ((210e9, 0.7), "poisson", "at most 0.5"),
-        ((210e9, -0.1), "poisson", "at least 0"),
-        ((210e9, None), "poisson", "NoneType"),
-        ((210e9, "0,3"), "poisson", "decimals follow a point"),
         ((210e9, 0.3, -7850.0), "density", "above 0"),
         ((210e9, 0.3, None, "7 N"), "hardness", "units of Pa"),
         ((210e9, 0.3, None, None, 5), "source", "a text"),
@@ -214,22 +181,6 @@ def test_two_equal_balls_are_judged_against_their_relative_curvature_too():
     load = 4.0 / 3.0 * (210e9 / 0.91) * (0.15 * 5e-3) ** 3 / 2.5e-3
     found = microslip.predict("transverse", **EXAMPLE | {"counter_radius": 5e-3, "load": load})
     assert any("0.3 of the radius of relative curvature" in text for text in found.warnings)
-
-
-@pytest.mark.parametrize(
-    ("given", "named"),
-    [
-        ({"young": "1 MPa"}, "radius = '14 mm'"),
-        (
-            {"radius": "40 mm", "counter_radius": "1 mm", "young": "1 MPa"},
-            "counter_radius = '1 mm'",
-        ),
-        ({"counter_radius": None, "young": "1 kPa"}, "radius = '14 mm'"),
-    ],
-)
-def test_a_contact_as_large_as_a_body_is_refused(given, named):
-    with pytest.raises(InputError, match=f"^{named}: .* allowed is less than 0.5$"):
-        microslip.predict("transverse", **EXAMPLE | FITTING | given)
 
 
 @pytest.mark.parametrize("share", [0.49, 0.51])
@@ -291,23 +242,6 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
     assert read_hardness("hardness", text).si == pytest.approx(pressure, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("80 HRC", "20 to 68 HRC"),
-        ("HV", "the text is empty"),
-        ("-3 HV", "above 0"),
-        ("7", "unit"),
-        ("200 HB", "about 211 HV"),  # HB = 0.95 HV, ISO 18265
-        ("90 HRB", "Vickers and Rockwell C"),
-    ],
-)
-def test_a_hardness_that_is_none_is_refused(text, said):
-    with pytest.raises(InputError, match=said) as caught:
-        read_hardness("hardness", text)
-    assert caught.value.value == text
-
-
 def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
     """2 pi R W for a small hard sphere, 3/2 pi R W for a large soft one."""
     motion = RealMotion("transverse", 1e-3, 1e-8, 1e3)
@@ -319,12 +253,6 @@ def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
         said = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
         pull = share * math.pi * radius * 0.05
         assert len(said) == 1 and f"about {pull:.2g} N" in said[0] and f": {theory})" in said[0]
-
-
-def test_a_rigid_counterbody_has_no_hardness():
-    given = MILD | {"counterbody": "rigid", "counter_hardness": "7 GPa"}
-    with pytest.raises(ValueError, match="counter_hardness = '7 GPa': .* not a rigid one"):
-        microslip.predict("transverse", **given)
 
 
 @pytest.mark.slow
@@ -358,12 +286,7 @@ def test_a_missing_property_is_said_with_its_body():
     ],
 )
 def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rounding):
-    assert microslip.predict("transverse", **MILD | _of(name)).u_lim_m > 0.0
     assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=rounding)
-
-
-def _of(name):
-    return {"material": name, "young": None, "nu": None}
 
 
 def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():
@@ -394,66 +317,6 @@ def test_materials_say_where_their_numbers_are_from():
 
 # Bad input
 
-BAD = [
-    ({"radius": "5"}, "radius", "'5 mm'"),
-    ({"radius": "5 N"}, "radius", "units of m"),
-    ({"radius": "-5 mm"}, "radius", "above 0"),
-    ({"radius": "five"}, "radius", "'five'"),
-    ({"load": "0 N"}, "load", "above 0"),
-    ({"load": "nan N"}, "load", "allowed"),
-    ({"mu": 0}, "mu", "above 0"),
-    ({"mu": "a lot"}, "mu", "a number"),
-    ({"nu": 0.7}, "nu", "at most 0.5"),
-    ({"young": None}, "young", "needed"),
-    ({"young": "inf GPa"}, "young", "finite"),
-    ({"material": "steel"}, "material", "without young"),
-    ({"counterbody": "wood"}, "counterbody", "'70 GPa, 0.22'"),
-    ({"counterbody": "70 GPa, 0.9"}, "counterbody", "at most 0.5"),
-    ({"counter_radius": "-4 mm"}, "counter_radius", "hollow wider"),
-    ({"counter_radius": "0 mm"}, "counter_radius", "allowed"),
-    ({"amplitude": "1 deg"}, "amplitude", "units of m"),
-    ({"amplitude": None}, "amplitude", "needs it"),
-    ({"frequency": "-20 kHz"}, "frequency", "above 0"),
-    ({"rotation": "60 rpm"}, "rotation", "has none"),
-    ({"reduction": "50 %"}, "reduction", "without an amplitude"),
-    ({"reduction": "120 %", "amplitude": None}, "reduction", "at most 1"),
-    ({"speed": "1 mm"}, "speed", "units of m/s"),
-    ({"tolerance": 0.0}, "tolerance", "allowed"),
-    ({"density": "7850"}, "density", "'7850 kg/m^3'"),
-    ({"mu": "0,3"}, "mu", "decimals follow a point"),
-    ({"nu": "0,3"}, "nu", "decimals follow a point"),
-    ({"amplitude": "0,5 um"}, "amplitude", "stopped at ',5 um'"),
-    ({"amplitude": "1 m"}, "amplitude", "times the 2.17e-07 m that let the whole contact slide"),
-    ({"counterbody": "70 GPa, 0,3"}, "counterbody", "2 commas"),
-    ({"counterbody": "70,5 GPa"}, "counterbody", "'70'"),
-    ({"counterbody": "70 GPa extra, 0.3"}, "counterbody", "stopped at 'extra'"),
-    ({"counterbody": "70 GPa, 0.3 mm"}, "counterbody", "stopped at 'mm'"),
-    ({"counterbody": "70 GPa; 0.3"}, "counterbody", "'70 GPa, 0.22'"),
-    ({"counterbody": 70e9}, "counterbody", "a Material"),
-    ({"material": 5, "young": None, "nu": None}, "material", "a Material"),
-    ({"material": "Steel", "young": None, "nu": None}, "material", "steel,"),
-    ({"tolerance": "small"}, "tolerance", "at least 1e-06 and at most 0.1"),
-    ({"tolerance": 1e-9}, "tolerance", "at least 1e-06 and at most 0.1"),
-    ({"radius": "1e-320 m"}, "radius", "real bodies"),
-    ({"radius": "1e-300 m", "load": "1e-300 N"}, "load", "real bodies"),
-    ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "speed", "beyond the range"),
-    ({"frequency": "20 s^-1"}, "frequency", "Hz or rad/s"),
-    ({"frequency": Q(20, "1/s")}, "frequency", "Hz or rad/s"),
-    ({"reduction": "1e-9", "amplitude": None}, "reduction", "the tolerance, 0.001"),
-]
-
-
-@pytest.mark.parametrize(("changed", "named", "said"), BAD)
-def test_bad_input_names_the_argument_and_what_is_allowed(changed, named, said):
-    with pytest.raises(ValueError, match=f"^{named} = ") as caught:
-        microslip.predict("transverse", **EXAMPLE | changed)
-    assert said in str(caught.value)
-
-
-def test_a_spin_that_is_too_large_is_told_as_it_was_given():
-    with pytest.raises(InputError, match="^amplitude = '1e9 turn': .* half of the contact"):
-        microslip.predict("bore", amplitude="1e9 turn", frequency="1 Hz", **SPIN)
-
 
 def test_a_bore_of_no_amplitude_has_no_velocity_to_tell():
     still = microslip.predict("bore", amplitude="0 deg", frequency="20 Hz", **SPIN)
@@ -465,11 +328,3 @@ def test_a_reduction_is_looked_for_at_any_speed():
     with pytest.raises(InputError, match="^reduction = '50 %': no amplitude up to"):
         fast = SPIN | {"speed": "1000 m/s", "tolerance": 0.01}
         microslip.predict("bore", reduction="50 %", frequency="20 kHz", **fast)
-
-
-def test_two_rigid_bodies_and_unknown_motions_are_refused():
-    ball = BALL | {"amplitude": "1 um", "frequency": "1 kHz"}
-    with pytest.raises(ValueError, match="elastic"):
-        microslip.predict("transverse", material="rigid", **ball)
-    with pytest.raises(ValueError, match="^motion = 'sideways'"):
-        microslip.predict("sideways", material="steel", **ball)

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -29,15 +28,6 @@ def test_each_case_is_its_prediction(tmp_path):
     units |= {"rotation_rad_s": "rad s-1", "drive_stiffness_N_m": "N m-1", "drag_power_W": "W"}
     assert {name: table[name].attrs["units"] for name in units} == units
     table.to_netcdf(tmp_path / "table.nc", engine="netcdf4")
-
-
-@pytest.mark.slow
-def test_arrays_in_the_si_are_cases():
-    speed = np.geomspace(1e-3, 1.0, 3)
-    asked = SHARED | {"load": "10 N", "amplitude": "1 um"}
-    table = microslip.predict_table("transverse", {"speed": speed}, **asked)
-    assert table.speed_m_s.values == pytest.approx(speed)
-    assert (np.diff(table.mu_macro) > 0.0).all()  # friction rises with the velocity
 
 
 @pytest.mark.parametrize(
@@ -70,38 +60,16 @@ def test_a_case_that_cannot_be_has_its_error_and_the_others_their_answers(tmp_pa
 
 @pytest.mark.slow
 def test_pandas_tables_and_files_are_cases(tmp_path):
-    """A frame as pandas.read_csv makes it, a series with an index of its own, and the file."""
+    """A frame as pandas.read_csv makes it, and the file."""
     text = "label;load [N];speed [mm/s];amplitude [um];reduction\na;10;1,5;1;\nb;20;2,5;0,3;\n"
     (tmp_path / "cases.csv").write_text(text)
     shared = SHARED | {"tolerance": 0.01}
     frame = pd.read_csv(tmp_path / "cases.csv", sep=";", decimal=",")
-    series = {name: pd.Series(values, index=[7, 3]) for name, values in CASES.items()}
     by_file = microslip.predict_table("transverse", tmp_path / "cases.csv", decimal=",", **shared)
     by_frame = microslip.predict_table("transverse", frame, **shared)
     assert by_frame.mu_macro.values.tolist() == by_file.mu_macro.values.tolist()
     assert by_frame.speed_m_s.values.tolist() == [1.5e-3, 2.5e-3]
     assert by_frame.label.values.tolist() == ["a", "b"]
-    by_series = microslip.predict_table("transverse", series, **shared)
-    plain = microslip.predict_table("transverse", CASES, **shared)
-    assert by_series.mu_macro.values.tolist() == plain.mu_macro.values.tolist()
-
-
-def test_a_column_without_a_text_for_a_name_is_refused():
-    with pytest.raises(InputError, match="^cases = 0: names of columns must be texts"):
-        microslip.predict_table("transverse", pd.DataFrame({0: ["5 N"]}), radius="1 mm")
-
-
-@pytest.mark.parametrize(
-    "cases",
-    [
-        {"load [kN]": [2.0], "load [N]": [1.0]},
-        {"load": ["3 N"], "load [N]": [1.0]},
-        pd.DataFrame([[1.0, 2.0]], columns=["load [N]", "load [N]"]),
-    ],
-)
-def test_a_column_that_is_there_twice_is_refused(cases):
-    with pytest.raises(InputError, match="^cases = 'load': is there twice; allowed: once"):
-        microslip.predict_table("transverse", cases, radius="1 mm")
 
 
 def test_a_dataframe_without_columns_is_refused():

@@ -3,98 +3,102 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 
 from microslip.app import predicted_propulsion, predicted_table
-from microslip.app.option_parser import Said, format_as_options, option
-from microslip.app.terminal import complain
-from microslip.foundation.errors import InputError, shown
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.foundation.errors import InputError
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
-from microslip.si.prediction import Prediction
 
-if TYPE_CHECKING:
-    from microslip.si.propulsion import RealPropulsionLine
-
-OPTIONS = {
-    "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
-    "nu": ("NU", "Poisson's ratio of the body"),
-    "material": ("NAME", f"instead of both: one of {', '.join(MATERIALS)}"),
-    "counterbody": ("BODY", "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'"),
-    "radius": ("R", "radius of the sphere, such as '5 mm'"),
-    "counter-radius": ("R2", "radius of the counterbody, negative if hollow; flat if not given"),
-    "radius-across": ("R", "another radius across the forward direction: an ellipse is touched"),
-    "contact-radius": ("A", "in place of radii: half the longer side of a contact that is known"),
-    "pressure": ("NAME", "over that contact, such as ring:inner=0.5 or file:FILE (hertz)"),
-    "load": ("F", "normal load, such as '10 N'"),
-    "mu": ("MU", "coefficient of friction without vibration"),
-    "speed": ("V", "forward speed, such as '1 mm/s'"),
-    "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
-    "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
-    "forward-amplitude": ("A", "half stroke along the forward direction, of elliptic and normal"),
-    "rotation-amplitude": ("A", "half stroke in spin, an angle, of transverse-bore and normal"),
-    "load-amplitude": ("A", "half stroke of the load, of normal, such as '5 N'"),
-    "phase": ("P", "of these against the rest, an angle, such as '90 deg' (0)"),
-    "frequency": (
-        "F",
-        "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
-        "'125664 rad/s'",
-    ),
-    "rotation": (
-        "W",
-        "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
-    ),
-    "reduction": (
-        "SHARE",
-        "instead of the amplitude, the speed or the load: find the least amplitude, the largest "
-        "speed or the largest load at which vibration takes '50 %%' away",
-    ),
-    "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
-    "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
-    "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
-    "contacts": (
-        "TEXT",
-        "that carry the body together, such as 'phase=0;phase=180': the load is that of all, which "
-        "share it by load=..., and so is what pulls",
-    ),
-    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
-    "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
-    "counter-hardness": ("H2", "of the counterbody"),
-    "counter-density": ("RHO2", "of the counterbody"),
-    "tolerance": (
-        "T",
-        "largest accepted error: of the ratio mu_macro, absolute (1e-3; 1e-2 with --propulsion); "
-        "with --force, of the speed, relative (1e-2)",
-    ),
-    "points": ("N", "with --propulsion: on the line, its ends included (9)"),
-    "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
-    "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
+GROUPS: dict[str, dict[str, tuple[str, str]]] = {
+    "bodies": {
+        "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
+        "nu": ("NU", "Poisson's ratio of the body"),
+        "material": ("NAME", f"instead of both: one of {', '.join(MATERIALS)}"),
+        "counterbody": (
+            "BODY",
+            "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'",
+        ),
+        "radius": ("R", "radius of the sphere, such as '5 mm'"),
+        "counter-radius": (
+            "R2",
+            "radius of the counterbody, negative if hollow; flat if not given",
+        ),
+        "radius-across": (
+            "R",
+            "another radius across the forward direction: an ellipse is touched",
+        ),
+        "contact-radius": (
+            "A",
+            "in place of radii: half the longer side of a contact that is known",
+        ),
+        "pressure": ("NAME", "over that contact, such as ring:inner=0.5 or file:FILE (hertz)"),
+        "mu": ("MU", "coefficient of friction without vibration"),
+        "hardness": (
+            "H",
+            "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'",
+        ),
+        "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
+        "counter-hardness": ("H2", "of the counterbody"),
+        "counter-density": ("RHO2", "of the counterbody"),
+    },
+    "load": {
+        "load": ("F", "normal load, such as '10 N'"),
+        "contacts": (
+            "TEXT",
+            "that carry the body together, such as 'phase=0;phase=180': the load is that of "
+            "all, which share it by load=..., and so is what pulls",
+        ),
+    },
+    "motion": {
+        "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
+        "forward-amplitude": (
+            "A",
+            "half stroke along the forward direction, of elliptic and normal",
+        ),
+        "rotation-amplitude": ("A", "half stroke in spin, an angle, of transverse-bore and normal"),
+        "load-amplitude": ("A", "half stroke of the load, of normal, such as '5 N'"),
+        "phase": ("P", "of these against the rest, an angle, such as '90 deg' (0)"),
+        "frequency": (
+            "F",
+            "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
+            "'125664 rad/s'",
+        ),
+        "rotation": (
+            "W",
+            "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
+        ),
+        "reduction": (
+            "SHARE",
+            "instead of the amplitude, the speed or the load: find the least amplitude, the "
+            "largest speed or the largest load at which vibration takes '50 %%' away",
+        ),
+    },
+    "drive": {
+        "speed": ("V", "forward speed, such as '1 mm/s'"),
+        "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
+        "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
+        "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
+        "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
+    },
+    "output": {
+        "tolerance": (
+            "T",
+            "largest accepted error: of the ratio mu_macro, absolute (1e-3; 1e-2 with "
+            "--propulsion); with --force, of the speed, relative (1e-2)",
+        ),
+        "points": ("N", "with --propulsion: on the line, its ends included (9)"),
+        "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
+        "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
+    },
 }
-GROUPS = {
-    "bodies": (
-        *("young", "nu", "material", "counterbody", "radius", "counter-radius", "radius-across"),
-        *("contact-radius", "pressure", "mu", "hardness", "density"),
-        *("counter-hardness", "counter-density"),
-    ),
-    "load": ("load", "contacts"),
-    "motion": (
-        *("amplitude", "forward-amplitude", "rotation-amplitude", "load-amplitude", "phase"),
-        *("frequency", "rotation", "reduction"),
-    ),
-    "drive": ("speed", "force", "drive-stiffness", "mass", "damping"),
-    "output": ("tolerance", "points", "decimal", "encoding"),
-}
-"""Options by the headings of the help."""
+"""Options by the headings of the help: metavar and help."""
 ABOUT_GROUPS = {
     "drive": "Where the normal load oscillates there are two reference loads: stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
     "by mu times the mean load.",
 }
 """Sentences below headings of the help."""
-OTHER_NAMES = {"nu": ("--poisson",)}
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -112,17 +116,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
         metavar="MOTION",
         help=f"what the sphere does. {motions}; or another motion of point",
     )
-    for title, names in GROUPS.items():
+    for title, options in GROUPS.items():
         group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))
-        for name in names:
-            metavar, text = OPTIONS[name]
-            group.add_argument(
-                *(f"--{name}", *OTHER_NAMES.get(name, ())),
-                dest=name.replace("-", "_"),
-                action=Said,
-                metavar=metavar,
-                help=text,
-            )
+        add_options(group, options)
         if title == "drive":
             group.add_argument(
                 "--propulsion",
@@ -143,55 +139,30 @@ def fill(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--output", metavar="FILE", help="with --table: writes all that is found into a .csv or .nc"
     )
-    group.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    add_json(group)
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
-    from microslip.foundation.errors import CacheError
-    from microslip.sweeps.evaluate import plain
-
-    typed = getattr(options, "said", {})
-    given = {name: getattr(options, name) for name in typed}
-    try:
-        if options.table is not None:
-            text, converged = predicted_table.answer(options, given, list(OPTIONS))
-        else:
-            found = _found(options, given)
-            text = json.dumps(plain(found.to_dict())) if options.json else str(found)
-            converged = found.converged
-    except InputError as error:
-        complain(f"microslip predict: {_complaint(error, typed)}")
-        return 2
-    except CacheError as error:
-        complain(f"microslip predict: {error}")
-        return 2
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it
-    print(text.encode(encoding, "backslashreplace").decode(encoding))
-    return 0 if converged else 1
+    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
+    return respond("microslip predict", options, _answer, {"motion": "MOTION"}, names)
 
 
-def _found(options: argparse.Namespace, given: dict[str, Any]) -> Prediction | RealPropulsionLine:
-    """The answer to the options that were given, a dict; raises InputError."""
+def _answer(options: argparse.Namespace) -> Answer:
     from microslip import predict
     from microslip.app.progress import Elapsed
 
+    arguments = typed_options(options)
+    if options.table is not None:
+        return predicted_table.answer(options, arguments)
     for name in ("output", "decimal", "encoding"):
         if getattr(options, name) is not None:
             raise InputError(name, getattr(options, name), "allowed with --table alone")
     with Elapsed("microslip predict"):
         if options.propulsion:
-            return predicted_propulsion.ask(options.motion, given)
-        if "points" in given:
-            raise InputError("points", given["points"], "allowed with --propulsion alone")
-        return predict(options.motion, **{"mu": None} | given, power=options.power)
-
-
-def _complaint(error: InputError, typed: Mapping[str, str]) -> str:
-    """The option, its value as it was given, and what is allowed, in one line."""
-    name = "MOTION" if error.argument == "motion" else option(error.argument)
-    flag = error.value is True or error.value is None
-    given = "" if flag else f" = {shown(error.value)}"
-    names = [] if error.argument == "table" else [name.replace("-", "_") for name in OPTIONS]
-    allowed = format_as_options(error.allowed, names)
-    return " ".join(f"{typed.get(error.argument, name)}{given}: {allowed}".split())
+            found = predicted_propulsion.ask(options.motion, arguments)
+            return Answer(found.to_dict(), str(found), found.converged)
+        if "points" in arguments:
+            raise InputError("points", arguments["points"], "allowed with --propulsion alone")
+        found = predict(options.motion, **{"mu": None} | arguments, power=options.power)
+    return Answer(found.to_dict(), str(found), found.converged)

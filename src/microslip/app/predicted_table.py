@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
-from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from microslip.app.option_parser import format_as_options, option
+from microslip.app.question import Answer
 from microslip.app.terminal import complain
-from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import CacheError, InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
-from microslip.si.prediction import NoPrediction, Prediction
-from microslip.si.printed_lines import not_converged, probability_text, runs_away, unit_of_sought
+from microslip.si.motions import unit_of_amplitude
+from microslip.si.prediction import EMPTY, NoPrediction, Prediction
+from microslip.si.printed_lines import not_converged, probability_text, runs_away
+from microslip.si.tables import Table
 
 FORMAT = ("decimal", "encoding")
-"""Options that say how the file is written."""
+"""Options that describe the file."""
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
@@ -30,112 +29,55 @@ PROBABILITIES = {
     "moves %": "probability_moves",
     "runs away %": "probability_runs_away",
 }
-"""Headings of the probabilities of each outcome, and their fields."""
+"""Headings of the probabilities of each outcome, and their columns."""
 
 
-@dataclass(frozen=True)
-class Answered:
-    """A table and its answer.
+def answer(options: argparse.Namespace, given: Mapping[str, Any]) -> Answer:
+    """The answer to a table, complete if all of it converged.
 
-    Attributes
-    ----------
-    motion : str
-        The motion.
-    cases : dict of list of str
-        Columns of the file.
-    lines : list of int
-        Numbers of the lines of the file that they come from.
-    found : list of Prediction or NoPrediction
-        Prediction of each line.
-    """
-
-    motion: str
-    cases: dict[str, list[str | None]]
-    lines: list[int]
-    found: list[Prediction | NoPrediction]
-
-    @property
-    def labels(self) -> dict[str, list[str | None]]:
-        """Columns of texts that are carried through."""
-        return {name: texts for name, texts in self.cases.items() if name in LABELS}
-
-    @property
-    def errors(self) -> list[str]:
-        """Error messages of the lines without a prediction."""
-        pairs = zip(self.lines, self.found, strict=True)
-        texts = ((line, one.error) for line, one in pairs if isinstance(one, NoPrediction))
-        return [
-            f"line {line}: {_problem(text, self.cases)}" if isinstance(text, InputError) else text
-            for line, text in texts
-        ]
-
-    def to_dicts(self) -> list[dict]:
-        """A dict for each line with its number, its labels and an error, which may be None."""
-        dicts = []
-        for row, (line, one) in enumerate(zip(self.lines, self.found, strict=True)):
-            labels = {name: texts[row] for name, texts in self.labels.items()}
-            if isinstance(one, NoPrediction):
-                dicts.append({"line": line} | labels | {"error": _problem(one.error, self.cases)})
-            else:
-                dicts.append({"line": line} | labels | {"error": None} | one.to_dict())
-        return dicts
-
-
-def answer(
-    options: argparse.Namespace, given: Mapping[str, object], columns: Collection[str]
-) -> tuple[str, bool]:
-    """The answer to a table as text, and whether all of it converged.
-
-    What is wrong with lines that have no prediction goes to standard error.  options: those of
-    predict; given: the ones that were typed; columns: names of all.  Raises InputError.
-    """
-    from microslip.sweeps.evaluate import plain
-
-    if options.propulsion or "points" in given:
-        raise InputError("table", options.table, "allowed without --propulsion")
-    refuse_output(options.output, options.table)
-    names = [name.replace("-", "_") for name in columns]
-    shared = {name: value for name, value in given.items() if name not in FORMAT}
-    format: dict[str, Any] = {name: given[name] for name in FORMAT if name in given}
-    names = [name for name in names if name not in ("points", *FORMAT)]
-    answered = ask(
-        options.motion, options.table, shared | {"power": options.power}, names, **format
-    )
-    if options.output is not None:
-        write(options.output, answered)
-    for text in answered.errors:
-        complain(f"microslip predict: {format_as_options(text)}")
-    text = json.dumps(plain(answered.to_dicts())) if options.json else as_text(answered)
-    return text, all(one.converged for one in answered.found)
-
-
-def ask(
-    motion: str,
-    path: str,
-    given: Mapping[str, object],
-    columns: Collection[str],
-    **format: str,
-) -> Answered:
-    """The cases of a file and their predictions, with a line of progress; raises InputError.
-
-    given: options by name that all cases share; columns: of predict's arguments; format: decimal
-    and encoding of the file.
+    Errors of lines without a prediction go to standard error.  options: those of predict; given:
+    the ones that were typed.  Raises InputError.
     """
     from tqdm import tqdm
 
-    from microslip.si.table import predictions
-    from microslip.si.table_csv import cases_of_file
+    from microslip.si.table import NAMES, predictions
+    from microslip.si.tables import table_of
 
-    read = cases_of_file(path, [name for name in columns if name != "power"], **format)
-    names = [f"line {line}" for line in read.lines]
+    if options.propulsion or "points" in given:
+        raise InputError("table", options.table, "allowed without --propulsion")
+    _refuse_output(options.output, options.table)
+    format: dict[str, Any] = {name: given[name] for name in FORMAT if name in given}
+    shared = {name: value for name, value in given.items() if name not in FORMAT}
+    table = table_of("table", options.table, NAMES, **format)
     try:
-        found = predictions(motion, read.columns, given, names, read.errors)
+        found = predictions(options.motion, table, shared | {"power": options.power})
     except InputError as error:
-        if error.argument not in read.columns or error.argument in given:
+        if error.argument not in table.columns or error.argument in shared:
             raise
-        raise InputError("table", path, _problem(error, read.columns)) from None
-    answers = list(tqdm(found, "contacts", len(names), leave=False, disable=None))
-    return Answered(motion, read.columns, read.lines, answers)
+        raise InputError("table", options.table, _problem(error, table.columns)) from None
+    answers = list(tqdm(found, "contacts", len(table.lines), leave=False, disable=None))
+    rows = _rows(table, answers)
+    if options.output is not None:
+        _write(options.output, options.motion, table, answers, rows)
+    for row, one in zip(rows, answers, strict=True):
+        if isinstance(one, NoPrediction):
+            where = f"line {row['line']}: " if isinstance(one.error, InputError) else ""
+            complain(f"microslip predict: {where}{row['error']}")
+    return Answer(rows, _as_text(table, answers), all(one.converged for one in answers))
+
+
+def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[dict[str, Any]]:
+    """A dict for each line with its number, its labels and an error, which may be None."""
+    rows = []
+    for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
+        labels = {name: texts[index] for name, texts in table.labels.items()}
+        row: dict[str, Any] = {"line": line, **labels, "error": None}
+        if isinstance(one, NoPrediction):
+            row["error"] = _problem(one.error, table.columns)
+        else:
+            row |= one.to_dict()
+        rows.append(row)
+    return rows
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
@@ -143,41 +85,47 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
 
     error: InputError, without a value where the cell is empty or has no column; or a text.
     """
-    from microslip.si.predict import predict  # only now: it takes a while
+    from microslip.si.predict import NOTHING
 
     if not isinstance(error, InputError):
         return format_as_options(error)
-    others = [name for name in signature(predict).parameters if name not in columns]
+    others = [name for name in NOTHING if name not in columns]
     name = error.argument if error.argument in columns else option(error.argument)
     given = "" if error.value is None else f" = {shown(error.value)}"
     allowed = format_as_options(error.allowed, others)
     return " ".join(f"{name}{given}: {allowed}".split())
 
 
-def refuse_output(path: str | None, table: str) -> None:
-    """Raise InputError for an output that cannot be, before anything is computed; table: the file
-    that is read."""
+def _refuse_output(path: str | None, table: str) -> None:
+    """Raise InputError for an output that cannot be written, before anything is computed; table:
+    the file that is read."""
     if path is None:
         return
-    file = Path(path)
+    file, allowed = Path(path), ""
     if file.suffix.lower() not in ENDINGS:
-        allowed = f"allowed is a name that ends in {' or '.join(ENDINGS)}"
-        raise InputError("output", path, allowed)
-    if file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
-        raise InputError("output", path, "allowed is a file in a folder that can be written to")
-    if file.resolve() == Path(table).resolve():
-        raise InputError("output", path, "allowed is another file than the table that is read")
+        allowed = f"a name that ends in {' or '.join(ENDINGS)}"
+    elif file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
+        allowed = "a file in a folder that can be written to"
+    elif file.resolve() == Path(table).resolve():
+        allowed = "another file than the table that is read"
+    if allowed:
+        raise InputError("output", path, f"allowed is {allowed}")
 
 
-def write(path: str, answered: Answered) -> None:
-    """All fields of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
+def _write(
+    path: str,
+    motion: str,
+    table: Table,
+    answers: Sequence[Prediction | NoPrediction],
+    rows: Sequence[Mapping[str, Any]],
+) -> None:
+    """All columns of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
     from microslip.si.table import as_dataset
     from microslip.sweeps.sealed_files import writing_beside
 
-    dataset = as_dataset(answered.motion, answered.cases, answered.found)
-    problems = [one["error"] or "" for one in answered.to_dicts()]
-    dataset["error"] = dataset["error"].copy(data=problems)
-    lines = "case", answered.lines, {"long_name": "line of the file"}
+    dataset = as_dataset(motion, table, answers)
+    dataset["error"] = dataset["error"].copy(data=[row["error"] or "" for row in rows])
+    lines = "case", table.lines, {"long_name": "line of the file"}
     dataset = dataset.assign_coords(line=lines)
     try:
         with writing_beside(Path(path)) as beside:
@@ -189,96 +137,94 @@ def write(path: str, answered: Answered) -> None:
         raise InputError("output", path, f"cannot be written: {error}") from None
 
 
-def as_text(answered: Answered) -> str:
-    """A row for each case, and what is said against it below the table."""
-    predicted = [one for one in answered.found if isinstance(one, Prediction)]
-    columns, verdict = _columns(predicted), _verdict_headings(predicted)
-    labels = answered.labels
-    headings = [heading for titles in columns.values() for heading in titles if heading] + verdict
-    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *labels, *headings))]
-    remarks = []
-    for row, (line, one) in enumerate(zip(answered.lines, answered.found, strict=True)):
-        texts = "".join(f" {column[row] or '':>{WIDTH - 1}}" for column in labels.values())
-        if isinstance(one, NoPrediction):
-            rows.append(f"{line:>{WIDTH}}{texts}  no prediction")
-            continue
-        cells = [cell for about, titles in columns.items() for cell in _cells(one, about, titles)]
-        cells += _verdict_cells(one)[: len(verdict)]
-        rows.append(f"{line:>{WIDTH}}{texts}{''.join(f'{cell:>{WIDTH}}' for cell in cells)}")
-        if one.outcome == "runs away":
-            remarks.append(f"line {line}: {runs_away(one)}")
-        remarks += [f"line {line}: {text}" for text in not_converged(one)]
-        remarks += [f"line {line}: warning: {text}" for text in one.warnings]
-    return "\n".join(rows + remarks)
+class _Quantity(NamedTuple):
+    """Columns of a quantity, of its error and of its standard uncertainty, and their headings,
+    empty where a table has no such column; sought: the search that it is the result of, or None."""
 
-
-@dataclass(frozen=True)
-class _Quantity:
-    """Names of a field of a Prediction, of its error and of its standard uncertainty, empty where
-    it has none; sought: what has to be looked for if it is to be shown, None for anything."""
-
-    value: str
-    error: str = ""
-    spread: str = ""
+    columns: tuple[str, str, str]
+    headings: tuple[str, str, str]
     sought: str | None = None
 
 
-def _columns(found: Sequence[Prediction]) -> dict[_Quantity, tuple[str, str, str]]:
-    """Headings of the columns of value, error and spread, empty where there is no column, by the
-    quantity in them."""
-    spread = any(one.mu_apparent_spread is not None for one in found)
+def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
+    """A row for each case, and remarks below the table."""
+    found = [one for one in answers if isinstance(one, Prediction)]
+    quantities, verdict = _quantities(found), _verdict_headings(found)
+    headings = [text for one in quantities for text in one.headings if text] + verdict
+    lines = ["".join(f"{title:>{WIDTH}}" for title in ("line", *table.labels, *headings))]
+    remarks: list[str] = []
+    for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
+        labels = (f" {texts[index] or '':>{WIDTH - 1}}" for texts in table.labels.values())
+        start = f"{line:>{WIDTH}}{''.join(labels)}"
+        if isinstance(one, NoPrediction):
+            lines.append(f"{start}  no prediction")
+            continue
+        row = EMPTY | {"sought_value": getattr(one, "sought_value", None)} | one.to_dict()
+        cells = [cell for quantity in quantities for cell in _cells(row, quantity)]
+        cells += _verdict_cells(row)[: len(verdict)]
+        lines.append(start + "".join(f"{cell:>{WIDTH}}" for cell in cells))
+        if row["outcome"] == "runs away":
+            remarks.append(f"line {line}: {runs_away(one)}")
+        remarks += [f"line {line}: {text}" for text in not_converged(one)]
+        remarks += [f"line {line}: warning: {text}" for text in one.warnings]
+    return "\n".join(lines + remarks)
+
+
+def _quantities(found: Sequence[Prediction]) -> list[_Quantity]:
+    """The quantities that are shown of some predictions."""
     forced = any(one.force_N is not None for one in found)
-    columns = {
-        _Quantity("mu_apparent", "mu_apparent_error", "mu_apparent_spread"): (
-            *("mu_apparent", "+-"),
-            "spread" if spread else "",
+    spread = "spread" if any("mu_apparent_spread" in one.uncertainty for one in found) else ""
+    friction = ("mu_apparent", "mu_apparent_error", "mu_apparent_spread")
+    shown = [
+        _Quantity(friction, ("mu_apparent", "+-", spread)),
+        _Quantity(("friction_force_N", "friction_force_error_N", ""), ("force N", "+- N", "")),
+        _Quantity(
+            ("speed_m_s", "speed_error_m_s", ""), ("speed m/s", "+- m/s" if forced else "", "")
         ),
-        _Quantity("friction_force_N", "friction_force_error_N"): ("force N", "+- N", ""),
-        _Quantity("speed_m_s", "speed_error_m_s"): ("speed m/s", "+- m/s" if forced else "", ""),
-    }
+    ]
     if forced:
-        threshold = _Quantity("force_threshold_N", "force_threshold_error_N")
-        columns[threshold] = "threshold N", "+- N", ""
-    for one in found:  # an empty cell may be what is looked for, another one in each line
-        if one.sought is not None:
-            unit = unit_of_sought(one)
-            quantity = _Quantity("sought_value", "sought_error", "sought_spread", one.sought)
-            *_, before = columns.get(quantity, ("",))
-            known = before if one.sought_spread is None else f"spread {unit}"
-            columns[quantity] = f"{one.sought} {unit}", f"+- {unit}", known
-    return columns
+        threshold = ("force_threshold_N", "force_threshold_error_N", "")
+        shown.append(_Quantity(threshold, ("threshold N", "+- N", "")))
+    for sought in dict.fromkeys(one.sought for one in found):
+        if sought is not None:  # an empty cell may be sought, another one in each line
+            known = [one for one in found if one.sought == sought]
+            amplitude = unit_of_amplitude(known[0].motion)
+            unit = {"amplitude": amplitude, "speed": "m/s", "load": "N"}[sought]
+            spread = f"spread {unit}" if any(one.sought_spread is not None for one in known) else ""
+            headings = (f"{sought} {unit}", f"+- {unit}", spread)
+            columns = ("sought_value", "sought_error", "sought_spread")
+            shown.append(_Quantity(columns, headings, sought))
+    return shown
 
 
-def _cells(one: Prediction, quantity: _Quantity, headings: tuple[str, str, str]) -> list[str]:
+def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
     """Texts of the columns of one quantity: to the digits that its error allows."""
-    value = getattr(one, quantity.value)
-    accelerates = one.outcome == "runs away" and quantity.value in STEADY
-    if value is None or accelerates or quantity.sought not in (None, one.sought):
-        return ["" for heading in headings if heading]
-    error = getattr(one, quantity.error) or 0.0
-    number, _, shown = number_text(value, error).partition(SEPARATOR)
-    if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
-        shown, _, power = shown.partition(")")
-        number, shown = f"{number[1:]}{power}", f"{float(shown + power):g}"
-    spread = getattr(one, quantity.spread) if quantity.spread else None
-    texts = number, shown or "0", "" if spread is None else number_text(spread, digits=2)
-    return [text for text, heading in zip(texts, headings, strict=True) if heading]
+    value, error, spread = (row.get(name) for name in quantity.columns)
+    accelerates = row["outcome"] == "runs away" and quantity.columns[0] in STEADY
+    texts = ["", "", ""]
+    if not (value is None or accelerates or quantity.sought not in (None, row["sought"])):
+        number, _, error = number_text(value, error or 0.0).partition(SEPARATOR)
+        if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
+            error, _, power = error.partition(")")
+            number, error = f"{number[1:]}{power}", f"{float(error + power):g}"
+        texts = [number, error or "0", "" if spread is None else number_text(spread, digits=2)]
+    return [text for text, heading in zip(texts, quantity.headings, strict=True) if heading]
 
 
 def _verdict_headings(found: Sequence[Prediction]) -> list[str]:
     """Headings of the outcome under a force and of its probabilities, which follow it."""
     if all(one.force_N is None for one in found):
         return []
-    uncertain = any(one.probability_error is not None for one in found)
+    uncertain = any("probability_error" in one.uncertainty for one in found)
     return ["outcome", *PROBABILITIES, "+- %"] if uncertain else ["outcome"]
 
 
-def _verdict_cells(one: Prediction) -> list[str]:
+def _verdict_cells(row: Mapping[str, Any]) -> list[str]:
     """Outcome, the probability of each outcome, and the error of these probabilities."""
-    error = one.probability_error
-    chances = [getattr(one, field) for field in PROBABILITIES.values()]
+    error = row["probability_error"]
+    chances = [row[column] for column in PROBABILITIES.values()]
     texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]
-    return [one.outcome or "", *texts, "" if error is None else error_text(100.0 * error)]
+    return [row["outcome"] or "", *texts, "" if error is None else error_text(100.0 * error)]
 
 
 def _percent(chance: float, error: float) -> str:

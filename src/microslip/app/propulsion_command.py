@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from microslip.app.option_parser import Said
-from microslip.app.terminal import complain
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.foundation import spec
 from microslip.foundation.number_text import aligned, number_text
 
 if TYPE_CHECKING:
@@ -23,7 +21,6 @@ OPTIONS = {
     "points": ("N", "on the line, its ends included (9)"),
     "time-limit": ("SECONDS", "give up after so long, looked at between two marches"),
 }
-OTHER_NAMES = {"poisson": ("--nu",)}
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")
 """Fields of the line that have an error."""
@@ -48,48 +45,23 @@ def fill(parser: argparse.ArgumentParser) -> None:
         metavar="MOTION",
         help="elliptic or normal, with numbers after a colon, such as elliptic:forward_cycles=2",
     )
-    for name, (metavar, text) in OPTIONS.items():
-        parser.add_argument(
-            *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            dest=name.replace("-", "_"),
-            action=Said,
-            metavar=metavar,
-            help=text,
-            required=name == "amplitude",
-        )
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object and nothing else"
-    )
+    add_options(parser, OPTIONS, required=("amplitude",))
+    add_json(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    return respond("microslip propulsion", options, _answer, {"motion": "MOTION"})
+
+
+def _answer(options: argparse.Namespace) -> Answer:
     from microslip import propulsion
-    from microslip.foundation import spec
-    from microslip.foundation.errors import InputError
-    from microslip.sweeps.evaluate import plain
 
-    said = getattr(options, "said", {})
-    given = {name: getattr(options, name) for name in said}
-    try:
-        for name in given.keys() & {*REALS, "points"}:
-            given[name] = spec.read(name, given[name], whole=name == "points")
-        line = propulsion(options.motion, given.pop("amplitude"), **given)
-    except InputError as error:
-        named = error.renamed(*_as_given(options, said, error.argument))
-        complain(f"microslip propulsion {options.motion}: {named}")
-        return 2
-    print(json.dumps(plain(line.to_dict())) if options.json else _as_text(line))
-    return 0 if line.converged else 1
-
-
-def _as_given(
-    options: argparse.Namespace, said: Mapping[str, str], argument: str
-) -> tuple[str, object]:
-    """Name of the option for an argument of `drive`, and its value on the command line."""
-    if argument == "motion":
-        return "MOTION", options.motion
-    return said.get(argument, f"--{argument.replace('_', '-')}"), getattr(options, argument, None)
+    arguments = typed_options(options)
+    for name in arguments.keys() & {*REALS, "points"}:
+        arguments[name] = spec.read(name, arguments[name], whole=name == "points")
+    line = propulsion(options.motion, arguments.pop("amplitude"), **arguments)
+    return Answer(line.to_dict(), _as_text(line), line.converged)
 
 
 def _as_text(line: PropulsionLine) -> str:

@@ -5,23 +5,15 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
 
 from microslip.foundation.errors import InputError
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """The name of a column, with its unit in brackets or without."""
-LABELS = ("label", "name", "id", "sample", "comment")
-"""Columns of texts that are carried through to the output."""
 ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 DECIMALS = (".", ",")
-PURE = {"", "1", "-"}
-"""Units that say that there is none."""
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
 """Error texts of spreadsheets in a cell without a value, such as #N/A and #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
@@ -79,88 +71,6 @@ def words(line: str, separator: str) -> list[str]:
     while len(found) > 1 and not found[-1]:
         found.pop()
     return found
-
-
-def columns(
-    where: int, heading: str, names: Collection[str], allowed: str
-) -> tuple[str, list[tuple[str, str | None]]]:
-    """The separator of a table, and name and unit of each of its columns, None without brackets.
-
-    Raises
-    ------
-    ValueError
-        For a heading that is none, a column that is not among the names and the LABELS, and one
-        that is there twice; the message begins with the line and ends with what is allowed.
-    """
-    for separator in SEPARATORS:
-        parts = words(heading, separator)
-        matches = [match for match in map(HEADING.fullmatch, parts) if match]
-        if len(matches) == len(parts) and (len(parts) > 1 or separator == ","):
-            break
-    else:
-        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
-    given = [name_and_unit(match) for match in matches]
-    every = [name for name, _ in given]
-    for name in every:
-        if name not in names and name not in LABELS:
-            carried = f"a column of texts to carry through is named one of {', '.join(LABELS)}"
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {carried}")
-        if every.count(name) > 1:
-            raise ValueError(f"line {where}: {name} is there twice; allowed: once")
-    return separator, given
-
-
-def name_and_unit(heading: re.Match) -> tuple[str, str | None]:
-    """Name and unit of a match of HEADING; the unit None without brackets."""
-    unit = heading[2] if heading[3] is None else heading[3]
-    return heading[1].lower(), unit and unit.strip()
-
-
-def by_names(table: Mapping | DataFrame) -> dict:
-    """Columns of a mapping or a pandas DataFrame as lists, None for missing values.
-
-    Numbers under a heading with a unit become texts with it.  Values that are no sequences stay as
-    they are.
-    """
-    found: dict[str, Any] = {}
-    for name, values in table.items():
-        if not isinstance(name, str):
-            allowed = "names of columns must be texts, such as 'load [N]'"
-            raise InputError("cases", name, allowed)
-        heading = HEADING.fullmatch(name)
-        if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
-            found[name] = values
-            continue
-        values = [None if _is_missing(value) else value for value in values]
-        if heading and (heading[2] is not None or heading[3] is not None):
-            name, unit = name_and_unit(heading)
-            unit = "" if unit in PURE else unit
-            values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
-        refuse_twice(name, found)
-        found[name] = values
-    return found
-
-
-def refuse_twice(name: str, found: Mapping) -> None:
-    """Raise InputError for a column that is there already, in another unit or not."""
-    if name in found:
-        raise InputError("cases", name, "is there twice; allowed: once")
-
-
-def is_table(value: object) -> bool:
-    """Whether a value is a mapping of columns or a pandas DataFrame."""
-    return isinstance(value, Mapping) or hasattr(value, "columns") and hasattr(value, "iloc")
-
-
-def _is_missing(value: object) -> bool:
-    """Whether a value is None, or the NaN, NA or NaT of pandas, which differ from themselves."""
-    if value is None or type(value).__name__ == "NAType":
-        return True
-    return type(value).__name__ == "NaTType" or isinstance(value, float) and value != value
-
-
-def _digits(value: object) -> str:
-    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def cells(where: int, line: str, separator: str, count: int) -> list[str]:

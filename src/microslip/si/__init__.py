@@ -8,7 +8,10 @@
     )
     print(found.mu_apparent, found.force_reduction, found.warnings)
 
-`quantities` reads texts with units, `materials` is a small table, `bodies` holds Hertz's theory for
-two bodies, `dimensionless` makes the paper's groups, `drives` reads what pulls, `regimes` tells
-what that is as good as, `predict` asks the solver, and `validity` tells where the theory breaks.
+The way of a request: `quantities` reads texts with units, `inputs` the bodies, the contact, the
+motion and the drive.  `request` holds them, makes them dimensionless and calls the solver.
+`reduction` looks for a missing amplitude, speed or load, `static_limit` computes the force
+threshold, and `pulled` the friction or the drift.  `predict` turns the answers into a record of
+`prediction`, and `uncertain` and `outcomes` add the uncertainty that follows from the inputs.
+`validity` has the limits of the theory.
 """

@@ -56,6 +56,11 @@ class RealMotion:
         return self.rotation
 
     @property
+    def rate(self) -> float:
+        """Frequency of the oscillation, or turns a second of what is steady, Hz."""
+        return self.turn / (2.0 * math.pi) if self.frequency is None else self.frequency
+
+    @property
     def known_speed(self) -> float:
         """The speed, m/s, of a motion whose speed is known."""
         assert self.speed is not None

@@ -1,93 +1,53 @@
-"""Torque, powers and the energy that a cycle costs, in SI units."""
+"""Torque, powers and the energy of a cycle, in SI units."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from microslip.adaptive.point import Result
-from microslip.adaptive.vibration_power import vibration_power
+from microslip.adaptive.vibration_power import VibrationPower, vibration_power
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import (
-    RealMotion,
-    full_friction,
-    groups,
-    solver_motion,
-    speed_unit,
-)
+from microslip.si.prediction import Power
+from microslip.si.request import Request
 
 
-def energy_fields(
-    contact: TwoBodies, motion: RealMotion, answer: Result, contacts: int = 1
-) -> dict:
-    """Fields of a Prediction that follow from the answer: drag, of all contacts together, and
-    torque of a steady spin."""
-    still = full_friction(motion, contact) * contacts
-    speed_error = 0.0
-    if answer.force is not None:
-        assert answer.velocity_error is not None  # as under all forces
-        speed_error = answer.velocity_error * speed_unit(motion, contact)
-    drag = still * answer.mu_macro * motion.known_speed
-    drag_error = still * (
-        answer.mu_macro_error * motion.known_speed + answer.mu_macro * speed_error
-    )
-    found = {"drag_power_W": drag, "drag_power_error_W": drag_error}
-    if answer.torque is None:
-        return found
-    unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
-    torque = unit * answer.torque.value
-    spin, spin_error = torque * motion.turn, unit * answer.torque.error * motion.turn
-    turn = 2.0 * math.pi / motion.turn
-    return found | {
-        "torque_N_m": torque,
-        "torque_error_N_m": unit * answer.torque.error,
-        "vibration_power_W": spin,
-        "vibration_power_error_W": spin_error,
-        "dissipated_power_W": drag + spin,
-        "dissipated_power_error_W": drag_error + spin_error,
-        "energy_per_cycle_J": (drag + spin) * turn,
-        "energy_per_cycle_error_J": (drag_error + spin_error) * turn,
-    }
+def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
+    """Fields of a Prediction that follow from a converged answer: the drag, the torque of a steady
+    spin, and its power, or that of an oscillation where it was requested.
 
-
-def vibration_fields(
-    contact: TwoBodies, motion: RealMotion, answer: Result, tolerance: float
-) -> dict:
-    """... and what it takes to vibrate the contact, which the solver is asked for.
-
-    Raises InputError where nothing slides on and on, or the pull is no speed.
+    Raises InputError for a requested power where the contact does not slide at a given speed.
     """
-    if motion.steady:
-        return {}
+    contact, motion, still = request.contact, request.motion, request.still
+    speed, friction = motion.known_speed, answer.friction
+    speed_error = answer.mean_velocity.error * request.speed_unit if answer.force else 0.0
+    drag = still * friction.value * speed
+    drag_error = still * (friction.error * speed + friction.value * speed_error)
+    fields: dict[str, Any] = {"drag_power_W": drag, "drag_power_error_W": drag_error}
+    if answer.torque is not None:
+        unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
+        torque, error = unit * answer.torque.value, unit * answer.torque.error
+        fields |= {"torque_N_m": torque, "torque_error_N_m": error}
+        power, power_error, reason = torque * motion.turn, error * motion.turn, None
+    elif request.arguments["power"] and not motion.steady:
+        found = _vibration_power(request, answer)
+        unit = still * contact.u_lim * motion.turn
+        power, power_error, reason = unit * found.value, unit * found.error, found.reason
+    else:
+        return fields
+    total, total_error = drag + power, drag_error + power_error
+    energy = total / motion.rate, total_error / motion.rate
+    return fields | {"power": Power(power, power_error, reason, total, total_error, *energy)}
+
+
+def _vibration_power(request: Request, answer: Result) -> VibrationPower:
+    """The dimensionless power of an oscillation."""
     if answer.force is not None or answer.stiffness is not None:
         raise InputError("power", True, "allowed where a speed alone pulls")
-    velocity, size = groups(motion, contact)
+    velocity, size = request.groups
     if not velocity or not size:
         name = "amplitude" if velocity else "speed"
         raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
-    point = min(velocity, LARGEST["velocity"]), size
-    settings: dict[str, Any] = {
-        "poisson": contact.poisson,
-        "pressure": contact.pressure,
-        "tolerance": tolerance,
-    }
-    found = vibration_power(solver_motion(motion, contact), *point, **settings)
-    still = full_friction(motion, contact)
-    frequency = motion.frequency
-    assert frequency is not None  # as of all that oscillate
-    unit = still * contact.u_lim * 2.0 * math.pi * frequency
-    drag = still * answer.mu_macro * motion.known_speed
-    total = drag + unit * found.value
-    error = still * answer.mu_macro_error * motion.known_speed + unit * found.error
-    return {
-        "vibration_power_W": unit * found.value,
-        "vibration_power_error_W": unit * found.error,
-        "vibration_power_reason": found.reason,
-        "dissipated_power_W": total,
-        "dissipated_power_error_W": error,
-        "energy_per_cycle_J": total / frequency,
-        "energy_per_cycle_error_J": error / frequency,
-    }
+    point = request.solver_motion, min(velocity, LARGEST["velocity"]), size
+    return vibration_power(*point, tolerance=request.tolerance, **request.settings)

@@ -1,15 +1,16 @@
-"""Inputs of a prediction: bodies, contact and motion, and how each was understood."""
+"""Inputs of a prediction: bodies, contact, motion and drive, each read and checked."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
 from microslip.si import motions
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion
+from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, PARTS, TAKES
@@ -18,106 +19,136 @@ from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
-"""No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""
-SHAPES = ("radius", "counter_radius", "radius_across", "contact_radius", "pressure")
-"""Arguments that describe the shape of the contact."""
+"""Largest accepted coefficient of friction: no pair of bodies in elastic contact has more."""
 LARGEST_PHASE = 1e3
-"""rad; what is larger is a slip, too."""
+"""Largest accepted phase, rad."""
 OUT_OF_RANGE = (
     "no contact that floating-point numbers can describe; allowed are sizes of real bodies"
 )
 EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
 
 
-@dataclass(frozen=True)
-class Body:
-    """A body and what was understood of it.
+class Range(NamedTuple):
+    """SI unit of a quantity, and the range of its allowed values."""
 
-    Attributes
-    ----------
-    material : Material
-        Its properties, in SI units.
-    text : str
-        The properties as they were given.
-    """
+    unit: str
+    low: float = 0.0
+    low_open: bool = True
+    high: float = math.inf
+
+
+QUANTITIES = {
+    "mu": Range("", high=LARGEST_MU),
+    "load": Range("N"),
+    "radius": Range("m"),
+    "counter_radius": Range("m", low=-math.inf),
+    "radius_across": Range("m"),
+    "contact_radius": Range("m"),
+    "speed": Range("m/s", low_open=False),
+    "young": Range("Pa"),
+    "nu": Range("", low_open=False, high=0.5),
+    "force": Range("N"),
+    "amplitude": Range("m", low_open=False),
+    "forward_amplitude": Range("m", low_open=False),
+    "rotation_amplitude": Range("rad", low_open=False),
+    "load_amplitude": Range("N"),
+    "frequency": Range("Hz"),
+    "rotation": Range("rad/s"),
+    "drive_stiffness": Range("N/m"),
+    "mass": Range("kg", low_open=False),
+    "damping": Range("N*s/m", low_open=False),
+    "phase": Range("rad", low=-LARGEST_PHASE),
+    "density": Range("kg/m^3"),
+    "counter_density": Range("kg/m^3"),
+    "reduction": Range("", high=1.0),
+}
+"""Arguments of predict that are quantities; the amplitude of some motions is an angle."""
+
+
+def read_argument(
+    name: str, value: object, unit: str | None = None, title: str | None = None
+) -> Given:
+    """One of QUANTITIES, in another unit and with another name in messages where they are given;
+    raises InputError."""
+    usual, *limits = QUANTITIES[name]
+    ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
+    return read(title or name, value, unit or usual, **ranges)
+
+
+Arguments = Mapping[str, Any]
+"""Arguments of predict by their names; None for those that are missing."""
+
+
+class Body(NamedTuple):
+    """A material, and its properties in words, as they were given."""
 
     material: Material
     text: str
 
-    def completed(self, side: str, hardness: object, density: object) -> Body:
-        """With what is given of hardness and density; side: "counter_" or nothing, for messages."""
-        body = self
-        for name, value, read_as in (
-            ("hardness", hardness, read_hardness),
-            ("density", density, _read_density),
-        ):
-            if value is None:
-                continue
-            if self.material.rigid:
-                allowed = "allowed for an elastic body, not a rigid one"
-                raise InputError(f"{side}{name}", value, allowed)
-            given = read_as(f"{side}{name}", value)
-            number: dict[str, Any] = {name: given.si}
-            material = replace(body.material, **number)
-            body = Body(material, f"{body.text}, {name} {given.text}")
-        return body
+
+def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
+    """The body and the counterbody, of arguments by their names; raises InputError."""
+    body = _body(*(arguments[name] for name in ("young", "nu", "material")))
+    return _completed(body, "", arguments), _completed(
+        _counterbody(arguments["counterbody"]), "counter_", arguments
+    )
 
 
-def _read_density(name: str, value: object) -> Given:
-    return read(name, value, "kg/m^3")
+def _completed(body: Body, side: str, arguments: Arguments) -> Body:
+    """The body with its hardness and density; side: "counter_" or nothing."""
+    for name in ("hardness", "density"):
+        argument, value = f"{side}{name}", arguments[f"{side}{name}"]
+        if value is None:
+            continue
+        if body.material.rigid:
+            raise InputError(argument, value, "allowed for an elastic body, not a rigid one")
+        one = (read_hardness if name == "hardness" else read_argument)(argument, value)
+        number: dict[str, Any] = {name: one.si}
+        body = Body(replace(body.material, **number), f"{body.text}, {name} {one.text}")
+    return body
 
 
-def read_body(young: object, nu: object, material: Any) -> Body:
-    """The body by numbers or by a material; raises InputError."""
+def _body(young: object, nu: object, material: Any) -> Body:
     if material is None:
         for name, value in (("young", young), ("nu", nu)):
             if value is None:
                 raise InputError(name, None, "needed, or a material by name")
-        return _elastic(read("young", young, "Pa"), _read_poisson("nu", nu))
+        return _elastic(read_argument("young", young), read_argument("nu", nu))
     if young is not None or nu is not None:
         raise InputError("material", material, "allowed without young and nu")
     if isinstance(material, Material):
         return Body(material, _numbers(material))
-    name = material.strip() if isinstance(material, str) else material
     try:
-        return _named(name)
+        return _named(material.strip() if isinstance(material, str) else material)
     except InputError as error:
         other = "" if isinstance(material, str) else ", or a Material"
         raise InputError("material", material, f"{error.allowed}{other}") from None
 
 
-def read_counterbody(given: Any) -> Body:
-    """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid.
-
-    Raises InputError.
-    """
-    if given is None:
+def _counterbody(body: Any) -> Body:
+    """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid."""
+    if body is None:
         return Body(RIGID, "rigid, as none was given")
-    if isinstance(given, Material):
-        return Body(given, _numbers(given))
-    pair = isinstance(given, tuple | list)
-    if not (pair or isinstance(given, str)):
+    if isinstance(body, Material):
+        return Body(body, _numbers(body))
+    pair = isinstance(body, tuple | list)
+    if not (pair or isinstance(body, str)):
         allowed = f"allowed is a text, {EXAMPLE}, a pair of both, or a Material"
-        raise InputError("counterbody", given, allowed)
-    parts = list(given) if pair else [part.strip() for part in given.split(",")]
-    if len(parts) == 1 and not pair:
-        try:
-            return _named(parts[0])
-        except InputError as error:
-            raise InputError("counterbody", given, f"{error.allowed}, or {EXAMPLE}") from None
-    if len(parts) != 2:
-        problem = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
-        raise InputError("counterbody", given, f"{problem}; allowed: {EXAMPLE}")
+        raise InputError("counterbody", body, allowed)
+    parts = list(body) if pair else [part.strip() for part in body.split(",")]
     try:
-        young = read("Young's modulus", parts[0], "Pa")
-        return _elastic(young, _read_poisson("Poisson's ratio", parts[1]))
+        if len(parts) == 1 and not pair:
+            return _named(parts[0])
+        if len(parts) == 2:
+            young = read_argument("young", parts[0], title="Young's modulus")
+            return _elastic(young, read_argument("nu", parts[1], title="Poisson's ratio"))
     except InputError as error:
-        problem = f"its {error.argument} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
-        raise InputError("counterbody", given, problem) from None
-
-
-def _read_poisson(name: str, value: object) -> Given:
-    return read(name, value, "", low_open=False, high=0.5)
+        problem = f"{error.allowed}, or {EXAMPLE}"
+        if len(parts) == 2:
+            problem = f"its {error.argument} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
+        raise InputError("counterbody", body, problem) from None
+    count = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
+    raise InputError("counterbody", body, f"{count}; allowed: {EXAMPLE}")
 
 
 def _elastic(young: Given, nu: Given) -> Body:
@@ -142,117 +173,116 @@ def _numbers(body: Material) -> str:
 
 
 def read_contact(
-    body: Body, other: Body, *, load: object, mu: object, contacts: int = 1, **shape: object
-) -> tuple[TwoBodies, dict]:
-    """The contact, and a dict of texts of what was understood; raises InputError.
-
-    contacts: how many carry the load, of which this one has the mean.  shape: radius,
-    counter_radius, radius_across, contact_radius and pressure, as far as given.
-    """
-    shape = dict.fromkeys(SHAPES) | shape
-    if shape["pressure"] is not None or shape["contact_radius"] is not None:
-        return _of_size(body, other, (load, contacts), mu, shape)
-    if shape["radius"] is None:
-        raise InputError("radius", None, "needed, or a contact_radius in its place")
-    contact, texts = _of_spheres(body, other, (load, contacts), mu, shape)
-    across = shape["radius_across"]
-    if across is not None:
-        if shape["counter_radius"] is not None:
-            allowed = "allowed is none beside a counter_radius: give the relative curvatures"
-            raise InputError("radius_across", across, allowed)
-        second = read("radius_across", across, "m")
-        try:
-            contact, texts["radius_across"] = elliptic(contact, second.si), second.text
-        except InputError as error:
-            raise error.renamed("radius_across", across) from None
-        _refuse_senseless(contact, shape["radius"], across, load)
-    return contact, texts
-
-
-def _of_size(
-    body: Body, other: Body, carried: tuple[object, int], mu: object, shape: dict[str, Any]
+    bodies: tuple[Body, Body], arguments: Arguments, *, load: object, contacts: int = 1
 ) -> tuple[TwoBodies, dict[str, str]]:
-    """A contact whose size is given, and not the shape of the bodies; carried: the load, and by how
-    many contacts."""
-    load, contacts = carried
+    """The contact, and texts of what was understood; raises InputError.
+
+    given: arguments that describe the shape, and mu; load: that of all contacts, of which this one
+    carries the mean.
+    """
+    sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
+    if sized:
+        _refuse_radii(arguments)
+    elif arguments["radius"] is None:
+        raise InputError("radius", None, "needed, or a contact_radius in its place")
+    name = "contact_radius" if sized else "radius"
+    size = read_argument(name, arguments[name])
+    force, mu = read_argument("load", load), read_argument("mu", arguments["mu"])
+    materials = bodies[0].material, bodies[1].material
+    radii, texts = ((), {}) if sized else _radii(size.si, arguments)
+    if materials[0].rigid and materials[1].rigid:
+        allowed = "allowed is an elastic body where the counterbody is rigid"
+        raise InputError("material", "rigid", allowed)
+    radius = 1.0 / sum(1.0 / one for one in radii) if radii else 1.0
+    plain = TwoBodies(*materials, radius, force.si / contacts, mu.si, radii)
+    texts = {"body": bodies[0].text, "counterbody": bodies[1].text} | texts
+    texts[name] = size.text
+    pressure = "hertz" if arguments["pressure"] is None else arguments["pressure"]
+    if sized:
+        texts["pressure"] = pressure
+    texts |= {"load": force.text, "mu": mu.text}
+    if sized:
+        return _of_size(plain, size.si, pressure, arguments[name]), texts
+    _refuse_senseless(plain, arguments["counter_radius"], arguments, load)
+    across = arguments["radius_across"]
+    if across is None:
+        return plain, texts
+    if arguments["counter_radius"] is not None:
+        allowed = "allowed is none beside a counter_radius: give the relative curvatures"
+        raise InputError("radius_across", across, allowed)
+    second = read_argument("radius_across", across)
+    try:
+        contact = elliptic(plain, second.si)
+    except InputError as error:
+        raise error.renamed("radius_across", across) from None
+    _refuse_senseless(contact, across, arguments, load)
+    return contact, texts | {"radius_across": second.text}
+
+
+def _refuse_radii(arguments: Arguments) -> None:
+    """Raise InputError unless a contact has a size and no radii."""
     for name in ("radius", "counter_radius", "radius_across"):
-        if shape[name] is not None:
+        if arguments[name] is not None:
             cause = "a contact_radius"
-            if shape["contact_radius"] is None:
+            if arguments["contact_radius"] is None:
                 cause = "a pressure, which needs a contact_radius in place of radii"
-            raise InputError(name, shape[name], f"allowed is none beside {cause}")
-    if shape["contact_radius"] is None:
+            raise InputError(name, arguments[name], f"allowed is none beside {cause}")
+    if arguments["contact_radius"] is None:
         allowed = "needed beside a pressure: half the longer side of the contact"
         raise InputError("contact_radius", None, allowed)
-    size = read("contact_radius", shape["contact_radius"], "m")
-    pressure = "hertz" if shape["pressure"] is None else shape["pressure"]
-    force, coefficient = read("load", load, "N"), read("mu", mu, "", high=LARGEST_MU)
-    _refuse_rigid(body, other)
-    plain = TwoBodies(body.material, other.material, 1.0, force.si / contacts, coefficient.si)
+
+
+def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> TwoBodies:
+    """A contact of known size, m, and pressure; plain: the same with any radius; argument: the size
+    as it was given."""
     try:
-        contact = of_size(plain, size.si, pressure)
-        sizes = (contact.u_lim, contact.load / size.si**2)
+        contact = of_size(plain, size, pressure)
+        sizes = (contact.u_lim, contact.load / size**2)
         good = all(0.0 < one < math.inf for one in sizes) and contact.largest_pressure > 0.0
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError) and error.argument == "pressure":
             raise
         good = False
     if not good:
-        raise InputError("contact_radius", shape["contact_radius"], OUT_OF_RANGE)
-    texts = {"body": body.text, "counterbody": other.text, "contact_radius": size.text}
-    texts |= {"pressure": pressure, "load": force.text, "mu": coefficient.text}
-    return contact, texts
+        raise InputError("contact_radius", argument, OUT_OF_RANGE)
+    return contact
 
 
-def _refuse_rigid(body: Body, other: Body) -> None:
-    if body.material.rigid and other.material.rigid:
-        allowed = "allowed is an elastic body where the counterbody is rigid"
-        raise InputError("material", "rigid", allowed)
-
-
-def _of_spheres(
-    body: Body, other: Body, carried: tuple[object, int], mu: object, shape: dict[str, Any]
-) -> tuple[TwoBodies, dict[str, str]]:
-    """Hertz's contact of a sphere with a flat or a second sphere; carried: as for _of_size."""
-    load, contacts = carried
-    radius, counter_radius = shape["radius"], shape["counter_radius"]
-    first = read("radius", radius, "m")
-    given = {"radius": first, "load": read("load", load, "N")}
-    given["mu"] = read("mu", mu, "", high=LARGEST_MU)
-    radii, texts = (first.si, math.inf), {"counter_radius": "flat, as none was given"}
-    if counter_radius is not None:
-        second = read("counter_radius", counter_radius, "m", low=-math.inf)
+def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], dict[str, str]]:
+    """Radii of the sphere and the counterbody, m, the second infinite where it is flat."""
+    text, counter, argument = "flat, as none was given", math.inf, arguments["counter_radius"]
+    if argument is not None:
+        second = read_argument("counter_radius", argument)
         if second.si == 0.0:
-            raise InputError("counter_radius", counter_radius, "allowed is a radius other than 0")
-        radii = (first.si, second.si)
-        texts["counter_radius"] = f"{second.text}, hollow" if second.si < 0.0 else second.text
-    curvature = sum(1.0 / r for r in radii)
+            raise InputError("counter_radius", argument, "allowed is a radius other than 0")
+        text = f"{second.text}, hollow" if second.si < 0.0 else second.text
+        counter = second.si
+    for name, one in (("radius", radius), ("counter_radius", counter)):
+        if math.isinf(1.0 / one):
+            raise InputError(name, arguments[name], OUT_OF_RANGE)
+    curvature = 1.0 / radius + 1.0 / counter
     if math.isinf(curvature):
-        which = (
-            ("radius", radius) if math.isinf(1.0 / radii[0]) else ("counter_radius", counter_radius)
-        )
-        raise InputError(*which, OUT_OF_RANGE)
+        raise InputError("counter_radius", argument, OUT_OF_RANGE)
     if not curvature > 0.0:
         allowed = "allowed is a hollow wider than the sphere"
-        raise InputError("counter_radius", counter_radius, allowed)
-    _refuse_rigid(body, other)
-    each = given["load"].si / contacts
-    contact = TwoBodies(body.material, other.material, 1.0 / curvature, each, given["mu"].si, radii)
-    _refuse_senseless(contact, radius, counter_radius, load)
-    bodies = {"body": body.text, "counterbody": other.text}
-    return contact, bodies | texts | {name: one.text for name, one in given.items()}
+        raise InputError("counter_radius", argument, allowed)
+    return (radius, counter), {"counter_radius": text}
 
 
 def _refuse_senseless(
-    contact: TwoBodies, radius: object, counter_radius: object, load: object
+    contact: TwoBodies, second: object, arguments: Arguments, load: object
 ) -> None:
-    """Raise InputError where Hertz's theory is no description of these bodies."""
+    """Raise InputError where Hertz's theory does not describe these bodies; second: the radius of
+    the counterbody, or that across, as it was given."""
     try:
         a, smallest = contact.contact_radius, contact.smallest_radius
         if a >= SENSELESS * smallest:
-            first = smallest == abs(contact.radii[0])
+            name, value = "counter_radius", second
+            if smallest == abs(contact.radii[0]):
+                name, value = "radius", arguments["radius"]
             raise InputError(
-                *(("radius", radius) if first else ("counter_radius", counter_radius)),
+                name,
+                value,
                 f"by Hertz's theory, which is for contacts much smaller than either body, the "
                 f"contact radius would be {a:.3g} m, {a / smallest:.2g} of it; allowed is less "
                 f"than {SENSELESS:g}",
@@ -266,46 +296,70 @@ def _refuse_senseless(
 
 
 def read_motion(
-    motion: str,
-    *,
-    speed: object,
-    amplitude: object,
-    frequency: object,
-    rotation: object,
-    sought: str | None = None,
-    **others: object,
-) -> tuple[RealMotion, dict]:
-    """The motion, and a dict of texts of what was understood; raises InputError.
+    motion: str, arguments: Arguments, sought: str | None
+) -> tuple[RealMotion, dict[str, str]]:
+    """The motion, and texts of what was understood; raises InputError.
 
-    sought: what is looked for; an amplitude may be missing then.  A speed that is not given is
-    None.  others: what motions that oscillate in several ways take besides, see motions.TAKES.
+    given: arguments by their names.  The speed may be missing, and the quantity that is sought.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)
-    given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation, **others}
     needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
-    for name, value in given.items():
-        if name not in (*needed, *TAKES.get(motion, ())) and value is not None:
-            raise InputError(name, value, f"{motion} has none")
+    for name in MOVED:
+        if name not in (*needed, *TAKES.get(motion, ())) and arguments[name] is not None:
+            raise InputError(name, arguments[name], f"{motion} has none")
     for name in needed:
-        if given[name] is None and name != sought:
+        if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
-    found = {}
-    if speed is not None:
-        found["speed"] = read("speed", speed, "m/s", low_open=False)
-    if steady:
-        found["rotation"] = read("rotation", rotation, "rad/s")
-    else:
-        for name, (_, unit) in PARTS.items():
-            if given.get(name) is not None:
-                wanted = motions.unit_of_amplitude(motion) or unit
-                found[name] = read(name, given[name], wanted, low_open=name == "load_amplitude")
-        if given.get("phase") is not None:
-            found["phase"] = read("phase", given["phase"], "rad", low=-LARGEST_PHASE)
-        found["frequency"] = read("frequency", frequency, "Hz")
-    real = RealMotion(motion, **{"speed": None} | {name: one.si for name, one in found.items()})
+    unit = motions.unit_of_amplitude(motion)
+    found = {
+        name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
+        for name in ("speed", *MOVED)
+        if arguments[name] is not None
+    }
+    values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in found.items()}
+    if motion in COMBINED and not any(values.get(name) for name in PARTS):
+        raise InputError(
+            needed[0], arguments[needed[0]], "allowed is above 0 where no other one is"
+        )
     texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
-    sizes = [found[name].si for name in PARTS if name in found]
-    if motion in COMBINED and max(sizes) == 0.0:
-        raise InputError(needed[0], given[needed[0]], "allowed is above 0 where no other one is")
-    return real, texts | {name: one.text for name, one in found.items()}
+    return RealMotion(motion, **values), texts | {name: one.text for name, one in found.items()}
+
+
+MOVED = ("rotation", *PARTS, "phase", "frequency")
+"""Arguments that describe the motion, besides the speed."""
+PULLED = {"force": "force", "drive_stiffness": "stiffness", "mass": "mass", "damping": "damping"}
+"""Arguments that describe the drive besides the speed, and their fields of a RealDrive."""
+
+
+def read_drive(
+    motion: RealMotion, arguments: Arguments, sought: str | None
+) -> tuple[RealDrive, dict[str, str]]:
+    """The drive, and texts of what was understood; raises InputError."""
+    speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
+    if speed is None and force is None and sought != "speed":
+        raise InputError("speed", None, "needed, or a force in its place")
+    if speed is not None and force is not None:
+        raise InputError("force", force, "allowed is a force or a speed, not both")
+    refused: dict[str, str] = {}
+    if motion.steady:
+        which = f"allowed is none for {motion.name}, which is steady: nothing swings"
+        refused = dict.fromkeys(("drive_stiffness", "mass", "damping"), which)
+    elif force is not None:
+        which = "allowed is none beside a force, which does not pull through a spring"
+        refused = dict.fromkeys(("drive_stiffness", "damping"), which)
+    elif spring is None:
+        which = "allowed beside {}, for a speed alone moves any body"
+        refused = {"mass": which.format("a force or a drive_stiffness")}
+        refused["damping"] = which.format("a drive_stiffness")
+    for name, allowed in refused.items():
+        if arguments[name] is not None:
+            raise InputError(name, arguments[name], allowed)
+    if spring is not None and motion.name == "longitudinal" and motion.speed == 0.0:
+        allowed = "allowed is a speed above 0 where a spring pulls a longitudinal motion"
+        raise InputError("speed", speed, allowed)
+    found = {
+        name: read_argument(name, arguments[name]) for name in PULLED if arguments[name] is not None
+    }
+    values = {PULLED[name]: one.si for name, one in found.items()}
+    return RealDrive(**values), {name: one.text for name, one in found.items()}

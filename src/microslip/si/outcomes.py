@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import full_friction, groups, parts
+from microslip.si.dimensionless import parts
 from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import FIRST_ORDER, QUANTILES
-from microslip.si.question import Question
+from microslip.si.request import Request
 from microslip.si.static_curve import static_limits
 from microslip.si.static_limit import equals_static_limit, largest_force
 
@@ -51,11 +51,27 @@ DEVIATIONS_OF_INTERVAL = 1.959964
 
 @dataclass(frozen=True)
 class UncertainInput:
-    """An argument of predict with its standard uncertainty, in SI units."""
+    """An argument of predict, as it was given, and one standard deviation below and above it, in
+    SI units."""
 
     name: str
-    value: float
-    deviation: float
+    text: str
+    low: float
+    high: float
+
+    @property
+    def value(self) -> float:
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def deviation(self) -> float:
+        return 0.5 * (self.high - self.low)
+
+
+Ends = Mapping[str, tuple[Prediction | None, Prediction | None]]
+"""Predictions one standard deviation below and above, by the names of the inputs."""
+RequestAt = Callable[[Mapping[str, float]], Request]
+"""request_at(changes) -> Request with some arguments changed."""
 
 
 @dataclass(frozen=True)
@@ -72,37 +88,23 @@ class _State:
     shape: tuple
 
 
-def with_outcomes(
-    found: Prediction,
-    inputs: list[UncertainInput],
-    question_at: Callable[[Mapping[str, float]], Question],
-    ends: Mapping[str, tuple[Prediction | None, Prediction | None]],
+def uncertainty_of_outcomes(
+    found: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
 ) -> dict[str, Any]:
-    """Fields of a Prediction for the uncertainty of its static limit and the outcome.
+    """Columns of the uncertainty of the static limit and of the outcome.
 
-    Parameters
-    ----------
-    found : Prediction
-        At the central values.
-    inputs : list of UncertainInput
-        The uncertain arguments.
-    question_at : callable
-        question_at(changes) -> Question with some arguments changed.
-    ends : mapping
-        Predictions one standard deviation below and above, by the names of the inputs.
+    found: the Prediction for the central values.
     """
-    question = question_at({})
-    if question.sought is not None:
+    request = request_at({})
+    if request.sought is not None:
         return _normal_intervals(found, ends.values())
-    share = equals_static_limit(
-        question.contact, question.motion, question.carriers, question.drive.mass
-    )
+    share = equals_static_limit(request)
     draws = _draws(len(inputs))
-    table = _Table(_state(question), inputs, question_at, draws)
+    table = _Table(_state(request), inputs, request_at, draws)
     if table.centre.amplitude is None:
         static = None
     else:
-        static = _static_of(found, question, table, ends, draws)
+        static = _static_of(found, request, table, ends, draws)
     fields: dict[str, Any] = {}
     if static is not None:
         value, error = static
@@ -117,7 +119,7 @@ def with_outcomes(
         value, error = np.full(DRAWS, share), np.zeros(DRAWS)
     if share is not None:
         fields |= _distribution("force_threshold", table.still * value, "_N")
-    if question.drive.force is None or table.force is None:
+    if request.drive.force is None or table.force is None:
         return fields
     away = table.force >= table.largest
     fields["probability_runs_away"] = float(np.mean(away))
@@ -197,17 +199,16 @@ def _draws(count: int) -> np.ndarray:
     return ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
 
 
-def _state(question: Question) -> _State:
-    contact, motion, carriers = question.contact, question.motion, question.carriers
-    _, amplitude = groups(motion, contact)
-    still = full_friction(motion, contact) * carriers.count
-    largest = still * largest_force(contact, motion, carriers, question.drive.mass)
+def _state(request: Request) -> _State:
+    contact, motion, still = request.contact, request.motion, request.still
+    amplitude = request.groups[1]
+    largest = still * largest_force(request)
     shape: tuple[object, ...] = (contact.pressure,)
     if amplitude and motion.name in COMBINED:
         shape += tuple(
             round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
         )
-    force = question.drive.force
+    force = request.drive.force
     return _State(still, largest, amplitude, contact.mu, contact.poisson, force, shape)
 
 
@@ -219,7 +220,7 @@ class _Table:
         self,
         centre: _State,
         inputs: list[UncertainInput],
-        question_at: Callable[[Mapping[str, float]], Question],
+        request_at: RequestAt,
         draws: np.ndarray,
     ):
         self.centre = centre
@@ -235,7 +236,7 @@ class _Table:
             signed = drawn * math.copysign(1.0, one.value)
             broken |= (signed <= 0.0) & (one.name in ("mu", "load"))
             at_rest |= (signed <= 0.0) & (one.name == "amplitude")
-            places, states = _along(one, question_at)
+            places, states = _along(one, request_at)
             self.one_shape &= all(state.shape == centre.shape for state in states)
             where = np.log(np.maximum(signed, SMALLEST_SHARE * abs(one.value)))
             for name in logarithms:
@@ -261,9 +262,7 @@ def _log(value: float) -> float:
     return math.log(value) if value > 0.0 else SMALLEST_LOGARITHM
 
 
-def _along(
-    one: UncertainInput, question_at: Callable[[Mapping[str, float]], Question]
-) -> tuple[np.ndarray, list[_State]]:
+def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
     """Logarithms of the size of an input, ascending, and the states there.
 
     Where predict refuses a value, the last one is at the end of the values that it accepts.
@@ -278,7 +277,7 @@ def _along(
 
     def state_at(size: float) -> _State | None:
         try:
-            return _state(question_at({one.name: sign * float(size)}))
+            return _state(request_at({one.name: sign * float(size)}))
         except InputError:
             return None
 
@@ -300,9 +299,9 @@ def _along(
 
 def _static_of(
     found: Prediction,
-    question: Question,
+    request: Request,
     table: _Table,
-    ends: Mapping[str, tuple[Prediction | None, Prediction | None]],
+    ends: Ends,
     draws: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """mu_static of all draws and its error."""
@@ -313,14 +312,9 @@ def _static_of(
     if not table.centre.amplitude:
         return np.full(DRAWS, static), np.full(DRAWS, static_error)
     if table.one_shape:
-        centre = (
-            table.centre.amplitude,
-            table.centre.poisson,
-            static,
-            static_error,
-        )
+        centre = (table.centre.amplitude, table.centre.poisson, static, static_error)
         forces = None if table.force is None else (table.still, table.force)
-        return static_limits(question, centre, table.amplitude, table.poisson, forces)
+        return static_limits(request, centre, table.amplitude, table.poisson, forces)
     value = np.full(DRAWS, static)
     for column, (low, high) in zip(draws.T, ends.values(), strict=True):
         changes = [

@@ -4,23 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from inspect import signature
 from typing import Any
 
-from microslip.adaptive.result import Result
-from microslip.foundation.errors import InputError, shown
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, full_friction
-from microslip.si.drives import checked_drive_groups
-from microslip.si.energy import energy_fields, vibration_fields
-from microslip.si.prediction import Prediction
-from microslip.si.pulled import about_drive, answer_at_rest, answer_of, with_speed
-from microslip.si.question import Question, asked, checked_groups
-from microslip.si.reduction import with_reduction
+from microslip.adaptive.point import Result
+from microslip.adaptive.shakedown import shakedown
+from microslip.estimate.estimate import Estimate
+from microslip.foundation.errors import InputError
+from microslip.motions.drive import Spring
+from microslip.pressures.by_name import pressure_named
+from microslip.si.energy import energy_fields
+from microslip.si.prediction import (
+    Drift,
+    DrivenBody,
+    Prediction,
+    Rest,
+    Search,
+    Sliding,
+    SpinDrift,
+    SteadySpin,
+    Travel,
+)
+from microslip.si.pulled import answer_of
+from microslip.si.reduction import reduce_friction
+from microslip.si.regimes import natural_frequency, regime
+from microslip.si.request import Request, request_of
 from microslip.si.static_limit import force_threshold, static_limit
-from microslip.si.uncertain import with_spreads
+from microslip.si.uncertain import with_uncertainty, without_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
+MILLIMETRE = 1e-3
+RUNS_AWAY = "runs away"
+"""The outcome, and the beginning of the solver's reason for it."""
 UNKNOWN_WITHOUT = {
     "amplitude": ("amplitude_si",),
     "speed": ("speed_m_s",),
@@ -29,18 +44,9 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are not known without what is looked for."""
-ARGUMENTS = {
-    "velocity": "speed",
-    "force": "force",
-    "stiffness": "drive_stiffness",
-    "mass": "mass",
-    "damping": "damping",
-}
-"""Arguments of predict, by those of microslip.solve that follow from them."""
+"""Fields of a Prediction that are not known without the sought quantity."""
 
 
-@with_spreads
 def predict(
     motion: str,
     *,
@@ -157,133 +163,196 @@ def predict(
         what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
-    given = dict(locals())  # all arguments, and nothing else yet
-    return _answered(asked(given.pop("motion"), given))
+    arguments = dict(locals())  # all arguments, and nothing else yet
+    return predict_arguments(arguments.pop("motion"), arguments)
 
 
-def _answered(question: Question) -> Prediction:
-    """The Prediction of a Question."""
-    contact, motion, given = question.contact, question.motion, question.given
-    carriers, drive = question.carriers, question.drive
-    pulled: dict[str, Any] = {"contacts": carriers.text}
-    if question.sought is not None:
-        settings: dict[str, Any] = {"share": question.share, "tolerance": question.tolerance}
-        settings["given"] = given["reduction"]
-        reduced = with_reduction(contact, motion, question.sought, **settings)
-        motion = reduced.motion
-        pulled |= {"sought": question.sought, "sought_error": reduced.error}
-        if question.sought == "load":
-            contact = question.under(reduced.contact.load)
-    velocity, _ = checked_groups(contact, motion, given)
-    pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
-    limit = static_limit(
-        contact, motion, carriers, question.tolerance, under_force=given["force"] is not None
-    )
-    threshold = force_threshold(contact, motion, carriers, drive, limit)
-    answer = answer_at_rest((contact, carriers), motion, pulling, limit, threshold)
-    if answer is None:
-        try:
-            answer = answer_of(contact, motion, pulling, question.tolerance, carriers, threshold)
-        except InputError as error:
-            raise _in_si(error, given) from None
-    pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, threshold)
+NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
+NOTHING["power"] = False
+"""Arguments of predict besides the motion, each missing."""
+
+
+def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
+    """The Prediction for arguments of predict by their names, with its uncertainty if some are
+    uncertain."""
+    plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
+    found = answer_request(request_of(motion, plain))
+    if not uncertain:
+        return found
+    return with_uncertainty(found, motion, plain, uncertain, answer_request)
+
+
+def answer_request(request: Request) -> Prediction:
+    """The Prediction of a request whose inputs are exact."""
+    parts: dict[str, Any] = {}
+    if request.sought is not None:
+        found, error = reduce_friction(request)
+        parts["search"] = Search(request.sought, error)
+        load = found.contact.load
+        request = found if request.sought != "load" else request.under(load)
+    request.refuse_out_of_range()
+    limit = static_limit(request)
+    threshold = force_threshold(request, limit)
+    answer = answer_of(request, limit, threshold)
+    velocity = request.groups[0]
     if velocity is None:
-        velocity, motion = answer.velocity, with_speed(motion, contact, answer)
+        unit, velocity = request.speed_unit, answer.velocity
+        request = request.at(speed=velocity * unit if unit else velocity)
+    parts |= _common(request, answer, threshold) | {"velocity": velocity}
+    if request.motion.spins and not request.motion.amplitude:
+        parts["velocity"] = None
+    most = request.carriers.most_loaded(request.contact)
+    parts["warnings"] = tuple(broken_assumptions(most, request.motion))
+    parts["not_checked"] = tuple(unchecked(most))
     if answer.converged:
-        pulled |= energy_fields(contact, motion, answer, carriers.count)
-        if given["power"]:
-            pulled |= vibration_fields(contact, motion, answer, question.tolerance)
-            pulled["converged"] = not pulled.get("vibration_power_reason")
-    most = carriers.most_loaded(contact)
-    doubts = tuple(broken_assumptions(most, motion)), tuple(unchecked(most))
-    still = full_friction(motion, contact) * carriers.count
-    pulled["load_N"] = contact.load * carriers.count
-    found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), question.about)
-    return replace(found, **pulled)
+        parts |= energy_fields(request, answer)
+        if "power" in parts and not request.motion.steady:
+            parts["converged"] = not parts["power"].vibration_power_reason
+    if request.motion.steady:
+        parts["rotation_rad_s"] = request.motion.rotation
+    else:
+        parts |= _oscillation(request, answer, limit)
+    if request.drive.force is None:
+        return SteadySpin(**parts) if request.motion.steady else Sliding(**parts)
+    parts |= _under_force(request, answer, threshold)
+    if request.motion.steady:
+        return SpinDrift(**parts)
+    if parts["outcome"] == "stays":
+        return Rest(**parts, **_way_to_rest(request))
+    return Drift(**parts)
 
 
-def _in_si(error: InputError, given: Mapping[str, object]) -> InputError:
-    """An InputError about an argument of the solver, with the argument of predict and its value."""
-    name = ARGUMENTS.get(error.argument)
-    if name is None or given[name] is None:
-        return error
-    group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
-    return InputError(name, given[name], f"dimensionless {group}: {error.allowed}")
-
-
-@dataclass(frozen=True)
-class _NoAnswer:
-    """In place of a Result, where there is no contact to solve."""
-
-    reason: str
-    amplitude: float = math.nan
-    mu_macro: float = math.nan
-    mu_macro_error: float = math.nan
-    model: str = "none"
-    converged: bool = False
-
-
-def unattained(question: Question, reason: str) -> Prediction:
+def without_solution(request: Request, reason: str) -> Prediction:
     """The Prediction where nothing has the wanted reduction: NaN for what would follow from it."""
-    contact = question.contact
-    moved = question.motion, contact.mu * contact.load, ((), ())
-    found = _prediction(contact, moved, math.nan, (_NoAnswer(reason), None), question.about)
-    assert question.sought is not None  # as of all that can fail so
-    unknown = UNKNOWN_WITHOUT[question.sought]
-    settings: dict[str, Any] = {
-        "sought": question.sought,
-        "sought_error": math.nan,
-        "load_N": contact.load,
+    assert request.sought is not None  # as of every request with a reduction
+    nothing: dict[str, Any] = {"motion": request.motion.name, "pressure": request.contact.pressure}
+    nothing |= {"model": "none", "reason": reason, "amplitude": math.nan, "poisson": math.nan}
+    answer = Result.from_dict(nothing)
+    parts = _common(request, answer, None) | _oscillation(request, answer, None)
+    parts |= {"velocity": math.nan} | dict.fromkeys(UNKNOWN_WITHOUT[request.sought], math.nan)
+    return Sliding(**parts, search=Search(request.sought, math.nan))
+
+
+def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
+    """Fields of a quantity and of its error; unit: its unit in the SI, si: the name of that."""
+    value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
+    return {f"{name}{si}": value, f"{name}_error{si}": error}
+
+
+def _common(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
+    """Fields of every Prediction except the velocity."""
+    contact, still, friction = request.contact, request.still, answer.friction
+    return {
+        **_columns("mu_macro", friction),
+        **_columns("mu_apparent", friction, contact.mu),
+        **_columns("friction_force", friction, still, "_N"),
+        **_columns("force_threshold", threshold, still, "_N"),
+        "friction_force_still_N": still,
+        "force_reduction": 1.0 - friction.value,
+        "understood": request.understood,
+        "motion": request.motion.name,
+        "pressure": contact.pressure,
+        "contacts": request.carriers.text,
+        "contact_radius_m": contact.contact_radius,
+        "indentation_m": contact.indentation,
+        "largest_pressure_Pa": contact.largest_pressure,
+        "u_lim_m": contact.u_lim,
+        "poisson": contact.poisson,
+        "load_N": contact.load * request.carriers.count,
+        "speed_m_s": math.nan if request.motion.speed is None else request.motion.speed,
+        "model": answer.model,
+        "converged": answer.converged,
+        "reason": answer.reason,
     }
-    return replace(found, **settings | dict.fromkeys(unknown, math.nan))
 
 
-def _prediction(
-    contact: TwoBodies,
-    moved: tuple[RealMotion, float, tuple[tuple, tuple]],
-    velocity: float | None,
-    answers: tuple[Result | _NoAnswer, Result | None],
-    understood: dict,
-) -> Prediction:
-    """moved: the motion, the force that it takes without vibration, warnings and what was not
-    looked at.  answers: Results at the speed, and at a vanishing one or None."""
-    (motion, still, (warnings, not_checked)), (answer, limit) = moved, answers
-    return Prediction(
-        motion=motion.name,
-        contact_radius_m=contact.contact_radius,
-        indentation_m=contact.indentation,
-        u_lim_m=contact.u_lim,
-        largest_pressure_Pa=contact.largest_pressure,
-        poisson=contact.poisson,
-        speed_m_s=math.nan if motion.speed is None else motion.speed,
-        amplitude_si=motion.amplitude,
-        forward_amplitude_m=motion.forward_amplitude,
-        rotation_amplitude_rad=motion.rotation_amplitude,
-        load_amplitude_N=motion.load_amplitude,
-        phase_rad=motion.phase,
-        pressure=contact.pressure,
-        frequency_Hz=motion.frequency,
-        rotation_rad_s=motion.rotation,
-        velocity=None if motion.spins and not motion.amplitude else velocity,
-        amplitude=answer.amplitude,
-        mu_macro=answer.mu_macro,
-        mu_macro_error=answer.mu_macro_error,
-        mu_apparent=contact.mu * answer.mu_macro,
-        mu_apparent_error=contact.mu * answer.mu_macro_error,
-        friction_force_N=still * answer.mu_macro,
-        friction_force_error_N=still * answer.mu_macro_error,
-        friction_force_still_N=still,
-        force_reduction=1.0 - answer.mu_macro,
-        mu_static=None if limit is None else limit.mu_macro,
-        mu_static_error=None if limit is None else limit.mu_macro_error,
-        mu_static_apparent=None if limit is None else contact.mu * limit.mu_macro,
-        mu_static_apparent_error=None if limit is None else contact.mu * limit.mu_macro_error,
-        mu_static_reason="" if limit is None else limit.reason,
-        model=answer.model,
-        converged=answer.converged,
-        reason=answer.reason,
-        warnings=warnings,
-        not_checked=not_checked,
-        counterbody=understood["counterbody"],
-        understood=understood,
-    )
+def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict[str, Any]:
+    """Fields of an Oscillating Prediction."""
+    motion, mu = request.motion, request.contact.mu
+    fields: dict[str, Any] = {
+        "amplitude_si": motion.amplitude,
+        "forward_amplitude_m": motion.forward_amplitude,
+        "rotation_amplitude_rad": motion.rotation_amplitude,
+        "load_amplitude_N": motion.load_amplitude,
+        "phase_rad": motion.phase,
+        "frequency_Hz": motion.frequency,
+        "amplitude": answer.amplitude,
+    }
+    if limit is None:
+        return fields
+    fields |= _columns("mu_static", limit.friction)
+    fields |= _columns("mu_static_apparent", limit.friction, mu)
+    fields["mu_static_reason"] = limit.reason
+    fields["displacement_per_cycle_m"] = motion.known_speed / motion.rate
+    fields["displacement_per_cycle_error_m"] = 0.0
+    groups = {name: one for name, one in request.drive_groups.items() if name != "force"}
+    if groups:
+        drive, spring = request.drive, Spring(**{"stiffness": 0.0} | groups)
+        assert answer.amplitude is not None  # as of all that oscillate
+        widest = answer.amplitude * max(request.carriers.widest, 1.0)
+        fields["body"] = DrivenBody(
+            drive_stiffness_N_m=drive.stiffness,
+            mass_kg=drive.mass,
+            damping_N_s_m=drive.damping,
+            stiffness=groups.get("stiffness"),
+            mass=groups.get("mass"),
+            damping=groups.get("damping"),
+            regime=regime(motion.name, widest, spring),
+            natural_frequency=natural_frequency(spring),
+        )
+    return fields
+
+
+def _under_force(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
+    """Fields of a Prediction under a force."""
+    force, unit, motion = request.drive.force, request.speed_unit, request.motion
+    assert force is not None  # as of every request under a force
+    velocity, error = answer.mean_velocity.value, answer.mean_velocity.error
+    speed, speed_error = velocity * unit, error * unit if unit else 0.0
+    group = request.drive_groups["force"]
+    fields: dict[str, Any] = {"force_N": force, "force": group, "velocity_error": error}
+    fields |= {"speed_error_m_s": speed_error, "outcome": _outcome(group, answer)}
+    if threshold is not None:
+        fields["safety_factor"] = request.still * threshold.value / force
+        fields["safety_factor_error"] = request.still * threshold.error / force
+    if not motion.steady:
+        fields["displacement_per_cycle_m"] = speed / motion.rate
+        fields["displacement_per_cycle_error_m"] = speed_error / motion.rate
+    if fields["outcome"] == "moves":
+        share = error / (velocity - error)  # largest relative error of what is over the velocity
+        times = [way / speed for way in (MILLIMETRE, request.contact.contact_radius)]
+        fields["travel"] = Travel(times[0], times[0] * share, times[1], times[1] * share)
+    return fields
+
+
+def _outcome(force: float, answer: Result) -> str | None:
+    velocity, error = answer.mean_velocity.value, answer.mean_velocity.error
+    if force >= 1.0 or answer.reason.startswith(RUNS_AWAY):
+        return RUNS_AWAY
+    if not math.isfinite(velocity):
+        return None
+    if velocity == error == 0.0:
+        return "stays"
+    return "moves" if velocity > error else "undecided"
+
+
+def _way_to_rest(request: Request) -> dict[str, Any]:
+    """Fields of the displacement of a contact that comes to rest, or of the reason why it is not
+    known.  A contact that is not round would take minutes."""
+    contact, drive = request.contact, request.drive_groups
+    if set(drive) != {"force"} or request.carriers.text is not None:
+        return {"displacement_reason": "computed for one contact without mass only"}
+    if not pressure_named(contact.pressure).is_round:
+        return {"displacement_reason": "computed for a round contact only"}
+    point = request.solver_motion, request.groups[1], drive["force"]
+    try:
+        found = shakedown(*point, **request.settings)
+    except InputError as error:  # a motion that exerts a forward force by itself
+        return {"displacement_reason": error.allowed}
+    if not found.converged:
+        return {"displacement_reason": found.reason}
+    return {
+        "displacement_m": found.displacement * contact.u_lim,
+        "displacement_error_m": found.displacement_error * contact.u_lim,
+        "cycles_to_rest": found.most_after,
+    }

@@ -1,44 +1,169 @@
-"""The answer for a real contact."""
+"""The answer for a real contact: one record for each question, with a common part.
+
+A contact at a speed is a `Sliding` one, or a `SteadySpin` where nothing oscillates.  Under a force
+it is at `Rest`, or it is a `Drift` or a `SpinDrift`.  `Prediction.to_dict` writes every record as
+one row with the same columns, those of JSON and of tables.
+"""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
 
 from microslip.foundation.errors import InputError
 from microslip.si.prediction_text import prediction_text
 
+_NAMES = """
+    motion contact_radius_m indentation_m u_lim_m largest_pressure_Pa poisson speed_m_s
+    amplitude_si frequency_Hz rotation_rad_s velocity amplitude mu_macro mu_macro_error
+    mu_apparent mu_apparent_error friction_force_N friction_force_error_N friction_force_still_N
+    force_reduction mu_static mu_static_error mu_static_apparent mu_static_apparent_error
+    mu_static_reason model converged reason warnings not_checked counterbody understood force_N
+    drive_stiffness_N_m mass_kg damping_N_s_m force stiffness mass damping outcome
+    speed_error_m_s velocity_error displacement_per_cycle_m displacement_per_cycle_error_m
+    time_to_1_mm_s time_to_1_mm_error_s time_to_contact_radius_s time_to_contact_radius_error_s
+    displacement_m displacement_error_m cycles_to_rest displacement_reason force_threshold_N
+    force_threshold_error_N safety_factor safety_factor_error regime natural_frequency pressure
+    forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad contacts torque_N_m
+    torque_error_N_m drag_power_W drag_power_error_W vibration_power_W vibration_power_error_W
+    vibration_power_reason dissipated_power_W dissipated_power_error_W energy_per_cycle_J
+    energy_per_cycle_error_J load_N sought sought_error mu_macro_spread mu_apparent_spread
+    friction_force_spread_N speed_spread_m_s sought_spread mu_static_spread mu_static_low
+    mu_static_high mu_static_apparent_spread mu_static_apparent_low mu_static_apparent_high
+    force_threshold_spread_N force_threshold_low_N force_threshold_high_N safety_factor_spread
+    safety_factor_low safety_factor_high interval_method probability_stays probability_moves
+    probability_runs_away probability_error
+"""
+COLUMNS = tuple(_NAMES.split())
+"""Columns of JSON and of tables, in their order."""
+EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
+"""Values of the columns that a record does not have."""
+PARTS = ("body", "travel", "search", "power", "uncertainty")
+"""Fields of records that have columns of their own."""
+
+UNITS = {
+    **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
+    **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
+    "_s": "s",
+}
+"""Ends of names of columns, and the units that they stand for; the first that fits counts."""
+OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
+
+
+def unit_of(column: str) -> str:
+    """SI unit of a column by its name, "1" without one; an error has the unit of its quantity."""
+    ends = (unit for end, unit in UNITS.items() if column.endswith(end))
+    return OTHER_UNITS.get(column) or next(ends, "1")
+
 
 @dataclass(frozen=True)
+class DrivenBody:
+    """A body that a spring pulls, or that has a mass.
+
+    Attributes
+    ----------
+    drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
+        Stiffness of the spring, N/m, mass, kg, and damping, N s/m; None for a part that is missing.
+    stiffness, mass, damping : float or None
+        The same as dimensionless groups, as for microslip.solve.
+    regime : str
+        A key of regimes.REGIMES.
+    natural_frequency : float or None
+        Natural frequency of the mass on its spring and the sticking contact, over the frequency of
+        the oscillation; None without a mass.
+    """
+
+    drive_stiffness_N_m: float | None
+    mass_kg: float | None
+    damping_N_s_m: float | None
+    stiffness: float | None
+    mass: float | None
+    damping: float | None
+    regime: str
+    natural_frequency: float | None
+
+
+@dataclass(frozen=True)
+class Travel:
+    """Times in which a contact that a force moves goes 1 mm, and one contact radius, s."""
+
+    time_to_1_mm_s: float
+    time_to_1_mm_error_s: float
+    time_to_contact_radius_s: float
+    time_to_contact_radius_error_s: float
+
+
+@dataclass(frozen=True)
+class Search:
+    """The quantity at which vibration takes the requested share of friction away.
+
+    Attributes
+    ----------
+    sought : str
+        "amplitude", "speed" or "load".
+    sought_error : float
+        Its error estimate, in its SI unit.
+    """
+
+    sought: str
+    sought_error: float
+
+
+@dataclass(frozen=True)
+class Power:
+    """Mean power of the oscillation, or of the spin, and the energy that friction turns into heat.
+
+    Attributes
+    ----------
+    vibration_power_W, vibration_power_error_W : float
+        Mean work of the oscillation, or of the spin, in a second, W.
+    vibration_power_reason : str or None
+        Why its error is above the tolerance, else empty; None for a closed form.
+    dissipated_power_W, dissipated_power_error_W : float
+        Work of the oscillation and of the drag in a second, W.
+    energy_per_cycle_J, energy_per_cycle_error_J : float
+        The same in a period, or in a turn, J.
+    """
+
+    vibration_power_W: float
+    vibration_power_error_W: float
+    vibration_power_reason: str | None
+    dissipated_power_W: float
+    dissipated_power_error_W: float
+    energy_per_cycle_J: float
+    energy_per_cycle_error_J: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """Friction of a vibrated contact in SI units.
+    """Friction of a vibrated contact in SI units: the part that all questions share.
+
+    Every column is an attribute; it is None where the record does not have it.
 
     Attributes
     ----------
     understood : dict of str
-        What was asked, each by the name of its argument and as it was given, with the value in the
-        SI behind it where that is another kind of measure ("1200 rpm = 20 Hz"); what was not given
-        and counts is said ("rigid, as none was given").  Not compared by ==.
-    motion : str
-        The motion.
-    counterbody : str
-        The body opposite, as in `understood`.  Not compared by ==.
+        The request by the names of its arguments, as it was given, with the value in the SI behind
+        it where that is another kind of measure ("1200 rpm = 20 Hz").  Not compared by ==.
+    motion, pressure : str
+        The motion, and how the load is spread, as microslip.solve takes it.
+    contacts : str or None
+        The contacts that carry the body, as microslip.solve writes them; None for a single one.
+        For several contacts, forces and powers are those of the body, and sizes and groups those of
+        a contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Hertz's contact.
     u_lim_m : float
         Displacement at which the whole contact slides, m.
     poisson : float
         Poisson's ratio of the half-space that is equivalent to both bodies, dimensionless.
+    load_N : float
+        Normal force, N.
     speed_m_s : float
         Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
-    amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None where there is none.
-    frequency_Hz : float or None
-        Cyclic frequency of the oscillation, Hz; None for steady motions.
-    rotation_rad_s : float or None
-        Angular speed of a continuous bore, rad/s; None for motions that oscillate.
-    velocity, amplitude : float or None
-        The dimensionless groups of the motion; amplitude: None for steady motions; velocity: None
-        for a bore of amplitude 0, which it is measured by.
+    velocity : float or None
+        The speed as a dimensionless group; None for a bore of amplitude 0.
     mu_macro, mu_macro_error : float
         A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
     mu_apparent, mu_apparent_error : float
@@ -48,17 +173,10 @@ class Prediction:
         under the same mean load: that of the oscillating load where it parts the bodies.
     force_reduction : float
         1 - mu_macro, dimensionless; its error estimate is mu_macro_error.
-    mu_static, mu_static_error : float or None
-        A ratio: mu_macro in the limit of vanishing speed; None for steady motions.
-    mu_static_apparent, mu_static_apparent_error : float or None
-        The coefficient of friction there, mu mu_static; None for steady motions.
-    mu_static_reason : str
-        Why mu_static is not within its tolerance; else empty.
-    mu_static_spread, mu_static_low, mu_static_high : float or None
-        Standard uncertainty of mu_static that follows from those of the inputs, and the ends of an
-        interval with 95 % probability; None where every input is exact.
-    mu_static_apparent_spread, mu_static_apparent_low, mu_static_apparent_high : float or None
-        Standard uncertainty and 95 % interval of mu_static_apparent.
+    force_threshold_N, force_threshold_error_N : float or None
+        Constant force from which on the contact moves, N; None where it is not known.
+    drag_power_W, drag_power_error_W : float or None
+        Mean work of the forward force in a second, W; None where the answer is not converged.
     model : str
         Contact model that gave mu_macro, or "closed-form".
     converged, reason : bool, str
@@ -67,97 +185,29 @@ class Prediction:
     warnings : tuple of str
         Where an assumption of the theory breaks.
     not_checked : tuple of str
-        What was not looked at, and why.
-    force_N, drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        The drive, where it is not the speed alone.
-    force, stiffness, mass, damping : float or None
-        The drive as dimensionless groups, as for microslip.solve.
-    outcome : str or None
-        Under a force "moves", "stays", "runs away", or "undecided" where the error does not tell
-        whether it moves; None where a speed was given, or the solver has no answer.
-    speed_error_m_s, velocity_error : float or None
-        Largest error that speed and velocity may have under a force, by estimate.
-    displacement_per_cycle_m, displacement_per_cycle_error_m : float or None
-        Mean forward displacement in a period of the oscillation, m; None for steady motions.
-    time_to_1_mm_s, time_to_1_mm_error_s : float or None
-        Time in which a contact that a force moves goes 1 mm, s.
-    time_to_contact_radius_s, time_to_contact_radius_error_s : float or None
-        Time in which it goes one contact radius, s.
-    displacement_m, displacement_error_m, cycles_to_rest : float or None
-        How far a contact that stays under a force goes forward before it stands, with its error,
-        and after how many periods nine tenths of what the vibration adds are gone.  None for what
-        moves, has a mass or is not round.
-    displacement_reason : str
-        Why displacement_m is not known for a contact that stays; else empty.
-    force_threshold_N, force_threshold_error_N : float or None
-        Constant force from which on the contact moves, N; None where it is not known.
-    force_threshold_spread_N, force_threshold_low_N, force_threshold_high_N : float or None
-        Standard uncertainty and 95 % interval of the threshold, N.
-    safety_factor, safety_factor_error : float or None
-        That threshold over the force; None without a force.
-    safety_factor_spread, safety_factor_low, safety_factor_high : float or None
-        Standard uncertainty and 95 % interval of the safety factor.
-    interval_method : str or None
-        How the interval of mu_static was computed: "quantiles" of draws of the inputs, or "first
-        order", with a static friction that is linear in each input: with a reduction, and where the
-        ratio of several amplitudes is uncertain.  None where there is no interval.
-    probability_stays, probability_moves, probability_runs_away : float or None
-        Probability of each outcome under a force, for independent inputs with normal distributions;
-        None where every input is exact.  The first two are also None where the threshold is
-        unknown, or is computed for the central values only (a forward oscillation that the contact
-        follows).
-    probability_error : float or None
-        Largest error of these probabilities, by estimate.
-    regime : str or None
-        A key of regimes.REGIMES, of what is pulled through a spring or has a mass; else None.
-    natural_frequency : float or None
-        Natural frequency of the mass on its spring and the sticking contact, over the frequency of
-        the oscillation; None without either.
-    pressure : str
-        How the load is spread, as microslip.solve takes it.
-    forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
-        Further half strokes, and a phase, of motions that oscillate in several ways.
-    contacts : str or None
-        The contacts that carry the body, as microslip.solve writes them; None for a single one.
-        For several contacts, forces and powers are those of the body, and sizes and groups those of
-        a contact with the mean load.
-    torque_N_m, torque_error_N_m : float or None
-        Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
-    drag_power_W, drag_power_error_W : float or None
-        Mean work of the forward force in a second, W.
-    vibration_power_W, vibration_power_error_W : float or None
-        Mean work of the oscillation, or of the spin, in a second, W; of oscillations where it was
-        asked for.
-    vibration_power_reason : str or None
-        Why the vibration power is not within the tolerance, else empty or None.
-    dissipated_power_W, dissipated_power_error_W : float or None
-    energy_per_cycle_J, energy_per_cycle_error_J : float or None
-        Both powers together, W, which friction turns into heat, and what a period or a turn of it
-        costs, J.
-    load_N : float
-        Normal force, N.
-    sought, sought_error : str or None, float or None
-        What was looked for so that vibration takes the wanted share of friction away ("amplitude",
-        "speed", "load"), and the largest error that it may have, in its SI unit, by estimate.
-    mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
-        Standard uncertainties that follow from those of what was given; None where none was.
-    sought_spread : float or None
-        Standard uncertainty of the sought quantity, in its SI unit.  Like the others it is
-        infinite where inputs within their uncertainty give no solution for the reduction.
+        Checks that were not possible, and why.
+    power : Power or None
+        Power of the oscillation where it was requested, or of the spin.
+    uncertainty : mapping
+        Standard uncertainties and 95 % intervals that follow from uncertain inputs, and the
+        probability of each outcome, by their columns: NAME_spread, NAME_low and NAME_high,
+        `interval_method` ("quantiles" of draws, or "first order"), `probability_stays`,
+        `probability_moves`, `probability_runs_away` and `probability_error`.  A spread is infinite
+        where inputs within their uncertainty have no answer.  Empty where every input is exact.
     """
 
+    understood: dict = field(compare=False)
     motion: str
+    pressure: str
+    contacts: str | None
     contact_radius_m: float
     indentation_m: float
-    u_lim_m: float
     largest_pressure_Pa: float
+    u_lim_m: float
     poisson: float
+    load_N: float
     speed_m_s: float
-    amplitude_si: float | None
-    frequency_Hz: float | None
-    rotation_rad_s: float | None
     velocity: float | None
-    amplitude: float | None
     mu_macro: float
     mu_macro_error: float
     mu_apparent: float
@@ -166,105 +216,172 @@ class Prediction:
     friction_force_error_N: float
     friction_force_still_N: float
     force_reduction: float
-    mu_static: float | None
-    mu_static_error: float | None
-    mu_static_apparent: float | None
-    mu_static_apparent_error: float | None
-    mu_static_reason: str
+    force_threshold_N: float | None
+    force_threshold_error_N: float | None
+    drag_power_W: float | None = None
+    drag_power_error_W: float | None = None
     model: str
     converged: bool
     reason: str
-    warnings: tuple
-    not_checked: tuple
-    counterbody: str = field(compare=False)
-    understood: dict = field(compare=False)
-    force_N: float | None = None
-    drive_stiffness_N_m: float | None = None
-    mass_kg: float | None = None
-    damping_N_s_m: float | None = None
-    force: float | None = None
-    stiffness: float | None = None
-    mass: float | None = None
-    damping: float | None = None
-    outcome: str | None = None
-    speed_error_m_s: float | None = None
-    velocity_error: float | None = None
-    displacement_per_cycle_m: float | None = None
-    displacement_per_cycle_error_m: float | None = None
-    time_to_1_mm_s: float | None = None
-    time_to_1_mm_error_s: float | None = None
-    time_to_contact_radius_s: float | None = None
-    time_to_contact_radius_error_s: float | None = None
-    displacement_m: float | None = None
-    displacement_error_m: float | None = None
-    cycles_to_rest: float | None = None
-    displacement_reason: str = ""
-    force_threshold_N: float | None = None
-    force_threshold_error_N: float | None = None
-    safety_factor: float | None = None
-    safety_factor_error: float | None = None
-    regime: str | None = None
-    natural_frequency: float | None = None
-    pressure: str = "hertz"
-    forward_amplitude_m: float | None = None
-    rotation_amplitude_rad: float | None = None
-    load_amplitude_N: float | None = None
-    phase_rad: float | None = None
-    contacts: str | None = None
-    torque_N_m: float | None = None
-    torque_error_N_m: float | None = None
-    drag_power_W: float | None = None
-    drag_power_error_W: float | None = None
-    vibration_power_W: float | None = None
-    vibration_power_error_W: float | None = None
-    vibration_power_reason: str | None = None
-    dissipated_power_W: float | None = None
-    dissipated_power_error_W: float | None = None
-    energy_per_cycle_J: float | None = None
-    energy_per_cycle_error_J: float | None = None
-    load_N: float | None = None
-    sought: str | None = None
-    sought_error: float | None = None
-    mu_macro_spread: float | None = None
-    mu_apparent_spread: float | None = None
-    friction_force_spread_N: float | None = None
-    speed_spread_m_s: float | None = None
-    sought_spread: float | None = None
-    mu_static_spread: float | None = None
-    mu_static_low: float | None = None
-    mu_static_high: float | None = None
-    mu_static_apparent_spread: float | None = None
-    mu_static_apparent_low: float | None = None
-    mu_static_apparent_high: float | None = None
-    force_threshold_spread_N: float | None = None
-    force_threshold_low_N: float | None = None
-    force_threshold_high_N: float | None = None
-    safety_factor_spread: float | None = None
-    safety_factor_low: float | None = None
-    safety_factor_high: float | None = None
-    interval_method: str | None = None
-    probability_stays: float | None = None
-    probability_moves: float | None = None
-    probability_runs_away: float | None = None
-    probability_error: float | None = None
+    warnings: tuple = ()
+    not_checked: tuple = ()
+    power: Power | None = None
+    uncertainty: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def counterbody(self) -> str:
+        """The body opposite, as in `understood`."""
+        return self.understood["counterbody"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """All columns as a plain dict."""
+        own = {one.name: getattr(self, one.name) for one in fields(self)}
+        parts = [own.pop(name, None) or {} for name in PARTS]
+        flat = EMPTY | own | {"counterbody": self.counterbody}
+        for part in parts:
+            flat |= part if isinstance(part, Mapping) else vars(part)
+        return flat | {name: list(flat[name]) for name in ("warnings", "not_checked")}
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in EMPTY:
+            raise AttributeError(f"{type(self).__name__} has no column {name!r}")
+        return self.to_dict()[name]
 
     def __str__(self) -> str:
         """The lines that `microslip predict` prints."""
         return prediction_text(self)
 
+
+@dataclass(frozen=True, kw_only=True)
+class Oscillating(Prediction):
+    """The part that all motions share that oscillate.
+
+    Attributes
+    ----------
+    amplitude_si : float or None
+        Half stroke of the oscillation, m, or rad for a bore; None where only other parts oscillate.
+    forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
+        Further half strokes, and a phase, of motions that oscillate in several ways.
+    frequency_Hz : float
+        Cyclic frequency of the oscillation, Hz.
+    amplitude : float
+        The largest half stroke as a dimensionless group.
+    mu_static, mu_static_error : float
+        A ratio: mu_macro in the limit of vanishing speed.
+    mu_static_apparent, mu_static_apparent_error : float
+        The coefficient of friction there, mu mu_static.
+    mu_static_reason : str
+        Why mu_static is not within its tolerance; else empty.
+    displacement_per_cycle_m, displacement_per_cycle_error_m : float
+        Mean forward displacement in a period of the oscillation, m.
+    body : DrivenBody or None
+        The body, where a spring pulls it or it has a mass.
+    """
+
+    amplitude_si: float | None
+    forward_amplitude_m: float | None
+    rotation_amplitude_rad: float | None
+    load_amplitude_N: float | None
+    phase_rad: float | None
+    frequency_Hz: float
+    amplitude: float
+    mu_static: float | None = None
+    mu_static_error: float | None = None
+    mu_static_apparent: float | None = None
+    mu_static_apparent_error: float | None = None
+    mu_static_reason: str = ""
+    displacement_per_cycle_m: float | None = None
+    displacement_per_cycle_error_m: float | None = None
+    body: DrivenBody | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sliding(Oscillating):
+    """Friction at a speed, with `search` where an amplitude, a speed or a load was looked for."""
+
+    search: Search | None = None
+
     @property
     def sought_value(self) -> float | None:
-        """The sought quantity in its SI unit; NaN without a solution, None if there is none."""
-        fields: dict[str | None, float | None]
-        fields = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
-        return fields.get(self.sought)
+        """The sought quantity in its SI unit; NaN without a solution, None without a search."""
+        values = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
+        return None if self.search is None else values[self.search.sought]
 
-    def to_dict(self) -> dict:
-        """Fields as a plain dict."""
-        return asdict(self) | {
-            "warnings": list(self.warnings),
-            "not_checked": list(self.not_checked),
-        }
+
+@dataclass(frozen=True, kw_only=True)
+class SteadySpin(Prediction):
+    """Friction of a contact that spins steadily.
+
+    Attributes
+    ----------
+    rotation_rad_s : float
+        Angular speed, rad/s.
+    torque_N_m, torque_error_N_m : float or None
+        Torque that it takes, N m; None where the answer is not converged.
+    """
+
+    rotation_rad_s: float | None
+    torque_N_m: float | None = None
+    torque_error_N_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Forced(Prediction):
+    """The part that all contacts under a constant force share.
+
+    Attributes
+    ----------
+    force_N, force : float
+        The force, N, and as a dimensionless group.
+    outcome : str or None
+        "moves", "stays", "runs away", or "undecided" where the error does not tell whether it
+        moves; None where the solver has no answer.
+    speed_error_m_s, velocity_error : float
+        Error estimates of speed and velocity.
+    safety_factor, safety_factor_error : float or None
+        Threshold over the force; None where the threshold is not known.
+    travel : Travel or None
+        Of a contact that moves.
+    """
+
+    force_N: float
+    force: float
+    outcome: str | None
+    speed_error_m_s: float
+    velocity_error: float
+    safety_factor: float | None = None
+    safety_factor_error: float | None = None
+    travel: Travel | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drift(Forced, Oscillating):
+    """A contact under a force that moves it, or may move it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rest(Forced, Oscillating):
+    """A contact that stays under a force.
+
+    Attributes
+    ----------
+    displacement_m, displacement_error_m : float or None
+        How far it goes forward before it stands, m; None where it has a mass or is not round.
+    cycles_to_rest : float or None
+        Periods after which nine tenths of the displacement by the vibration are over.
+    displacement_reason : str
+        Why the displacement is not known; else empty.
+    """
+
+    displacement_m: float | None = None
+    displacement_error_m: float | None = None
+    cycles_to_rest: float | None = None
+    displacement_reason: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpinDrift(Forced, SteadySpin):
+    """A contact that spins steadily under a force."""
 
 
 @dataclass(frozen=True)
@@ -278,6 +395,6 @@ class NoPrediction:
     """
 
     error: InputError | str
+    converged: bool = False
     warnings: tuple = ()
     not_checked: tuple = ()
-    converged: bool = False

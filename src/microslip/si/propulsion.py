@@ -14,11 +14,11 @@ from microslip.adaptive.propulsion_line import PropulsionLine
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
-from microslip.si.inputs import read_body, read_contact, read_counterbody
+from microslip.si.inputs import read_argument, read_bodies, read_contact
 from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.propulsion_text import propulsion_text
 from microslip.si.quantities import read
-from microslip.si.uncertain import refuse_spreads
+from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
@@ -153,21 +153,15 @@ def predict_propulsion(
     InputError
         For bad input; it names the argument.
     """
-    refuse_spreads(dict(locals()), "propulsion")
-    for name, value in (("amplitude", amplitude), ("frequency", frequency)):
-        if value is None:
+    arguments = dict(locals())
+    refuse_uncertainty(arguments, "propulsion")
+    for name in ("amplitude", "frequency"):
+        if arguments[name] is None:
             raise InputError(name, None, "needed")
-    size = read("amplitude", amplitude, "m")
-    rate = read("frequency", frequency, "Hz")
+    size, rate = read("amplitude", amplitude, "m"), read_argument("frequency", frequency)
     accepted = read("tolerance", tolerance, "", low_open=False)
-    contact, understood = read_contact(
-        read_body(young, nu, material).completed("", hardness, density),
-        read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
-        radius=radius,
-        counter_radius=counter_radius,
-        load=load,
-        mu=mu,
-    )
+    spheres = dict.fromkeys(("radius_across", "contact_radius", "pressure"))
+    contact, understood = read_contact(read_bodies(arguments), arguments | spheres, load=load)
     group = size.si / contact.u_lim
     if not group <= LARGEST["amplitude"]:
         allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"
@@ -176,35 +170,27 @@ def predict_propulsion(
     if problem.motion.rotates:
         raise InputError("motion", motion, "allowed is a motion without a rotation")
     line = propulsion(motion, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
-    said = {"motion": motion, "amplitude": size.text, "frequency": rate.text}
-    mean_load = contact.load * problem.mean_load
-    newtons, speed = contact.mu * mean_load, 2.0 * math.pi * rate.si * contact.u_lim
-    watts = newtons * speed
+    newtons = contact.mu * contact.load * problem.mean_load
+    speed = 2.0 * math.pi * rate.si * contact.u_lim
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
     real = RealMotion(motion, fastest, size.si, rate.si)
     holding, reason = _holding_forces(line, newtons)
     return RealPropulsionLine(
-        understood=understood | said,
+        understood=understood | {"motion": motion, "amplitude": size.text, "frequency": rate.text},
         motion=motion,
         contact_radius_m=contact.contact_radius,
         u_lim_m=contact.u_lim,
         amplitude_m=size.si,
         frequency_Hz=rate.si,
         amplitude=group,
-        stall_force_N=newtons * line.stall_force,
-        stall_force_error_N=newtons * line.stall_force_error,
         no_load_speed_m_s=speed * line.no_load_velocity,
         no_load_speed_error_m_s=speed * line.no_load_velocity_error,
-        **holding,
         speed_m_s=speed * line.velocity,
-        force_N=newtons * line.force,
-        force_error_N=newtons * line.force_error,
-        power_out_W=watts * line.power_out,
-        power_out_error_W=watts * line.power_out_error,
-        power_in_W=watts * line.power_in,
-        power_in_error_W=watts * line.power_in_error,
         efficiency=line.efficiency,
         efficiency_error=line.efficiency_error,
+        **holding,
+        **_in_si(line, newtons, "N", "stall_force", "force"),
+        **_in_si(line, newtons * speed, "W", "power_out", "power_in"),
         converged=line.converged,
         reason=reason,
         warnings=tuple(broken_assumptions(contact, real)),
@@ -212,16 +198,20 @@ def predict_propulsion(
     )
 
 
+def _in_si(line: PropulsionLine, unit: float, name: str, *quantities: str) -> dict[str, Any]:
+    """Fields of quantities and their errors in a unit of the SI, and its name."""
+    stems = [part for quantity in quantities for part in (quantity, f"{quantity}_error")]
+    values = {stem: getattr(line, stem) for stem in stems}
+    return {f"{stem}_{name}": None if one is None else unit * one for stem, one in values.items()}
+
+
 def _holding_forces(line: PropulsionLine, newtons: float) -> tuple[dict[str, Any], str]:
     """Fields of the holding forces, and the reason of a line; newtons: the unit of its forces."""
-    fields: dict[str, Any] = {}
-    for name in ("low", "low_error", "high", "high_error"):
-        value = getattr(line, f"holding_force_{name}")
-        fields[f"holding_force_{name}_N"] = None if value is None else newtons * value
+    names = [f"holding_force_{name}" for name in ("low", "high")]
+    fields = _in_si(line, newtons, "N", *names)
     low, low_error, high, high_error = fields.values()
     if low is None or not line.converged:
         return fields, line.reason
     unit = force_unit(max(abs(low), abs(high)))
-    return fields, PROPELS_NOTHING.format(
-        in_unit(low, low_error, unit), in_unit(high, high_error, unit)
-    )
+    texts = in_unit(low, low_error, unit), in_unit(high, high_error, unit)
+    return fields, PROPELS_NOTHING.format(*texts)

@@ -28,7 +28,6 @@ from microslip.si.units import (
     split_number,
     stopped,
 )
-from microslip.si.units import registry as registry  # whoever builds quantities for this module
 
 EXAMPLES = {
     "Pa": "210 GPa",
@@ -70,22 +69,6 @@ class Given:
 
     si: float
     text: str
-
-
-def si_value(
-    name: str,
-    value: object,
-    unit: str,
-    *,
-    low: float = 0.0,
-    low_open: bool = True,
-    high: float = math.inf,
-) -> float:
-    """Value of a quantity in its SI unit, as a float.
-
-    Arguments and errors are those of `read`.
-    """
-    return read(name, value, unit, low=low, low_open=low_open, high=high).si
 
 
 def read(

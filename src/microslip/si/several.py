@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from microslip.adaptive.checks import checked_driven_problem
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of, contacts_text
-from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_motion
+from microslip.si.dimensionless import RealDrive
 from microslip.si.shapes import ShapedContact
 
 
@@ -39,11 +37,6 @@ class Carriers:
     heaviest: float = 1.0
     widest: float = 1.0
 
-    @property
-    def settings(self) -> dict[str, str]:
-        """Arguments of microslip.solve for several contacts."""
-        return {} if self.text is None else {"contacts": self.text}
-
     def share_of(self, drive: RealDrive) -> RealDrive:
         """The drive of the body divided by the number of contacts."""
         parts = {name: value for name, value in vars(drive).items() if value is not None}
@@ -59,16 +52,6 @@ class Carriers:
         pressure = pressure_named(contact.pressure)
         grown = float(pressure.radius(float(pressure.of_load(self.heaviest))))
         return replace(contact, load=load, size=contact.size * grown)
-
-    def problem(self, motion: RealMotion, contact: TwoBodies) -> Problem:
-        """The Problem of a motion at a vanishing speed.
-
-        Raises InputError about `contacts` where the motion or the pressure excludes them.
-        """
-        _, size = groups(motion, contact)
-        settings: dict[str, Any] = {"pressure": contact.pressure, "poisson": contact.poisson}
-        name = solver_motion(motion, contact)
-        return checked_driven_problem(name, 0.0, size, **settings, contacts=self.text)
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:

@@ -6,14 +6,11 @@ import math
 from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
-from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
-from microslip.si.dimensionless import solver_motion
-from microslip.si.question import Question
+from microslip.si.request import Request
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
 DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
@@ -31,7 +28,7 @@ which a change is rounding."""
 
 
 def static_limits(
-    question: Question,
+    request: Request,
     centre: tuple[float, float, float, float],
     amplitudes: np.ndarray,
     poisson: np.ndarray,
@@ -41,7 +38,7 @@ def static_limits(
 
     Parameters
     ----------
-    question : question.Question
+    request : request.Request
         The request at the central values.
     centre : tuple of float
         Amplitude and Poisson's ratio there, mu_static and its error.
@@ -53,7 +50,7 @@ def static_limits(
     from scipy.interpolate import PchipInterpolator
     from scipy.special import ndtr
 
-    limit = _limits_of(question)
+    limit = _limits_of(request)
     amplitude, ratio, *solved = centre
     # The interpolation variable A / (A + centre) is proportional to small amplitudes A, and its
     # distance from 1 to 1 / A at large ones: the static limit varies smoothly with it at both ends.
@@ -100,11 +97,6 @@ def static_limits(
     return np.clip(value + change, 0.0, 1.0), error
 
 
-def _above_zero(limit: tuple[float, float]) -> bool:
-    value, error = limit
-    return value > error
-
-
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
     """Derivative of mu_static by Poisson's ratio."""
     if deviation < SAME_POISSON:
@@ -116,15 +108,13 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
     return (high[0] - low[0]) / (ends[1] - ends[0])
 
 
-def _limits_of(question: Question) -> Callable[[float, float], tuple[float, float] | None]:
+def _limits_of(request: Request) -> Callable[[float, float], tuple[float, float] | None]:
     """limit(amplitude, poisson) -> (mu_static, error), or None where the solver has no answer."""
-    motion = solver_motion(question.motion, question.contact)
-    settings: dict[str, Any] = {"pressure": question.contact.pressure} | question.carriers.settings
-    settings["tolerance"] = tolerance_of(question.motion, TOLERANCE)
+    tolerance = tolerance_of(request, TOLERANCE)
 
     @cache
     def limit(amplitude: float, poisson: float) -> tuple[float, float] | None:
-        answer = solve(motion, 0.0, amplitude, poisson=poisson, **settings)
+        answer = request.solve(0.0, tolerance, amplitude=amplitude, poisson=poisson)
         finite = math.isfinite(answer.mu_macro) and math.isfinite(answer.mu_macro_error)
         return (answer.mu_macro, answer.mu_macro_error) if finite else None
 

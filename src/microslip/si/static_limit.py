@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from microslip.adaptive.point import Result, solve
 from microslip.adaptive.under_force import (
     is_even,
@@ -13,10 +11,8 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_motion
 from microslip.si.motions import COMBINED
-from microslip.si.several import Carriers
+from microslip.si.request import Request
 
 TOLERANCE = 1e-3
 """Largest accepted error of mu_static, a ratio, under a force."""
@@ -25,51 +21,23 @@ TOLERANCE_OF_COMBINED = 1e-2
 a minute."""
 
 
-def static_limit(
-    contact: TwoBodies,
-    motion: RealMotion,
-    carriers: Carriers,
-    tolerance: float,
-    *,
-    under_force: bool,
-) -> Result | None:
-    """Friction at a vanishing speed over that without vibration; None for a steady motion.
-
-    Parameters
-    ----------
-    contact, motion, carriers
-        The contact, its motion, and how many contacts carry the body.
-    tolerance : float
-        Largest accepted error of the answer, as predict takes it.
-    under_force : bool
-        Whether a force is prescribed, for which this tolerance is relative to the speed.
-    """
-    _, size = groups(motion, contact)
-    if size is None:
+def static_limit(request: Request) -> Result | None:
+    """Friction at a vanishing speed over that without vibration; None for a steady motion."""
+    if request.motion.steady:
         return None
-    if under_force:
+    tolerance = request.tolerance
+    if request.drive.force is not None:  # for which the tolerance is relative to the speed
         tolerance = min(tolerance, TOLERANCE)
-    settings: dict[str, Any] = {
-        "poisson": contact.poisson,
-        "pressure": contact.pressure,
-    } | carriers.settings
-    return solve(
-        solver_motion(motion, contact),
-        0.0,
-        size,
-        tolerance=tolerance_of(motion, tolerance),
-        **settings,
-    )
+    return request.solve(0.0, tolerance_of(request, tolerance))
 
 
-def tolerance_of(motion: RealMotion, tolerance: float) -> float:
+def tolerance_of(request: Request, tolerance: float) -> float:
     """The tolerance of a static limit: as requested, except where several oscillations meet."""
-    return max(tolerance, TOLERANCE_OF_COMBINED) if motion.name in COMBINED else tolerance
+    combined = request.motion.name in COMBINED
+    return max(tolerance, TOLERANCE_OF_COMBINED) if combined else tolerance
 
 
-def equals_static_limit(
-    contact: TwoBodies, motion: RealMotion, carriers: Carriers, mass: float | None
-) -> bool | float | None:
+def equals_static_limit(request: Request) -> bool | float | None:
     """The force threshold over mu F_z: True where it equals the static limit, else a number; None
     where it is not known.
 
@@ -77,22 +45,16 @@ def equals_static_limit(
     or where the forces of several contacts cancel.  Otherwise a contact without mass moves along
     with the oscillation, and all of friction holds it if it does nothing else.
     """
-    if motion.steady:
+    if request.motion.steady:
         return 0.0  # a steady spin turns all of friction aside
-    problem = carriers.problem(motion, contact)
+    problem = request.problem()
     if not oscillates_forward(problem) or is_even(problem):
         return True
-    holds = not mass and not oscillates(without_forward_motion(problem))
+    holds = not request.drive.mass and not oscillates(without_forward_motion(problem))
     return 1.0 if holds else None
 
 
-def force_threshold(
-    contact: TwoBodies,
-    motion: RealMotion,
-    carriers: Carriers,
-    drive: RealDrive,
-    limit: Result | None,
-) -> Estimate | None:
+def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, over mu F_z.
 
     None if it is unknown, or if it needs a solve of its own and no force is given.  A contact
@@ -101,25 +63,23 @@ def force_threshold(
 
     limit: the static limit of the motion, None for a steady one.
     """
-    share = equals_static_limit(contact, motion, carriers, drive.mass)
+    share = equals_static_limit(request)
     if share is True:
         assert limit is not None  # as of all that oscillate
         return limit.friction
     if share is not None:
         return Estimate(share)
-    held = without_forward_motion(carriers.problem(motion, contact))
-    if drive.mass or drive.force is None or not is_even(held):
+    held = without_forward_motion(request.problem())
+    if request.drive.mass or request.drive.force is None or not is_even(held):
         return None
     return solve(held, tolerance=TOLERANCE).friction
 
 
-def largest_force(
-    contact: TwoBodies, motion: RealMotion, carriers: Carriers, mass: float | None
-) -> float:
+def largest_force(request: Request) -> float:
     """Constant force over mu F_z from which on the contact runs away.
 
     It is 1 with a mass; without one it is the least normal load in a period over the mean.
     """
-    if mass or motion.steady:
+    if request.drive.mass or request.motion.steady:
         return 1.0
-    return min(1.0, least_load(carriers.problem(motion, contact)))
+    return min(1.0, least_load(request.problem()))

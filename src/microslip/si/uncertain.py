@@ -1,14 +1,12 @@
-"""Quantities that are known to within a spread: "0.3 +- 0.03", "10 N +- 5 %".
+"""Uncertain inputs: "0.3 +- 0.03", "10 N +- 5 %".
 
-A spread is a standard uncertainty.  Each is carried through by predictions at both of its ends,
-half of whose difference is its share; shares of independent quantities add up in squares (JCGM 100,
-Guide to the Expression of Uncertainty in Measurement, 5.1).
+The number behind +- is a standard uncertainty.  Each is propagated by predictions at both of its
+ends: half of their difference is its contribution, and the contributions of independent quantities
+add up in squares (JCGM 100, Guide to the Expression of Uncertainty in Measurement, 5.1).
 """
 
 from __future__ import annotations
 
-import functools
-import inspect
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -16,149 +14,120 @@ from dataclasses import replace
 from typing import Any
 
 from microslip.foundation.errors import InputError
+from microslip.si.inputs import QUANTITIES
 from microslip.si.motions import unit_of_amplitude
-from microslip.si.outcomes import UncertainInput, with_outcomes
+from microslip.si.outcomes import Ends, UncertainInput, uncertainty_of_outcomes
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import EXCLUDED
 from microslip.si.quantities import read
-from microslip.si.question import asked as question_of
 from microslip.si.reduction import NotAttainedError
+from microslip.si.request import Request, request_of
 
-UNITS = {
-    "mu": "",
-    "load": "N",
-    "radius": "m",
-    "counter_radius": "m",
-    "radius_across": "m",
-    "contact_radius": "m",
-    "speed": "m/s",
-    "young": "Pa",
-    "nu": "",
-    "force": "N",
-    "amplitude": "m",
-    "forward_amplitude": "m",
-    "rotation_amplitude": "rad",
-    "load_amplitude": "N",
-    "frequency": "Hz",
-    "rotation": "rad/s",
-    "drive_stiffness": "N/m",
-    "mass": "kg",
-    "damping": "N*s/m",
-}
-"""Arguments that may have a standard uncertainty, and their SI units; the amplitude of some motions
-has another one."""
-FIELDS = {
+EXACT = ("phase", "density", "counter_density", "reduction")
+"""Quantities that have no uncertainty."""
+SPREADS = {
     "mu_macro": "mu_macro_spread",
     "mu_apparent": "mu_apparent_spread",
     "friction_force_N": "friction_force_spread_N",
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Attributes of a Prediction with an uncertainty, and the fields that hold it."""
+"""Attributes of a Prediction with an uncertainty, and the columns that hold it."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
-def with_spreads(predict: Callable) -> Callable:
-    """predict, of which arguments in UNITS may be texts with a spread."""
+def without_uncertainty(
+    motion: object, arguments: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[UncertainInput]]:
+    """Arguments of predict without the uncertainties in them, and the uncertain ones.
 
-    @functools.wraps(predict)
-    def asked(motion: str, **arguments: Any) -> Prediction:
-        plain, spread = without_spreads(motion, arguments)
-        found = predict(motion, **plain)
-        if not spread:
-            return found
-        ends = {
-            name: (
-                _predicted(predict, motion, plain, name, low),
-                _predicted(predict, motion, plain, name, high),
-            )
-            for name, (low, high) in spread.items()
-        }
-        squares = {name: 0.0 for name in FIELDS if getattr(found, name) is not None}
-        for low, high in ends.values():
-            for field in squares:
-                squares[field] += _half_of_difference(low, high, field) ** 2
-        texts = {name: " ".join(str(arguments[name]).split()) for name in spread}
-        spreads = {FIELDS[field]: math.sqrt(value) for field, value in squares.items()}
-        inputs = [
-            UncertainInput(name, 0.5 * (low + high), 0.5 * (high - low))
-            for name, (low, high) in spread.items()
-        ]
-        every = dict.fromkeys(inspect.signature(predict).parameters) | {"power": False} | plain
-        del every["motion"]
-        spreads |= with_outcomes(
-            found, inputs, lambda changes: question_of(motion, every | dict(changes)), ends
-        )
-        if (spreads.get("probability_runs_away") or 0.0) > EXCLUDED:
-            spreads["speed_spread_m_s"] = math.inf
-        return replace(found, **spreads, understood=found.understood | texts)
-
-    return asked
-
-
-def without_spreads(motion: object, arguments: Mapping[str, object]) -> tuple[dict, dict]:
-    """Arguments of predict without the spreads in them, and the ends of those that have one.
-
-    Raises InputError for a spread that is none.
+    Raises InputError for an uncertainty that is none.
     """
-    plain, ends = dict(arguments), {}
-    for name, unit in UNITS.items():
-        parts = _parts(arguments.get(name))
-        if parts is None:
-            continue
-        if name == "amplitude" and isinstance(motion, str):
-            unit = unit_of_amplitude(motion) or unit
-        plain[name], ends[name] = parts[0], _ends(name, arguments[name], parts, unit)
-    return plain, ends
+    plain, uncertain = dict(arguments), []
+    for name, quantity in QUANTITIES.items():
+        parts = None if name in EXACT else _parts(arguments.get(name))
+        if parts is not None:
+            unit = quantity.unit
+            if name == "amplitude" and isinstance(motion, str):
+                unit = unit_of_amplitude(motion) or unit
+            plain[name] = parts[0]
+            uncertain.append(_uncertain(name, arguments[name], parts, unit))
+    return plain, uncertain
 
 
-def refuse_spreads(arguments: Mapping[str, object], where: str) -> None:
-    """Raise InputError for the first argument with a spread; where: what goes without spreads."""
+def refuse_uncertainty(arguments: Mapping[str, object], where: str) -> None:
+    """Raise InputError for the first argument with an uncertainty."""
     for name, value in arguments.items():
         if _parts(value) is not None:
             raise InputError(name, value, f"allowed is a quantity without uncertainty for {where}")
 
 
 def _parts(value: object) -> tuple[str, str] | None:
-    """Texts of a value and of its spread; None where there is no spread."""
+    """Texts of a value and of its uncertainty; None where there is no uncertainty."""
     match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
     return None if match is None else (match[1], match[2])
 
 
-def _ends(name: str, given: object, parts: tuple[str, str], unit: str) -> tuple[float, float]:
-    """Both ends of a quantity in the SI; raises InputError for a spread that is none."""
+def _uncertain(name: str, arguments: str, parts: tuple[str, str], unit: str) -> UncertainInput:
+    """An uncertain input in the SI; raises InputError for an uncertainty that is none."""
     text, spread = parts
-    low = -math.inf if name == "counter_radius" else 0.0
     try:
-        value = read(name, text, unit, low=low).si
+        value = read(name, text, unit, low=QUANTITIES[name].low).si
         if spread.endswith("%") and not text.endswith("%"):
             size = abs(value) * read(name, spread, "", low_open=False).si
         else:
             size = read(name, spread, unit, low_open=False).si
     except InputError as error:
         allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
-        raise InputError(name, given, allowed) from None
+        raise InputError(name, arguments, allowed) from None
     if not size < abs(value):
-        raise InputError(name, given, "allowed is a spread below the value")
-    return value - size, value + size
+        raise InputError(name, arguments, "allowed is a spread below the value")
+    return UncertainInput(name, " ".join(arguments.split()), value - size, value + size)
 
 
-def _half_of_difference(low: Prediction | None, high: Prediction | None, field: str) -> float:
+def with_uncertainty(
+    found: Prediction,
+    motion: str,
+    plain: Mapping[str, Any],
+    uncertain: list[UncertainInput],
+    answer: Callable[[Request], Prediction],
+) -> Prediction:
+    """A Prediction for central values, with the uncertainty that follows from the inputs.
+
+    plain: arguments at the central values; answered: answered(request) -> Prediction.
+    """
+
+    def request_at(changes: Mapping[str, float]) -> Request:
+        return request_of(motion, {**plain, **changes})
+
+    def at_end(name: str, end: float) -> Prediction | None:
+        try:
+            return answer(request_at({name: end}))
+        except NotAttainedError:
+            return None
+        except InputError as error:
+            problem = f"at an end of its spread, {end:.6g}: {error.argument}: {error.allowed}"
+            raise InputError(name, plain[name], problem) from None
+
+    ends: Ends = {
+        one.name: (at_end(one.name, one.low), at_end(one.name, one.high)) for one in uncertain
+    }
+    columns: dict[str, Any] = {
+        column: math.sqrt(sum(_half_of_difference(*pair, name) ** 2 for pair in ends.values()))
+        for name, column in SPREADS.items()
+        if getattr(found, name, None) is not None
+    }
+    columns |= uncertainty_of_outcomes(found, uncertain, request_at, ends)
+    if columns.get("probability_runs_away", 0.0) > EXCLUDED:
+        columns["speed_spread_m_s"] = math.inf
+    texts = {one.name: one.text for one in uncertain}
+    return replace(found, uncertainty=columns, understood=found.understood | texts)
+
+
+def _half_of_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
     """Half the difference of a field of both; infinite where one of them has no value, because
     nothing has the wanted reduction, or the contact runs away."""
     if low is None or high is None:
         return math.inf
-    half = 0.5 * (getattr(high, field) - getattr(low, field))
+    half = 0.5 * (getattr(high, name) - getattr(low, name))
     return math.inf if math.isnan(half) else half
-
-
-def _predicted(
-    predict: Callable, motion: str, plain: dict, name: str, end: float
-) -> Prediction | None:
-    try:
-        return predict(motion, **plain | {name: end})
-    except NotAttainedError:
-        return None
-    except InputError as error:
-        problem = f"at an end of its spread, {end:.6g}: {error.argument}: {error.allowed}"
-        raise InputError(name, plain[name], problem) from None

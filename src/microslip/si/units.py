@@ -6,35 +6,13 @@ import re
 from dataclasses import dataclass
 from decimal import Context, Decimal, localcontext
 from functools import cache
+from pathlib import Path
 from typing import Any
 
-METRIC = frozenset(
-    {
-        *("meter", "gram", "second", "newton", "pascal", "bar", "liter"),
-        *("hertz", "counts_per_second", "revolutions_per_minute", "revolutions_per_second"),
-        *("radian", "degree", "arcsecond", "turn"),
-    }
-)
-"""Units that take prefixes, by pint's names for them."""
-OTHER = frozenset(
-    {
-        *("inch", "foot", "yard", "mile", "thou", "micron", "angstrom"),
-        *("minute", "hour", "day", "arcminute", "grade", "cubic_centimeter"),
-        *("metric_ton", "pound", "ounce", "slug"),
-        *("dyne", "force_gram", "force_kilogram", "force_pound", "force_ounce", "kip"),
-        *("pound_force_per_square_inch", "kip_per_square_inch", "standard_atmosphere"),
-        *("knot", "mile_per_hour", "kilometer_per_hour", "meter_per_second", "foot_per_second"),
-    }
-)
-"""Units that take none.  What is in neither list is refused: pint knows a thousand names more, with
-constants of nature (c, k, pi), scales that are no factors (degC, dB) and others that are something
-else than they look (Nm is a number of yarns, mil an angle, da a tenth of a year) among them."""
-PREFIXES = frozenset(
-    {
-        *("", "deca", "hecto", "kilo", "mega", "giga", "tera"),
-        *("deci", "centi", "milli", "micro", "nano", "pico"),
-    }
-)
+DEFINITIONS = Path(__file__).with_name("units.txt")
+"""Definitions of the units that are known; those of its group `metric` take prefixes."""
+PREFIXES = ("", "p", "n", "µ", "m", "c", "d", "da", "h", "k", "M", "G", "T")
+"""Symbols of the prefixes, for hints."""
 MOST_FACTORS = 12
 """Units that a text may multiply; pint reads long products by recursion."""
 PLURALS = frozenset({"lb", "oz"})
@@ -105,16 +83,14 @@ class Unit:
 
 @cache
 def registry() -> Any:
-    """The pint.UnitRegistry in use; loading it takes most of a second.
+    """The pint.UnitRegistry in use.
 
     It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" are one number, to the last
     bit.
     """
     import pint
 
-    units = pint.UnitRegistry(non_int_type=Decimal)
-    units.define("@alias turn = rev")
-    return units
+    return pint.UnitRegistry(DEFINITIONS, non_int_type=Decimal)
 
 
 def factors(text: str) -> list[tuple[str, int]]:
@@ -156,33 +132,27 @@ def read_unit(text: str) -> Unit:
 
 
 def _refuse_strange(name: str) -> None:
-    """Raise UnitError unless a name is one of those in the lists above, with a prefix or not."""
-    readings = registry().parse_unit_name(name)
+    """Raise UnitError unless a name is a known one, with a prefix if it takes one."""
+    units = registry()
+    metric = units.get_group("metric").members
+    readings = units.parse_unit_name(name)
     prefix, base = readings[0][:2] if readings else ("", "")
-    known = base in METRIC and prefix in PREFIXES or base in OTHER and not prefix
-    if known and not _is_plural_symbol(name, base):
+    symbol = units.get_symbol(base) if base else ""
+    # an s behind a symbol is a second left without its sign, as in Pas for Pa*s
+    plural = symbol not in {base, *PLURALS} and name.endswith(f"{symbol}s")
+    if base and not plural and (base in metric or not prefix):
         return
     hint = " (the mil of workshops is thou)" if name in ("mil", "mils") else ""
-    meant = _in_other_capitals(name)
+    known = {
+        f"{prefix}{units.get_symbol(one)}"
+        for one in units.get_group("root").members
+        for prefix in (PREFIXES if one in metric else [""])
+    }
+    meant = sorted(one for one in known if one.lower() == name.lower())
     remedy = f" (did you mean {' or '.join(meant)}?)" if meant else ", as in MPa and Hz"
     raise UnitError(
         f"{name!r} is none of the units that are known here{hint}; capitals count{remedy}"
     )
-
-
-def _in_other_capitals(name: str) -> list[str]:
-    """Symbols of units that differ from a name by capitals alone, such as MPa and mPa for Mpa."""
-    units = registry()
-    prefixes = {units.get_symbol(f"{prefix}meter").removesuffix("m") for prefix in PREFIXES}
-    symbols = {units.get_symbol(base) for base in OTHER}
-    symbols |= {prefix + units.get_symbol(base) for base in METRIC for prefix in prefixes}
-    return sorted(symbol for symbol in symbols if symbol.lower() == name.lower())
-
-
-def _is_plural_symbol(name: str, base: str) -> bool:
-    """Whether a name is the symbol of a unit, by pint's name for it, with an s behind it."""
-    symbol = registry().get_symbol(base)
-    return symbol not in {base, *PLURALS} and name.endswith(f"{symbol}s")
 
 
 def _exponents(unit: Any) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from microslip.si.fitting import estimate
 from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel
-from microslip.si.fitting.scales import Displacement, Modulus
+from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.validity import broken_assumptions
 
 TELLS_MU = 2.0
@@ -30,7 +30,7 @@ class Settled(NamedTuple):
     ----------
     motion : str
         The motion.
-    scale : Displacement or Modulus
+    scale : Scale
         The second number.
     model : FrictionModel
         Anchored next to the best fit.
@@ -43,7 +43,7 @@ class Settled(NamedTuple):
     """
 
     motion: str
-    scale: Displacement | Modulus
+    scale: Scale
     model: FrictionModel
     rows: estimate.Rows
     best: estimate.Best
@@ -80,7 +80,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     noise = rows.error if rows.absolute else rows.error * math.sqrt(best.squares / free)
     chance = _chance(best.squares, free) if rows.absolute and free else None
     second = _second(settled, ends, moved, allowed if 1 in told else None)
-    name = "u_lim" if isinstance(scale, Displacement) else "shear_modulus"
+    name = scale.name.replace(" ", "_")
     return Fit(
         motion=settled.motion,
         quantity=measured.quantity,
@@ -144,7 +144,7 @@ def _second(
     found = dict.fromkeys((*names, *moduli))
     values = [float(size) if told else None]
     values += [float(np.exp(end)) if np.isfinite(end) else None for end in ends[1]]
-    if isinstance(scale, Displacement):
+    if not isinstance(scale, Modulus):
         return found | dict(zip(names, values, strict=True))
     found |= dict(zip(moduli, values, strict=True))
     if told:  # u_lim goes like mu G^(-2/3), and so do their logarithms
@@ -157,9 +157,9 @@ def _second(
     return found
 
 
-def _open(scale: Displacement | Modulus, ends: np.ndarray) -> str:
+def _open(scale: Scale, ends: np.ndarray) -> str:
     """Why the second number is not told."""
-    what = "u_lim" if isinstance(scale, Displacement) else "shear modulus"
+    what = scale.name
     low, high = ends
     which = f"any {what}"
     if low > 0.0:

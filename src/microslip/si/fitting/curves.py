@@ -9,7 +9,7 @@ import numpy as np
 
 from microslip.si.fitting.friction_models import FrictionModel
 from microslip.si.fitting.measured import Measured
-from microslip.si.fitting.scales import Displacement, Modulus
+from microslip.si.fitting.scales import Scale
 
 PIECES = 96
 """Number of points of a curve, approximately: a column of a journal is some 1000 pixels wide."""
@@ -42,12 +42,12 @@ def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
-def curve_of(scale: Displacement | Modulus, model: FrictionModel, mu: float, size: float) -> Curve:
+def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curve:
     """The model curves through the rows of a fit.
 
     Parameters
     ----------
-    scale : Displacement or Modulus
+    scale : Scale
         The second unknown, with the rows.
     model : FrictionModel
         Anchored at the best fit.

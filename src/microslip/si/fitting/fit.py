@@ -19,7 +19,7 @@ from microslip.si.fitting.friction_models import (
     SolvedFriction,
 )
 from microslip.si.fitting.measured import Measured, named, read_measured
-from microslip.si.fitting.scales import Displacement, Modulus, Points
+from microslip.si.fitting.scales import Displacement, Modulus, Points, Scale
 from microslip.si.inputs import LARGEST_MU
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
@@ -109,14 +109,11 @@ def fit(
     if map is not None:
         model: FrictionModel = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
-        limits: dict[str, Any] = {
-            "low": SMALLEST_TOLERANCE,
-            "low_open": False,
-            "high": LARGEST_TOLERANCE,
-        }
-        given = TOLERANCE if tolerance is None else read("tolerance", tolerance, "", **limits).si
+        limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
+        given = TOLERANCE if tolerance is None else tolerance
+        allowed_error = read("tolerance", given, "", low_open=False, **limits).si
         reached = [scale.points(0.3, end) for end in ends]
-        model = SolvedFriction(motion, scale.poisson, given, reached)
+        model = SolvedFriction(motion, scale.poisson, allowed_error, reached)
     rows_to_fit = _rows(rows, scale, model, ends)
     best, others = _best(rows_to_fit, scale, model)
     settled = Settled(motion, scale, model, rows_to_fit, best, others)
@@ -142,7 +139,7 @@ def _refuse_too_few(rows: Measured, given: object) -> None:
 
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
-) -> tuple[Displacement | Modulus, dict[str, str]]:
+) -> tuple[Scale, dict[str, str]]:
     """The second unknown, and texts of what was understood."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
@@ -161,11 +158,11 @@ def _scale(
     texts["counterbody"] = "rigid, as none was given" if counterbody is None else counterbody
     size = read("radius", radius, "m")
     texts["radius"] = size.text
-    return Modulus(rows, motion == "bore", ratio.si, counterbody == "same", size.si), texts
+    return Modulus(rows, ratio.si, motion == "bore", counterbody == "same", size.si), texts
 
 
 def _rows(
-    rows: Measured, scale: Displacement | Modulus, model: FrictionModel, ends: tuple[float, float]
+    rows: Measured, scale: Scale, model: FrictionModel, ends: tuple[float, float]
 ) -> estimate.Rows:
     """The rows, weights and limits for the least squares."""
 
@@ -187,7 +184,7 @@ def _rows(
 
 
 def _best(
-    rows: estimate.Rows, scale: Displacement | Modulus, model: FrictionModel
+    rows: estimate.Rows, scale: Scale, model: FrictionModel
 ) -> tuple[estimate.Best, list[estimate.Best]]:
     """The best fit, and others that were tried, the best one first."""
     tried = [estimate.best_near(rows, start) for start in estimate.starts(rows)]

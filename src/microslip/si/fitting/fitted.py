@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.si.fitting.curves import Curve
+from microslip.si.prediction import unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,15 +132,21 @@ class Fit:
         """
         import xarray as xr
 
-        units = self._units()
+        names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
+        units = dict.fromkeys(names, "N" if self.quantity == "friction" else "1")
+        units["amplitude_si"] = "rad" if self.motion == "bore" else "m"
         found: dict[str, tuple] = {}
         about: dict[str, str] = {}
         for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
             if isinstance(value, Curve):
                 for part, values in value._asdict().items():
-                    found[f"curve_{part}"] = ("curve_point", values, {"units": units[part]})
+                    found[f"curve_{part}"] = (
+                        "curve_point",
+                        values,
+                        {"units": units.get(part, unit_of(part))},
+                    )
             elif isinstance(value, np.ndarray):
-                found[name] = ("row", value, {"units": units[name]})
+                found[name] = ("row", value, {"units": units.get(name, unit_of(name))})
             elif name == "labels":
                 found |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
@@ -150,17 +157,5 @@ class Fit:
                 about[name] = value
             else:
                 number = np.nan if value is None else value
-                found[name] = ((), number, {"units": units.get(name, _unit_of_name(name))})
+                found[name] = ((), number, {"units": units.get(name, unit_of(name))})
         return xr.Dataset(found, attrs=about)
-
-    def _units(self) -> dict[str, str]:
-        measured = "N" if self.quantity == "friction" else "1"
-        names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
-        size = {"amplitude_si": "rad" if self.motion == "bore" else "m"}
-        rows = {"speed_m_s": "m s-1", "frequency_Hz": "Hz", "row_load_N": "N"}
-        pure = dict.fromkeys(("velocity", "amplitude", "residual"), "1")
-        return rows | pure | size | dict.fromkeys(names, measured)
-
-
-def _unit_of_name(name: str) -> str:
-    return next((unit for unit in ("Pa", "N", "m") if name.endswith(f"_{unit}")), "1")

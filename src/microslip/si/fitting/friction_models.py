@@ -9,7 +9,7 @@ is left of the coarse map's error at the end is of second order.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +32,7 @@ MOST_SOLVED = 200
 """Rows that the solver answers for one by one."""
 
 
-class FrictionModel(Protocol):
+class FrictionModel:
     """A model that gives mu_macro of the rows and its estimated error, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
@@ -40,18 +40,21 @@ class FrictionModel(Protocol):
 
         An error of it only bends the way to the answer.
         """
+        raise NotImplementedError
+
+    def rough(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, without what the anchor corrects at the rows."""
+        return self.at(points)
 
     def anchor(self, points: Points) -> None:
         """Take these points for the best guess so far, and be as right as can be around them."""
 
     def errors(self, points: Points) -> np.ndarray:
         """Largest error of `at` next to the points of the last anchor."""
-
-    def rough(self, points: Points) -> np.ndarray:
-        """mu_macro at any points, without what the anchor corrects at the rows."""
+        raise NotImplementedError
 
 
-class MapFriction:
+class MapFriction(FrictionModel):
     """A dataset of a sweep with its accessor `friction`, see datasets.query.
 
     Parameters
@@ -77,27 +80,15 @@ class MapFriction:
             allowed = "allowed is that of one contact that is moved at a velocity"
             raise InputError("map", motion, f"it is pulled or has several contacts; {allowed}")
         self._dataset, self._poisson = dataset, poisson
-        self._ends = {
-            name: (
-                float(dataset[name].where(dataset[name] > 0.0).min()),
-                float(dataset[name].max()),
-            )
-            for name in ("velocity", "amplitude")
-        }
+        axes = (dataset[name] for name in ("velocity", "amplitude"))
+        self._ends = [(float(axis.where(axis > 0.0).min()), float(axis.max())) for axis in axes]
         self._proved = motion in PROVED and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
         if not self._proved:  # what is asked on the way may lie anywhere
-            parts = zip(
-                points, (self._ends[name] for name in ("velocity", "amplitude")), strict=True
-            )
+            parts = zip(points, self._ends, strict=True)
             points = Points(*(np.clip(part, *ends) for part, ends in parts))
         return self._answer(points)[0]
-
-    rough = at
-
-    def anchor(self, points: Points) -> None:
-        """Nothing to do: a map is as right everywhere."""
 
     def errors(self, points: Points) -> np.ndarray:
         try:
@@ -119,7 +110,7 @@ class MapFriction:
         return found.mu_macro.values, found.mu_macro_error.values
 
 
-class SolvedFriction:
+class SolvedFriction(FrictionModel):
     """The solver by way of a coarse map over the logarithms of amplitude and ratio.
 
     The ratio is the velocity over the amplitude, which of a motion along a line does not depend on

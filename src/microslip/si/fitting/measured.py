@@ -1,7 +1,12 @@
-"""The rows of a table of measured friction, completed by what is the same for all of them."""
+"""The rows of a table of measured friction, completed by what is the same for all of them.
+
+speed [mm/s],amplitude [um],friction [N]
+1,0.5,1.93
+"""
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,16 +14,22 @@ from typing import Any
 
 import numpy as np
 
-from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
-from microslip.foundation.user_files import content_of
-from microslip.si.fitting.measured_csv import COLUMNS, MOST_ROWS, read_table
+from microslip.si.inputs import QUANTITIES, Range
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
+from microslip.si.tables import LABELS, Table, is_table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
 """Conditions that every row needs."""
-ABOVE_ZERO = ("amplitude", "frequency", "load")
+COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
+    "friction": Range("N", low=-math.inf),
+    "friction_error": Range("N"),
+    "mu": Range("", low=-math.inf),
+    "mu_error": Range(""),
+}
+"""Columns that a table may have; the amplitude of a bore is in rad."""
+MOST_ROWS = 10_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +73,11 @@ class Measured:
         return self.load if self.quantity == "friction" else np.ones_like(self.load)
 
     @property
+    def omega(self) -> np.ndarray:
+        """Angular frequency, rad/s, (n,)."""
+        return 2.0 * math.pi * self.frequency
+
+    @property
     def distinct(self) -> int:
         """How many different conditions there are."""
         return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
@@ -77,118 +93,99 @@ def read_measured(
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
     given : path, mapping or pandas DataFrame
-        The file, see `measured_csv`, or columns by their names: in the SI, or with a unit as in
-        "speed [mm/s]".
+        The file, or columns by their names: in the SI, or with a unit as in "speed [mm/s]".
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
         speed, amplitude, frequency and load where they are no columns.
     """
-    unit = UNIT_OF_AMPLITUDE[motion]
-    table, labels, left_out = _table(given, unit, decimal, encoding)
-    count = len(next(iter(table.values())))
-    if count == 0:
-        raise InputError("measured", given, "no rows; allowed is a row for each measurement")
+    if not is_table(given):
+        raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
+    units = {name: column.unit for name, column in COLUMNS.items()}
+    units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
+    needed = {name: bool(unit) for name, unit in units.items()}
+    table = table_of("measured", given, needed, decimal=decimal, encoding=encoding)
+    columns, labels, left_out = _numbers(table, given, units)
+    count = len(next(iter(columns.values())))
     texts: dict[str, str] = {}
-    columns: dict[str, Any] = {}
+    conditions: dict[str, Any] = {}
     for name in CONDITIONS:
-        if (name in table) == (shared[name] is not None):
-            where = "both a column and given for all rows" if name in table else "missing"
+        if (name in columns) == (shared[name] is not None):
+            where = "both a column and given for all rows" if name in columns else "missing"
             allowed = f"it is {where}; allowed is a column, or one value for all rows"
             raise InputError(name, shared[name], allowed)
-        if name in table:
-            columns[name] = table[name]
+        if name in columns:
+            conditions[name] = columns[name]
         else:
-            wanted = unit if name == "amplitude" else COLUMNS[name]
-            one = read(name, shared[name], wanted, low_open=name in ABOVE_ZERO)
-            columns[name], texts[name] = np.full(count, one.si), one.text
-    if not (columns["amplitude"] > 0.0).any():
-        raise InputError("measured", given, "no row with an amplitude above 0; nothing vibrates")
-    quantity = _quantity(table, given)
-    error = table.get(f"{quantity}_error", np.full(count, np.nan))
-    values: dict[str, Any] = {
-        "value": table[quantity],
-        "error": error,
-        "labels": labels,
-        "left_out": left_out,
-    }
-    return Measured(**columns, **values, quantity=quantity, texts=texts)
+            low_open = name in ("amplitude", "frequency", "load")
+            one = read(name, shared[name], units[name], low_open=low_open)
+            conditions[name], texts[name] = np.full(count, one.si), one.text
+    if not (conditions["amplitude"] > 0.0).any():
+        allowed = "no row with an amplitude above 0; nothing vibrates"
+        raise InputError("measured", named(given), allowed)
+    quantity = _quantity(columns, given)
+    return Measured(
+        **conditions,
+        value=columns[quantity],
+        error=columns.get(f"{quantity}_error", np.full(count, np.nan)),
+        quantity=quantity,
+        texts=texts,
+        labels=labels,
+        left_out=left_out,
+    )
 
 
-def _table(
-    given: object, unit: str, decimal: str, encoding: str
+def _numbers(
+    table: Table, given: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
-    """Columns as arrays of floats, labels as lists, and messages about lines that are left out."""
-    csv_text.check_format(decimal, encoding)
-    if isinstance(given, str | os.PathLike):
-        try:
-            content = content_of(given)
-            rows = read_table(content, unit, decimal=decimal, encoding=encoding)
-            columns = {name: np.array(values) for name, values in rows.columns.items()}
-            return columns, rows.labels, tuple(rows.left_out)
-        except OSError as error:
-            problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
-            raise InputError("measured", str(given), problem) from None
-        except ValueError as error:
-            raise InputError("measured", str(given), str(error)) from None
-    if not csv_text.is_table(given):
-        raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
-    given = _without_empty_rows(csv_text.by_names(given))
-    labels = {name: given.pop(name) for name in csv_text.LABELS if name in given}
-    strange = [name for name in given if name not in COLUMNS]
-    if strange or not given:
+    """Columns in the SI, labels, and messages about lines of a file that cannot be read.
+
+    Rows without any value are left out, and lines that cannot be read; elsewhere the first value
+    that cannot be read is an error.
+    """
+    names = [name for name in table.columns if name not in LABELS]
+    strange = [name for name in names if name not in COLUMNS]
+    if strange or not names:
         which = repr(strange[0]) if strange else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
-        raise InputError("measured", list(given), allowed)
-    table = {name: _column(name, values, unit) for name, values in given.items()}
-    if len({len(column) for column in table.values()}) > 1:
-        raise InputError("measured", list(given), "columns of several lengths; allowed is one")
-    return table, labels, ()
+        raise InputError("measured", named(given), allowed)
+    for name, column in table.columns.items():
+        if not isinstance(column, list):
+            allowed = f"allowed is a sequence of numbers, in {units.get(name, 'a text each')}"
+            raise InputError(name, column, allowed)
+    if len({len(column) for column in table.columns.values()}) > 1:
+        raise InputError("measured", named(given), "columns of several lengths; allowed is one")
+    rows, kept, left_out = [], [], []
+    for index, row in enumerate(zip(*(table.columns[name] for name in names), strict=True)):
+        if index in table.errors:
+            left_out.append(table.errors[index])
+        elif any(value is not None for value in row):
+            try:
+                rows.append([_number(*pair, units) for pair in zip(names, row, strict=True)])
+                kept.append(index)
+            except InputError as error:
+                if not table.lines:
+                    allowed = f"{error.allowed}, in row {index + 1}"
+                    raise InputError(error.argument, error.value, allowed) from None
+                problem = f"{error.argument} is {error.allowed}" if error.value is None else error
+                left_out.append(f"line {table.lines[index]}: {problem}")
+    if not rows:
+        problem = left_out[0] if left_out else "no rows; allowed is a row for each measurement"
+        raise InputError("measured", named(given), problem)
+    if len(rows) > MOST_ROWS:
+        raise InputError("measured", len(rows), f"allowed are at most {MOST_ROWS} rows")
+    columns = dict(zip(names, np.array(rows).T, strict=True))
+    labels = {name: [texts[index] for index in kept] for name, texts in table.labels.items()}
+    return columns, labels, tuple(left_out)
 
 
-def _without_empty_rows(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Columns without rows of missing values alone; of several lengths they stay as they are."""
-    lists = [values for values in table.values() if isinstance(values, list)]
-    if not lists or len(lists) < len(table) or len({len(values) for values in lists}) > 1:
-        return dict(table)
-    rows = zip(*lists, strict=True)
-    kept = [i for i, row in enumerate(rows) if any(value is not None for value in row)]
-    return {name: [values[i] for i in kept] for name, values in table.items()}
-
-
-def _column(name: str, values: Any, unit_of_amplitude: str) -> np.ndarray:
-    if isinstance(values, list) and any(isinstance(value, str) for value in values):
-        unit = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
-        low = -np.inf if name in ("friction", "mu") else 0.0
-        try:
-            values = [read(name, value, unit, low=low, low_open=False).si for value in values]
-        except InputError as error:
-            allowed = f"allowed is a sequence of numbers, in {COLUMNS[name]}"
-            raise InputError(name, values, f"{allowed}; {error}") from None
-    if isinstance(values, list):
-        values = [np.nan if value is None else value for value in values]
-    try:
-        column = np.array(values)
-    except ValueError:
-        column = np.empty(0, object)
-    if column.ndim != 1 or column.dtype.kind not in "iuf":
-        raise InputError(name, values, f"allowed is a sequence of numbers, in {COLUMNS[name]}")
-    if len(column) > MOST_ROWS:
-        raise InputError(name, len(column), f"allowed are at most {MOST_ROWS} rows")
-    column = column.astype(float)
-    if np.isnan(column).any():
-        row = int(np.flatnonzero(np.isnan(column))[0]) + 1
-        allowed = f"empty in row {row}; allowed: a number in every row, leave out the others"
-        raise InputError(name, np.nan, allowed)
-    least = -np.inf if name in ("friction", "mu") else 0.0
-    zero = name in ("speed", "amplitude", "friction", "mu")
-    bad = ~np.isfinite(column) | (column < least) | ((column == 0.0) & (not zero))
-    if bad.any():
-        allowed = "finite numbers" + (
-            "" if least < 0.0 else " of at least 0" if zero else " above 0"
-        )
-        raise InputError(name, float(column[bad][0]), f"allowed are {allowed}")
-    return column
+def _number(name: str, value: object, units: Mapping[str, str]) -> float:
+    """A value in the SI; raises InputError."""
+    if value is None:
+        allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
+        raise InputError(name, None, allowed)
+    column = COLUMNS[name]
+    return read(name, value, units[name], low=column.low, low_open=column.low_open).si
 
 
 def _quantity(table: Mapping[str, np.ndarray], given: object) -> str:

@@ -7,9 +7,8 @@ its power 2/3 and the contact radius like its power 1/3 (Hertz).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -27,37 +26,57 @@ class Points(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Displacement:
-    """The second unknown is u_lim at the mean load, m; for motions along a line.
+class Scale:
+    """The second unknown of a fit.
 
     Attributes
     ----------
     rows : Measured
         The measurements.
     poisson : float
-        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
-    unit : str
-        Unit of the second unknown.
+        Poisson's ratio, dimensionless: of the one half-space that stands for both bodies, or of the
+        bodies.
+    unit, name : str
+        Unit of the second unknown, and its name in words.
     """
 
     rows: Measured
     poisson: float
-    unit = "m"
+    unit: ClassVar[str]
+    name: ClassVar[str]
 
     @property
     def mean_load(self) -> float:
         """N."""
         return float(self.rows.load.mean())
 
+    def u_lim(self, mu: float, scale: float) -> float:
+        """At the mean load, m."""
+        raise NotImplementedError
+
+    def bounds(self, least: float, most: float) -> tuple[float, float]:
+        """Range of the second unknown, for amplitudes from `least` to `most`."""
+        raise NotImplementedError
+
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
         """Velocity and amplitude of each row; rows: others than those of the fit."""
         rows = self.rows if rows is None else rows
-        u_lim = scale * (rows.load / self.mean_load) ** (2.0 / 3.0)
-        omega = 2.0 * math.pi * rows.frequency
-        return Points(rows.speed / (omega * u_lim), rows.amplitude / u_lim)
+        u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
+        return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
+
+
+@dataclass(frozen=True, eq=False)
+class Displacement(Scale):
+    """The second unknown is u_lim at the mean load, m; for motions along a line."""
+
+    unit, name = "m", "u_lim"
+
+    def u_lim(self, mu: float, scale: float) -> float:
+        """At the mean load, m."""
+        return scale
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown that lets the amplitudes of some rows be within a range.
+        """Range that lets the amplitudes of some rows be within a range.
 
         At its ends all that are not 0 are at most `least`, or at least `most`.
         """
@@ -65,40 +84,25 @@ class Displacement:
         sizes = sizes[sizes > 0.0]
         return float(sizes.min()) / most, float(sizes.max()) / least
 
-    def u_lim(self, mu: float, scale: float) -> float:
-        """At the mean load, m."""
-        return scale
-
 
 @dataclass(frozen=True, eq=False)
-class Modulus:
+class Modulus(Scale):
     """The second unknown is the shear modulus, Pa: of one body on a rigid one, or of two alike.
 
     Attributes
     ----------
-    rows : Measured
-        The measurements.
     spin : bool
         Whether the amplitude is an angle, of a bore.
-    poisson : float
-        Poisson's ratio of the bodies, dimensionless.
     alike : bool
         Whether both bodies have that modulus; else the second one is rigid.
     radius : float
         Radius of relative curvature, m.
     """
 
-    rows: Measured
     spin: bool
-    poisson: float
     alike: bool
     radius: float
-    unit = "Pa"
-
-    @property
-    def mean_load(self) -> float:
-        """N."""
-        return float(self.rows.load.mean())
+    unit, name = "Pa", "shear modulus"
 
     def contact(self, mu: float, scale: float) -> TwoBodies:
         """The contact under the mean load."""
@@ -108,16 +112,15 @@ class Modulus:
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
         """Velocity and amplitude of each row; rows: others than those of the fit."""
-        rows, contact = self.rows if rows is None else rows, self.contact(mu, scale)
-        share = rows.load / self.mean_load
-        u_lim = contact.u_lim * share ** (2.0 / 3.0)
-        omega = 2.0 * math.pi * rows.frequency
+        rows = self.rows if rows is None else rows
         if not self.spin:
-            return Points(rows.speed / (omega * u_lim), rows.amplitude / u_lim)
+            return super().points(mu, scale, rows)
+        contact, share = self.contact(mu, scale), rows.load / self.mean_load
         arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
         moving = arc > 0.0  # an angle of 0 leaves no unit for the velocity, and needs none
-        velocity = np.divide(rows.speed, omega * arc, out=np.zeros_like(arc), where=moving)
-        return Points(velocity, np.asarray(hertz.bore_amplitude(arc / u_lim, self.poisson)))
+        velocity = np.divide(rows.speed, rows.omega * arc, out=np.zeros_like(arc), where=moving)
+        size = arc / (contact.u_lim * share ** (2.0 / 3.0))
+        return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
         """Shear moduli of bodies that are pressed on one another, whatever the amplitudes."""

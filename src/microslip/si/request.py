@@ -1,0 +1,277 @@
+"""The request for a prediction: read, checked and made dimensionless before anything is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from microslip.adaptive.checks import checked_driven_problem
+from microslip.adaptive.point import Result, solve
+from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
+from microslip.foundation.errors import InputError, shown
+from microslip.motions.problem import Problem
+from microslip.si import motions
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import (
+    RealDrive,
+    RealMotion,
+    drive_groups,
+    full_friction,
+    groups,
+    solver_motion,
+    speed_unit,
+)
+from microslip.si.inputs import (
+    PULLED,
+    Arguments,
+    Body,
+    read_argument,
+    read_bodies,
+    read_contact,
+    read_drive,
+    read_motion,
+)
+from microslip.si.quantities import read
+from microslip.si.several import Carriers, read_carriers
+
+LARGEST_TOLERANCE = 0.1
+"""Largest accepted tolerance, absolute for mu_macro and relative for a speed."""
+TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
+"""Default tolerances: of mu_macro, and under a force of the speed."""
+ANY_LOAD = 1e-12
+"""N; stands for a load that is looked for, small enough for Hertz's theory of all bodies."""
+SOUGHT = ("amplitude", "speed", "load")
+"""Quantities that a reduction can determine."""
+ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in PULLED.items()}
+"""Arguments of predict, by those of microslip.solve that follow from them."""
+BEYOND = "it is beyond the range of floating-point numbers; allowed is what a laboratory can have"
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """A contact, its motion and its drive, as far as they are given.
+
+    Attributes
+    ----------
+    arguments : Mapping
+        Arguments of predict, as they were given.
+    bodies : tuple of Body
+        Bodies of the contact.
+    contact, motion, drive : TwoBodies, RealMotion, RealDrive
+        The contact, its motion and the drive of the body, in SI units.
+    carriers : several.Carriers
+        The contact, or several like it, of which it carries the mean load.
+    sought, share : str or None, float or None
+        Name of the quantity sought by a reduction, and the reduction of friction, 0 to 1.
+    tolerance : float
+        Accepted error of mu_macro, or relative error of the speed.
+    understood : dict of str
+        Texts of what was read.
+    """
+
+    arguments: Arguments
+    bodies: tuple[Body, Body]
+    contact: TwoBodies
+    motion: RealMotion
+    drive: RealDrive
+    carriers: Carriers
+    sought: str | None
+    share: float | None
+    tolerance: float
+    understood: dict[str, str]
+
+    def at(self, **changes: Any) -> Request:
+        """The request with another contact, speed or amplitude: fields of a RealMotion, or
+        `contact`."""
+        contact = changes.pop("contact", self.contact)
+        return replace(self, contact=contact, motion=replace(self.motion, **changes))
+
+    def under(self, load: float) -> Request:
+        """The request under a load that was found, N; raises InputError where it is none."""
+        try:
+            contact, _ = read_contact(self.bodies, self.arguments, load=load)
+        except InputError as error:
+            problem = f"it takes a load of {load:.3g} N; {error}"
+            raise InputError("reduction", self.arguments["reduction"], problem) from None
+        return replace(self, contact=contact)
+
+    @cached_property
+    def still(self) -> float:
+        """mu times the mean normal load of all contacts, N: friction without vibration."""
+        return full_friction(self.motion, self.contact) * self.carriers.count
+
+    @property
+    def speed_unit(self) -> float:
+        """Forward speed whose dimensionless group is 1, m/s."""
+        return speed_unit(self.motion, self.contact)
+
+    @cached_property
+    def groups(self) -> tuple[float | None, float | None]:
+        """Velocity and amplitude as microslip.solve takes them; None where there is none."""
+        return groups(self.motion, self.contact)
+
+    @cached_property
+    def drive_groups(self) -> dict[str, float]:
+        """force, stiffness, mass and damping of a contact, as microslip.solve takes them."""
+        return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
+
+    def problem(self) -> Problem:
+        """The dimensionless Problem at a vanishing speed.
+
+        Raises InputError about `contacts` where the motion or the pressure excludes them.
+        """
+        settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
+        return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
+
+    @property
+    def solver_motion(self) -> str:
+        """The motion as microslip.solve takes it."""
+        return solver_motion(self.motion, self.contact)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Further arguments of microslip.solve for one contact."""
+        return {"poisson": self.contact.poisson, "pressure": self.contact.pressure}
+
+    def solve(
+        self,
+        velocity: float | None,
+        tolerance: float,
+        *,
+        amplitude: float | None = None,
+        poisson: float | None = None,
+        **drive: float,
+    ) -> Result:
+        """The dimensionless answer of microslip.solve.
+
+        velocity: None under a force; a velocity above the largest one of the solver is replaced by
+        it, since the vibration has no effect there.  amplitude, poisson: in place of those of the
+        request.  drive: groups of the drive.
+        """
+        settings = self.settings | drive | {"tolerance": tolerance}
+        if poisson is not None:
+            settings["poisson"] = poisson
+        if self.carriers.text is not None:
+            settings["contacts"] = self.carriers.text
+        if velocity is not None:
+            velocity = min(velocity, LARGEST["velocity"])
+        size = self.groups[1] if amplitude is None else amplitude
+        try:
+            return solve(self.solver_motion, velocity, size, **settings)
+        except InputError as error:
+            raise (self._in_si(error) if drive else error) from None
+
+    def _in_si(self, error: InputError) -> InputError:
+        """An error about an argument of the solver, with the argument of predict and its value."""
+        name = ARGUMENTS.get(error.argument)
+        if name is None or self.arguments[name] is None:
+            return error
+        group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
+        return InputError(name, self.arguments[name], f"dimensionless {group}: {error.allowed}")
+
+    def refuse_out_of_range(self) -> None:
+        """Raise InputError for a group that the solver cannot take, with the value as it was
+        given."""
+        arguments, (velocity, size) = self.arguments, self.groups
+        if velocity is not None and not math.isfinite(velocity):
+            raise InputError("speed", arguments["speed"], f"over that of the vibration, {BEYOND}")
+        most = LARGEST["amplitude"]
+        if (self.motion.load_amplitude or 0.0) > most * self.contact.load:
+            allowed = f"allowed is at most {most:g} times the load"
+            raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
+        if size is not None and not size <= most:
+            unit = "the angle that leaves half of the contact sticking"
+            if not self.motion.spins:
+                unit = f"the {self.contact.u_lim:.3g} m that let the whole contact slide"
+            allowed = f"{size:.3g} times {unit}; allowed is at most {most:g} times"
+            raise InputError("amplitude", arguments["amplitude"], allowed)
+        for name, value in self.drive_groups.items():
+            if not math.isfinite(value):
+                argument = ARGUMENTS[name]
+                problem = f"over that of the contact, {BEYOND}"
+                raise InputError(argument, arguments[argument], problem)
+
+
+def request_of(motion: str, arguments: Arguments) -> Request:
+    """The request of the arguments of predict, all of them by their names.
+
+    Raises InputError for each of them that cannot be used.
+    """
+    for name, value in arguments.items():
+        if name != "counterbody" and _is_sequence(value):
+            allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
+            raise InputError(name, value, allowed)
+    if not isinstance(arguments["power"], bool):
+        raise InputError("power", arguments["power"], "allowed is True or False")
+    if arguments["mu"] is None:
+        raise InputError("mu", None, "needed")
+    sought = _sought(motion, arguments)
+    real, moved = read_motion(motion, arguments, sought)
+    drive, pulls = read_drive(real, arguments, sought)
+    tolerance = arguments["tolerance"]
+    if tolerance is None:
+        tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
+    limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
+    accepted = read("tolerance", tolerance, "", low_open=False, **limits)
+    bodies = read_bodies(arguments)
+    carriers, several = read_carriers(
+        arguments["contacts"], reduction=arguments["reduction"], power=arguments["power"]
+    )
+    load = ANY_LOAD if sought == "load" else arguments["load"]
+    contact, touched = read_contact(bodies, arguments, load=load, contacts=carriers.count)
+    loaded = real.load_amplitude
+    if several and loaded is not None and loaded * carriers.widest > contact.load:
+        allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
+        raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
+    understood, share = touched | moved | pulls | several, None
+    if sought is not None:
+        if pulls:
+            allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
+            raise InputError("reduction", arguments["reduction"], allowed)
+        wanted = read_argument("reduction", arguments["reduction"])
+        share, understood["reduction"] = wanted.si, wanted.text
+        understood.pop(sought, None)
+    parts = (contact, real, drive, carriers, sought, share, accepted.si, understood)
+    request = Request(arguments, bodies, *parts)
+    if sought is None:
+        request.refuse_out_of_range()
+    if several:
+        request.problem()  # refuses what does not go with several contacts
+    return request
+
+
+def _is_sequence(value: object) -> bool:
+    """Whether a value is an array, a list or a column of a table, with a unit or without."""
+    values = getattr(value, "magnitude", value)  # of a pint quantity
+    if isinstance(values, str | bytes | Mapping):
+        return False
+    return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
+
+
+def _sought(motion: str, arguments: Arguments) -> str | None:
+    """Name of the quantity to be found for a reduction, the missing one; None without a reduction.
+
+    Raises InputError where more than one quantity or none is missing.
+    """
+    motions.check_motion(motion)
+    reduction = arguments["reduction"]
+    if reduction is None:
+        if arguments["load"] is None:
+            raise InputError("load", None, "needed")
+        return None
+    missing = [name for name in SOUGHT if arguments[name] is None]
+    if "speed" in missing and arguments["force"] is not None:
+        missing.remove("speed")
+    if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
+        what = "several amplitudes" if motion in motions.COMBINED else "no amplitude"
+        raise InputError("reduction", reduction, f"{motion} has {what} to look for")
+    if not missing:
+        allowed = "allowed without an amplitude, a speed or a load, which is then looked for"
+        raise InputError("reduction", reduction, allowed)
+    if len(missing) > 1:
+        allowed = f"one thing can be looked for, and {' and '.join(missing)} are not given"
+        raise InputError("reduction", reduction, allowed)
+    return missing[0]

@@ -1,0 +1,35 @@
+"""Bad options of `microslip predict` get one line that names the option, before anything runs."""
+
+import pytest
+from bad_input_tables.bad_predictions import GOOD, PREDICTIONS, PROPULSIONS
+
+from microslip.app import cli
+
+
+def refused(changed, part, capsys, *flags):
+    given = {"motion": "transverse"} | GOOD | changed
+    motion = given.pop("motion")
+    words = [f"--{name.replace('_', '-')}={text}" for name, text in given.items() if text]
+    assert cli.main(["predict", motion, *words, *flags]) == 2
+    out, line = capsys.readouterr()
+    assert out == "" and line.startswith("microslip predict: ") and line.count("\n") == 1
+    assert part in line
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs(monkeypatch):
+    def work(*_, **__):
+        raise AssertionError("work has started")
+
+    monkeypatch.setattr("microslip.si.request.solve", work)
+    monkeypatch.setattr("microslip.si.static_limit.solve", work)
+
+
+@pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=repr)
+def test_a_contact_is_refused_in_one_line(changed, part, capsys):
+    refused(changed, part, capsys)
+
+
+@pytest.mark.parametrize(("changed", "part"), PROPULSIONS, ids=repr)
+def test_a_propulsion_is_refused_in_one_line(changed, part, capsys):
+    refused(changed, part, capsys, "--propulsion")

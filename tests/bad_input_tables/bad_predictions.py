@@ -1,0 +1,162 @@
+"""Bad options of `microslip predict`, each with a part of the one line that refuses it.
+
+A row is the motion, the options that are changed in a good command line (None: left out), and the
+part.  One row for each reason that there is.
+"""
+
+GOOD = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
+GOOD |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
+FORCED = {"speed": None, "force": "1 N"}
+SPRUNG = {"drive_stiffness": "1 N/um"}
+SIZED = {"radius": None, "contact_radius": "1 mm"}
+STEADY = {"amplitude": None, "frequency": None, "rotation": "1 Hz"}
+ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
+SOUGHT = {"amplitude": None, "reduction": "50 %"}
+MOVED = [
+    ({"motion": "sideways"}, "MOTION = 'sideways': "),
+    ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
+    ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
+    ({"motion": "transverse-bore:angle=0.5"}, "for both see transverse-bore"),
+    ({"amplitude": None}, "--amplitude: transverse needs it"),
+    ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
+    ({"amplitude": "-1 um"}, "--amplitude = '-1 um': allowed is a finite value at least 0 m"),
+    ({"amplitude": "1 m"}, "times the 2.17e-07 m that let the whole contact slide; allowed is at"),
+    ({"motion": "bore", "amplitude": "1e9 turn"}, "half of the contact sticking"),
+    ({"frequency": "0 Hz"}, "--frequency = '0 Hz': allowed is a finite value above 0 Hz"),
+    ({"frequency": "20 s^-1"}, "may mean Hz or rad/s"),
+    ({"rotation": "10 rpm"}, "--rotation = '10 rpm': transverse has none"),
+    ({"forward_amplitude": "1 um"}, "--forward-amplitude = '1 um': transverse has none"),
+    ({"motion": "elliptic"}, "--forward-amplitude: elliptic needs it"),
+    ({"motion": "elliptic", "forward_amplitude": "0 m", "phase": "1 m"}, "the unit is meter"),
+    (
+        {"motion": "elliptic", "amplitude": "0 m", "forward_amplitude": "0 m"},
+        "--amplitude = '0 m': allowed is above 0 where no other one is",
+    ),
+    ({"motion": "normal", "load_amplitude": "0 N"}, "--load-amplitude = '0 N': allowed is"),
+    (
+        {"motion": "normal", "amplitude": None, "load_amplitude": "1e10 N"},
+        "--load-amplitude = '1e10 N': allowed is at most 1e",
+    ),
+    ({"motion": "continuous-bore", "amplitude": None, "frequency": None}, "--rotation: continuous"),
+]
+PRESSED = [
+    ({"load": None}, "--load: needed"),
+    ({"load": "nan N"}, "it is not finite"),
+    ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
+    ({"load": "1\n2 N"}, r"--load = '1\n2 N': "),
+    ({"load": "1e-300 N"}, "--amplitude = '1 um'"),
+    ({"mu": None}, "--mu: needed"),
+    ({"mu": "0,3"}, "--mu = '0,3': read 0 and stopped at ',3', since decimals follow a point"),
+    ({"mu": "1100 %"}, "--mu = '1100 %': allowed is a finite value above 0 and at most 10"),
+    ({"radius": None}, "--radius: needed, or --contact-radius in its place"),
+    ({"radius": "5"}, "--radius = '5': 5 is a number without a unit"),
+    ({"radius": "1e-320 m"}, "sizes of real bodies"),
+    ({"radius": "1e-300 m", "load": "1e-300 N"}, "--load = '1e-300 N': with these bodies"),
+    ({"radius": "1e-12 m"}, "--radius = '1e-12 m': by Hertz's theory"),
+    ({"counter_radius": "0 mm"}, "allowed is a radius other than 0"),
+    ({"counter_radius": "-4 mm"}, "allowed is a hollow wider than the sphere"),
+    (
+        ELASTIC | {"young": "1 MPa", "radius": "40 mm", "counter_radius": "1 mm"},
+        "--counter-radius = '1 mm': by Hertz's theory",
+    ),
+    ({"radius_across": "1 um"}, "--radius-across = '1 um': the contact would be an ellipse of"),
+    ({"radius_across": "1 mm", "counter_radius": "1 m"}, "allowed is none beside --counter-radius"),
+    ({"contact_radius": "1 mm"}, "--radius = '5 mm': allowed is none beside --contact-radius"),
+    ({"pressure": "hertz"}, "none beside a pressure, which needs --contact-radius in place"),
+    ({"radius": None, "pressure": "hertz"}, "--contact-radius: needed beside a pressure"),
+    (SIZED | {"pressure": "rong"}, "--pressure = 'rong'"),
+    (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': no contact"),
+    ({"contacts": "load=1;mass=1"}, "--contacts = 'load=1;mass=1'"),
+    ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
+    ({"contacts": "phase=0"} | SOUGHT, "--reduction = '50 %': allowed for one contact only"),
+    ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
+    (
+        {
+            **{"motion": "normal", "amplitude": None, "load_amplitude": "6 N"},
+            "contacts": "load=1;load=1",
+        },
+        "--load-amplitude = '6 N': allowed is at most the load",
+    ),
+]
+BODIES = [
+    ({"material": None}, "--young: needed, or a material by name"),
+    (ELASTIC | {"nu": None}, "--nu: needed"),
+    (ELASTIC | {"nu": "0.7"}, "--nu = '0.7': allowed is a finite value at least 0 and at most 0.5"),
+    (ELASTIC | {"young": "inf GPa"}, "it is not finite"),
+    ({"nu": "30 %"}, "--material = 'steel': allowed without young and nu"),
+    ({"material": "Steel"}, "(did you mean steel?), or a Material"),
+    ({"material": "rigid"}, "allowed is an elastic body where the counterbody is rigid"),
+    ({"counterbody": "wood"}, "or E and nu as in '70 GPa, 0.22'"),
+    ({"counterbody": "0.22, 70 GPa"}, "its Young's modulus '0.22'"),
+    ({"counterbody": "70 GPa, 0.9"}, "its Poisson's ratio '0.9': allowed is a finite value at"),
+    ({"counterbody": "70 GPa, 0,22"}, "2 commas in it"),
+    ({"counter_hardness": "7 GPa"}, "allowed for an elastic body, not a rigid one"),
+    ({"hardness": "60 HRB"}, "the scale HRB is not known; allowed are Vickers"),
+    ({"hardness": "80 HRC"}, "allowed is 20 to 68 HRC, or a Vickers hardness"),
+    ({"hardness": "200 HB"}, "about 211 HV"),  # HB = 0.95 HV, ISO 18265
+    ({"hardness": "HV"}, "the text is empty"),
+    ({"density": "7.85"}, "--density = '7.85': 7.85 is a number without a unit"),
+]
+DRIVEN = [
+    ({"speed": None}, "--speed: needed, or a force in its place"),
+    ({"speed": "1 mm"}, "--speed = '1 mm': the unit is millimeter"),
+    ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "--speed = '1e300 m/s': over that of the"),
+    ({"force": "1 N"}, "--force = '1 N': allowed is a force or a speed, not both"),
+    (FORCED | {"force": "0 N"}, "--force = '0 N': allowed is a finite value above 0 N"),
+    (FORCED | SPRUNG, "--drive-stiffness = '1 N/um': allowed is none beside a force"),
+    (FORCED | {"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed is none beside a force"),
+    ({"mass": "20 g"}, "--mass = '20 g': allowed beside a force or --drive-stiffness"),
+    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed beside --drive-stiffness"),
+    (SPRUNG | {"mass": "-20 g"}, "--mass = '-20 g': allowed is a finite value"),
+    (SPRUNG | {"mass": "1e308 kg"}, "--mass = '1e308 kg': over that of the contact, it is beyond"),
+    (SPRUNG | {"motion": "longitudinal", "speed": "0 m/s"}, "allowed is a speed above 0 where a"),
+    (SPRUNG | {"motion": "continuous-bore"} | STEADY, "which is steady: nothing swings"),
+    ({"tolerance": "none"}, "--tolerance = 'none'"),
+    ({"tolerance": "1e-9"}, "at least 1e-06 and at most 0.1"),
+]
+FOUND = [
+    (
+        {"reduction": "50 %"},
+        "--reduction = '50 %': allowed without an amplitude, a speed",
+    ),
+    (SOUGHT | {"load": None}, "one thing can be looked for, and amplitude and load are not given"),
+    (SOUGHT | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
+    (SOUGHT | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
+    (SOUGHT | {"reduction": "100 %"}, "allowed is at most 90 %, 100 % less the tolerance"),
+    (SOUGHT | {"motion": "bore", "reduction": "100 %"}, "allowed is less than all of it"),
+    (SOUGHT | FORCED, "--reduction = '50 %': allowed where a speed alone pulls"),
+    (SOUGHT | SPRUNG, "--reduction = '50 %': allowed where a speed alone pulls"),
+    (SOUGHT | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
+    (
+        {"reduction": "50 %", "load": None, "amplitude": "0 m"},
+        "allowed is above 0 with a reduction",
+    ),
+]
+UNCERTAIN = [
+    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is a spread below the value"),
+    ({"load": "10 N +- 1 mm"}, "in it '1 mm': the unit is millimeter"),
+    ({"load": "10 +- 1 N"}, "in it '10': 10 is a number without a unit"),
+    ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
+]
+OTHERS = [
+    ({"output": "found.nc"}, "--output = 'found.nc': allowed with --table alone"),
+    ({"points": "3"}, "--points = '3': allowed with --propulsion alone"),
+]
+PREDICTIONS = OTHERS + MOVED + PRESSED + BODIES + DRIVEN + FOUND + UNCERTAIN
+
+SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
+PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
+PROPULSIONS = [
+    (PROPELLED | {"motion": "transverse"}, "MOTION = 'transverse': allowed is a self-propelled"),
+    (PROPELLED | {"speed": "1 mm/s"}, "--speed = '1 mm/s': allowed is none with --propulsion"),
+    (PROPELLED | {"amplitude": None}, "--amplitude: needed"),
+    (PROPELLED | {"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
+    (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),
+    (PROPELLED | {"points": "1"}, "allowed is a whole number"),
+    (PROPELLED | {"load": "40 N +- 1 N"}, "allowed is a quantity without uncertainty"),
+    (
+        PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"},
+        "allowed is a motion without a rotation",
+    ),
+]
+"""The same with --propulsion."""
