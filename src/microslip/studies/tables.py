@@ -8,6 +8,7 @@ from typing import Any, TypeVar, overload
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from pydantic import BaseModel
 
 from microslip.datasets import point_variables, sweep_dataset
 from microslip.foundation.canonical import canonical_json, sha256
@@ -81,13 +82,13 @@ def finished(
     coords: dict,
     title: str,
     answers: Answers,
-    settings: dict,
+    settings: BaseModel,
     **attributes: object,
 ) -> xr.Dataset:
-    """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
+    """A Dataset with its provenance; settings are kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.
     digest = sha256("\n".join(sorted(answers.keys)))
     described = sweep_dataset.provenance(
-        title, settings, answers.versions, results_digest=digest, **attributes
+        title, settings.model_dump(), answers.versions, results_digest=digest, **attributes
     )
     return xr.Dataset(variables, coords, described)

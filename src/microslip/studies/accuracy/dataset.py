@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.config.records import Accuracy, StudyPoint
+from microslip.config.settings import Accuracy
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
+from microslip.studies.requests import Point
 from microslip.studies.tables import Answers, columns, finished, value_of, variable
 from microslip.theory import paper
 
@@ -65,35 +65,36 @@ TRIAL_VARIABLES = {
 def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Accuracy. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     answers = Answers(answer)
-    points = list(settings.points.values())
-    coords = {"point": variable("point", [p.name for p in points], "name of the point", str)}
-    variables = _points(points, answers)
+    points = study.points(settings)
+    coords = {"point": variable("point", list(points), "name of the point", str)}
+    titles = [given.title or name for name, given in settings.points.items()]
+    variables = _points(list(points.values()), titles, answers)
     trials = _trials(settings, points, answers, variables)
+    tolerances = settings.map.tolerance[::-1]  # from loose to tight
     rows = TRIAL_VARIABLES.items()
     variables |= columns(
         "trial", {n: (trials[n], long_name, kind, units) for n, (kind, units, long_name) in rows}
     )
-    names = [point.name for point in points]
-    variables |= profiles.variables(trials, names, settings.map_tolerance)
+    variables |= profiles.variables(trials, list(points), tolerances)
     variables |= _scaling(settings, answers)
     for motion in study.MAP_MOTIONS:
         variables |= _map(settings, motion, answers)
         for name, values in (
-            ("velocity", settings.map_velocity),
-            ("amplitude", settings.map_amplitude[motion]),
+            ("velocity", settings.map.velocity),
+            ("amplitude", settings.map.amplitude[motion]),
         ):
             long_name = f"{name} in the groups of the motion {motion}"
             coords[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
     within = "largest error of mu_macro that the map allows"
-    coords["map_tolerance"] = variable("map_tolerance", settings.map_tolerance, within)
+    coords["map_tolerance"] = variable("map_tolerance", tolerances, within)
     models = list(study.SCALING_SIZES)
     coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
     measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
-    return finished(variables, coords, title, answers, asdict(settings), **measured)
+    return finished(variables, coords, title, answers, settings, **measured)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -120,13 +121,13 @@ def _timed_on(answers: Answers) -> str:
 # Points and trials
 
 
-def _points(points: list[StudyPoint], answers: Answers) -> dict:
+def _points(points: list[Point], titles: list[str], answers: Answers) -> dict:
     found = [_reference(point, answers) for point in points]
     amplitudes = [np.nan if p.amplitude is None else p.amplitude for p in points]
     return columns(
         "point",
         {
-            "point_title": ([p.title for p in points], "title of the point", str),
+            "point_title": (titles, "title of the point", str),
             "point_motion": ([p.motion for p in points], "what moves", str),
             "point_velocity": ([p.velocity for p in points], "forward velocity of the point"),
             "point_amplitude": (amplitudes, "amplitude of the point"),
@@ -138,7 +139,7 @@ def _points(points: list[StudyPoint], answers: Answers) -> dict:
     )
 
 
-def _reference(point: StudyPoint, answers: Answers) -> tuple[float, float, str]:
+def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
     """(mu, error, source) that the trials of a point are compared with."""
     request = study.truth(point)
     if request is None:
@@ -151,18 +152,18 @@ def _reference(point: StudyPoint, answers: Answers) -> tuple[float, float, str]:
 
 
 def _trials(
-    settings: Accuracy, points: list[StudyPoint], answers: Answers, of_points: dict
+    settings: Accuracy, points: dict[str, Point], answers: Answers, of_points: dict
 ) -> dict[str, list]:
     """Columns of TRIAL_VARIABLES, as lists."""
     rows: list[dict] = []
     fronts: dict[str, list] = {"front_seconds": [], "front_effort": []}
-    for i, point in enumerate(points):
+    for i, (name, point) in enumerate(points.items()):
         reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
         found = []
         for level, request in study.trials(settings, point):
             result = answers(request)
             if result.get("applies", True):
-                found.append(_row(point, level, request, result, reference))
+                found.append(_row(name, level, request, result, reference))
         rows += found
         # What the reference does not resolve does not count.
         error = [max(row["error"], floor) if row["converged"] else np.nan for row in found]
@@ -173,14 +174,12 @@ def _trials(
     )
 
 
-def _row(
-    point: StudyPoint, level: int, request: dict, result: dict, reference: float
-) -> dict[str, Any]:
+def _row(point: str, level: int, request: dict, result: dict, reference: float) -> dict[str, Any]:
     chosen = request["kind"] == "choice"
     used = result if chosen else request | result
     mu = value_of(result, "mu_macro")
     return {
-        "trial_point": point.name,
+        "trial_point": point,
         "trial_model": "auto" if chosen else request["model"],
         "trial_method": study.SHIPPED if chosen else request["method"],
         "trial_level": level,
@@ -206,16 +205,16 @@ def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
     points = study.map_points(settings, motion)
     best: dict[str, list] = {name: [] for name in ("", "_cells", "_seconds")}
     found = [_candidates(settings, point, answers) for point in points]
-    for tolerance in settings.map_tolerance:
+    for tolerance in settings.map.tolerance[::-1]:
         for models, cells, seconds, error in found:
             i = cheapest(seconds, error, tolerance)
             best[""].append("" if i is None else models[i])
             best["_cells"].append(0 if i is None else cells[i])
             best["_seconds"].append(np.nan if i is None else seconds[i])
     shape = (
-        len(settings.map_tolerance),
-        len(settings.map_amplitude[motion]),
-        len(settings.map_velocity),
+        len(settings.map.tolerance),
+        len(settings.map.amplitude[motion]),
+        len(settings.map.velocity),
     )
     described = {
         "": (str, "", "cheapest model within the tolerance, empty if there is none"),
@@ -231,7 +230,7 @@ def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
 
 
 def _candidates(
-    settings: Accuracy, point: StudyPoint, answers: Answers
+    settings: Accuracy, point: Point, answers: Answers
 ) -> tuple[list[str], list[int], list[float], np.ndarray]:
     """Models, cells, seconds and errors of all trials at a point of a map, as lists."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")

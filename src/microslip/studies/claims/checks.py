@@ -1,7 +1,7 @@
 """Checks of each part of the paper's statements by the runs, with margins and errors.
 
 One function for each name in statements.PARTS: (study, runs) -> list of verdicts.Check.
-study: records.Claims; runs(request) -> tables of results, see runs.Runs.
+study: settings.Claims; runs(request) -> tables of results, see runs.Runs.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.config.records import Claims
+from microslip.config.settings import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims import statements as criteria
 from microslip.studies.claims.runs import Run, Runs, friction

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from microslip.config.records import Claims
+from microslip.config.settings import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims import statements as criteria
 from microslip.studies.claims import static_limits as static

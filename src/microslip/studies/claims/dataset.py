@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
-from microslip.config.records import Claims
+from microslip.config.settings import Claims
 from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
@@ -49,7 +48,7 @@ BOUNDARY = 181
 def build(settings: Claims, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Claims. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     runs = Runs(answer)
     found = {part.name: collected(part.name, settings, runs) for part in PARTS}
@@ -61,7 +60,7 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     }
     coords = {name: variables.pop(name) for name in sorted(coordinates)}
     title = "The statements of the paper, judged"
-    return finished(variables, coords, title, runs, asdict(settings), comment=ABOUT)
+    return finished(variables, coords, title, runs, settings, comment=ABOUT)
 
 
 def collected(name: str, settings: Claims, runs: Runs) -> list[Check]:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import j0
 
-from microslip.config.load import STATIC_AMPLITUDES
-from microslip.config.records import Claims
+from microslip.config.records import STATIC_AMPLITUDES
+from microslip.config.settings import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Run, Runs, friction
 from microslip.studies.tables import value_of, variable

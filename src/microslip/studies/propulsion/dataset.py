@@ -1,12 +1,11 @@
 """The dataset propulsion: a line for every motion, from stall force to no-load velocity."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
-from microslip.config.records import Propulsion
+from microslip.config.settings import Propulsion
 from microslip.studies.propulsion import propulsion as study
 from microslip.studies.tables import Answers, columns, finished, value_of, variable
 
@@ -38,9 +37,10 @@ OF_POINT = {
 def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Propulsion. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     answers, motions = Answers(answer), list(settings.motions.values())
+    titles = [motion.title or name for name, motion in settings.motions.items()]
     results = [answers(study.line(settings, motion)) for motion in motions]
     lines: dict[str, tuple] = {
         name: ([value_of(result, name) for result in results], text)
@@ -59,7 +59,7 @@ def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     }
     coords = {
         "line": variable("line", list(settings.motions), "name of the motion", str),
-        "title": variable("line", [m.title for m in motions], "title of the line", str),
+        "title": variable("line", titles, "title of the line", str),
         "panel": variable("line", [m.panel for m in motions], "heading of its panels", str),
         "motion": variable("line", [m.motion for m in motions], "what moves", str),
         "amplitude": variable("line", [m.amplitude for m in motions], "amplitude of the motion"),
@@ -68,7 +68,7 @@ def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     variables = columns("line", lines) | columns(("line", "point"), points)
     title = "What motions drive a Hertz contact with, from stall force to no-load velocity"
     more = {"tolerance": settings.tolerance}
-    return finished(variables, coords, title, answers, asdict(settings), **more)
+    return finished(variables, coords, title, answers, settings, **more)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:

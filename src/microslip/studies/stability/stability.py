@@ -8,8 +8,7 @@ probes ask for the same tolerance.
 from dataclasses import dataclass
 from itertools import groupby
 
-from microslip.config.load import StudyPoint
-from microslip.config.records import Stability
+from microslip.config.settings import Stability
 from microslip.foundation.canonical import canonical_json, number
 from microslip.solver.method_names import SHIPPED, split
 from microslip.studies import requests
@@ -155,7 +154,7 @@ BLOCKS_TOGETHER = 5
 
 
 def axes(study: Stability) -> list[Axis]:
-    """The blocks that a records.Stability asks for, in the order of AXES."""
+    """The blocks that the settings ask for, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
@@ -199,10 +198,8 @@ def pieces(study: Stability) -> tuple[list, list]:
     return [piece for piece in long if piece], [piece for piece in short if piece]
 
 
-def _point(overrides: dict) -> StudyPoint:
-    place = ("motion", "velocity", "amplitude", "poisson")
-    given = {"poisson": 0.0} | {key: overrides[key] for key in place if key in overrides}
-    return StudyPoint(name="", title="", **given)
+def _point(overrides: dict) -> requests.Point:
+    return requests.Point(**{k: v for k, v in overrides.items() if k in requests.Point._fields})
 
 
 def _with_number(method: str, parameter: str, value: float) -> str:
