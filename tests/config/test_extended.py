@@ -10,7 +10,7 @@ import xarray as xr
 from stubs.sweep_stub import Solver
 
 import microslip
-from microslip.config import extended, load
+from microslip.config import load
 from microslip.config import records as settings
 from microslip.datasets import sweep_dataset, theory_limits
 from microslip.motions.by_name import MOTIONS, motion_named
@@ -41,14 +41,7 @@ def test_defaults_are_those_of_other_sweeps():
     assert (sweep.pressure, sweep.group, sweep.title) == ("hertz", "loops", "circle")
     assert (sweep.model, sweep.tolerance, sweep.poisson) == ("auto", 1e-3, (0.0,))
     assert list(found.grids) == ["bore", "circle"]
-    assert found.points_per_job == {"bore": 50, "circle": 50}
     assert found.of_sweep("circle")["histories"] == {}
-    assert json.loads(json.dumps(found.of_sweep("circle")))["sweep"]["group"] == "loops"
-
-
-def test_there_need_be_none():
-    found = load.from_mapping({"sweeps": PAPER})
-    assert found.extended == found.groups == {}
 
 
 def test_groups_keep_the_order_of_their_sweeps():
@@ -85,8 +78,7 @@ def test_a_figure_has_room_for_so_many():
         configured(**{f"a{i}": ratios for i in range(5)})
 
 
-def test_jobs_do_not_ask_the_solver(monkeypatch):
-    monkeypatch.setattr(extended, "_ask_solver", None)
+def test_jobs_do_not_ask_the_solver():
     given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
     found = load.from_mapping(given, ask_solver=False)
     assert found.extended["circle"].motion == "no such"

@@ -159,7 +159,7 @@ def _phrase(rule: dict) -> str:
         return rule["title"]
     kind = rule["type"]
     if kind == "array":
-        return f"a list of {allowed(options(rule['items']))}"
+        return f"a list of {allowed(options(rule['items'])).replace('a number', 'numbers')}"
     if kind == "object" and "properties" in rule:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
     if kind == "object":

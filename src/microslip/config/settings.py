@@ -26,6 +26,7 @@ from typing_extensions import TypedDict
 from microslip.config.axes import MOST_MAP_POINTS, expanded, refuse_crowd
 from microslip.config.certified import LOOSEST_POINTS
 from microslip.config.records import STATIC_AMPLITUDES, Refusal
+from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.solver import method_names
 
@@ -73,13 +74,13 @@ def _optional() -> Any:
 
 
 WHOLE = BeforeValidator(_whole)
-NonNegative = Annotated[float, Field(ge=0, le=1e6)]
-Positive = Annotated[float, Field(gt=0, le=1e6)]
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST["velocity"])]
+Positive = Annotated[float, Field(gt=0, le=LARGEST["velocity"])]
 Ratio = Annotated[float, Field(ge=0, le=0.5)]
 Tolerance = Annotated[float, Field(ge=1e-6, le=0.1)]
 Count = Annotated[int, Field(ge=2, le=100_000), WHOLE]
-Cells = Annotated[int, Field(ge=4, le=1000, multiple_of=2), WHOLE]
-Steps = Annotated[int, Field(ge=8, le=1_000_000, multiple_of=2), WHOLE]
+Cells = Annotated[int, Field(ge=4, le=LARGEST["cells"], multiple_of=2), WHOLE]
+Steps = Annotated[int, Field(ge=8, le=LARGEST["steps"], multiple_of=2), WHOLE]
 Points = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 
 # A character that is no space; no control characters, line breaks and halves of pairs.
@@ -229,13 +230,12 @@ class Adaptive(Settings):
 
 
 class SteadySweep(Settings):
-    """Forward motion with a steady rotation about the normal (Eq 12): continuous_bore.nc, Figures
-    3, 4 and 5."""
+    """Keys of `continuous_bore`, and of every other sweep."""
 
     velocity: Axis
     """Forward velocity: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq 28) or v0/(omega a) (Eq 13),
     as the motion has it. 0: static limit."""
-    poisson: Poisson = Poisson.of(0)
+    poisson: Poisson = Poisson.of(0.0)
     """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
     model: Model = "auto"
     """Contact model. auto takes the cheapest one that is exact for the motion."""
@@ -261,8 +261,7 @@ class SteadySweep(Settings):
 
 
 class Sweep(SteadySweep):
-    """Forward motion with an oscillation across it (Eq 1): transverse.nc, Figures 1 and 2; or with
-    an oscillating rotation about the normal (Eq 23): bore.nc, Figure 6."""
+    """Keys of an oscillation across the motion (Eq 1) and of an oscillating rotation (Eq 23)."""
 
     amplitude: Axis
     """Amplitude: y0/u_lim (Eq 2), or phi0/phi_lk(a/2) (Eq 27)."""
@@ -287,11 +286,12 @@ class _NamedSweep(SteadySweep):
 
 
 class ExtendedSweep(_NamedSweep):
-    """A sweep of any motion under any pressure."""
+    """A sweep of any motion under any pressure. Its group is drawn as maps if it has two amplitudes
+    and two velocities above 0 at least, else as lines: at most 12 maps, or 8 lines."""
 
     group: PlainName
-    """Figure that shows the sweep, extended_GROUP. Either all sweeps of a group have two amplitudes
-    and two velocities above 0 at least (maps), or none has (lines)."""
+    """Figure that shows the sweep, extended_GROUP, with the others of its group: all of them maps, or
+    all of them lines."""
 
 
 class DriveSweep(_NamedSweep):
@@ -422,7 +422,7 @@ class StudyPoint(Settings):
     """Forward velocity, in the unit of the motion, above 0."""
     amplitude: Positive | None = None
     """Amplitude, in the unit of the motion, above 0. continuous-bore has none."""
-    poisson: Ratio = 0
+    poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     title: Title | None = None
     """Title of the panel, drawn as it stands. null: the name of the point."""
@@ -494,7 +494,7 @@ class ModelMap(_Grid):
 class Accuracy(Settings):
     """Cost of accuracy: `snakemake accuracy` makes accuracy_cost.nc and its figures."""
 
-    methods: Methods = Field(default_factory=lambda: list(method_names.names()))
+    methods: Methods = Field(default=None, validate_default=True)
     """Methods to compare: files of src/microslip/solver/methods with hyphens, and shipped, which is
     microslip.solve. Numbers may follow: "admm:penalty=0.1". null: all."""
     points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = POINTS
@@ -510,7 +510,7 @@ class Accuracy(Settings):
 class Stability(Settings):
     """Failures of methods: `snakemake stability` makes stability.nc and its figure."""
 
-    methods: Methods = Field(default_factory=lambda: list(method_names.names()))
+    methods: Methods = Field(default=None, validate_default=True)
     """Methods, as for accuracy."""
     tolerance: Tolerance = 1e-3
     """Largest accepted error of mu_macro, absolute."""
@@ -527,7 +527,7 @@ class SelfPropelledMotion(Settings):
     """Motion, elliptic or normal with the numbers of its name."""
     amplitude: Positive
     """Amplitude, in the unit of the motion, above 0."""
-    poisson: Ratio = 0
+    poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     panel: Title
     """Heading of the panels that show it, together with others of the same heading."""
