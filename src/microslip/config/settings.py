@@ -290,8 +290,8 @@ class ExtendedSweep(_NamedSweep):
     and two velocities above 0 at least, else as lines: at most 12 maps, or 8 lines."""
 
     group: PlainName
-    """Figure that shows the sweep, extended_GROUP, with the others of its group: all of them maps, or
-    all of them lines."""
+    """Figure that shows the sweep, extended_GROUP, with the others of its group: all of them maps,
+    or all of them lines."""
 
 
 class DriveSweep(_NamedSweep):

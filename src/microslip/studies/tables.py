@@ -7,10 +7,10 @@ from typing import Any, TypeVar, overload
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from pydantic import BaseModel
 
-from microslip.datasets import point_variables, sweep_dataset
+from microslip.datasets import sweep_dataset
+from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json, sha256
 
 Kind = TypeVar("Kind")
@@ -38,6 +38,11 @@ class Answers:
             self.machines.append(machine)
         return record["result"]
 
+    def machine_of(self, result: dict) -> int:
+        """Index in `machines` of the computer that a time was measured on; -1: none."""
+        machine = result.get("machine")
+        return self.machines.index(machine) if machine in self.machines else -1
+
 
 @overload
 def value_of(result: dict, name: str) -> float: ...
@@ -53,22 +58,6 @@ def value_of(result: dict, name: str, kind: type = float) -> Any:
     if value is None:
         return np.nan if kind is float else kind()
     return kind(value)
-
-
-def variable(
-    dims: str | tuple, values: ArrayLike, long_name: str, kind: type = float, units: str = "1"
-) -> tuple:
-    """A variable of a dataset with its attributes; kind: type of its values."""
-    values = np.asarray(values).astype(object if kind is str else kind)
-    return dims, values, point_variables.attributes(kind, long_name, units)
-
-
-def flags(dims: str | tuple, values: ArrayLike, long_name: str, meanings: tuple) -> tuple:
-    """A variable of small numbers that stand for words."""
-    dims, values, about = variable(dims, values, long_name, np.int8)
-    del about["units"]
-    numbers = np.arange(len(meanings), dtype=np.int8)
-    return dims, values, about | {"flag_values": numbers, "flag_meanings": " ".join(meanings)}
 
 
 def columns(dims: str | tuple, table: dict) -> dict:

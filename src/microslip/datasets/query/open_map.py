@@ -19,22 +19,9 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.records import MOTION_OF_SWEEP
-from microslip.datasets.certified_map import is_of_drift
 from microslip.datasets.netcdf import group_names, refuse_oversized
-from microslip.datasets.query.accessor import Friction
-from microslip.datasets.query.answers import SOURCES
-from microslip.datasets.query.drift import Drift
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
-
-__all__ = ["SOURCES", "Drift", "Friction", "open_map"]
-
-
-@xr.register_dataset_accessor("microslip")
-def accessor(dataset: xr.Dataset) -> Friction | Drift:
-    """The accessor `dataset.microslip`: Drift for certified maps over forces, else Friction."""
-    return Drift(dataset) if is_of_drift(dataset) else Friction(dataset)
-
 
 SOLVED = {"mu_macro", "velocity_error"}
 """Variables of which the dataset of a sweep has one at least."""

@@ -10,18 +10,19 @@ import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
 from microslip.config.settings import Accuracy
+from microslip.datasets.variables import variable
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
 from microslip.studies.requests import Point
-from microslip.studies.tables import Answers, columns, finished, value_of, variable
+from microslip.studies.tables import Answers, columns, finished, value_of
 from microslip.theory import paper
 
 MEASURED = (
     "seconds are CPU times measured in the runs that made this file: medians, compiled, after one "
-    "run that is not timed. They belong to the machine, see timed_on, and vary a little; all other "
-    "values are reproducible."
+    "run that is not timed. They belong to the computers in the group machines and vary a little; "
+    "all other values are reproducible."
 )
 
 GROUPS = {
@@ -34,6 +35,7 @@ GROUPS = {
     )
     for motion in study.MAP_MOTIONS
 }
+GROUPS["machines"] = ("Computers that times were measured on", ("machine",))
 GROUPS["profile"] = (
     "How much dearer than the best a model or a method is",
     ("competitor", "map_tolerance", "point"),
@@ -56,6 +58,7 @@ TRIAL_VARIABLES = {
     "effort": (float, "1", "iterations of the step solver times unknowns"),
     "converged": (bool, "", "the run says that it converged"),
     "reason": (str, "", "why the run did not converge, empty if it did"),
+    "trial_machine": (np.int32, "1", "computer of the time, an index of the group machines"),
     "claimed_error": (float, "1", "error that the result claims for itself, where it claims one"),
     "front_seconds": (bool, "", "no trial of the point is faster and as accurate"),
     "front_effort": (bool, "", "no trial of the point takes less effort and is as accurate"),
@@ -93,6 +96,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     models = list(study.SCALING_SIZES)
     coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
+    variables |= columns("machine", _machines(answers.machines))
     measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
     return finished(variables, coords, title, answers, settings, **measured)
 
@@ -107,6 +111,14 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
             f"{point}: {own.sum()} trials, {bad or 'none'} not converged, "
             f"reference within {error:.1e}"
         )
+
+
+def _machines(machines: list[dict]) -> dict[str, tuple]:
+    return {
+        "machine_cpu": ([m["cpu"] for m in machines], "model of the processor", str),
+        "machine_host": ([m["host"] for m in machines], "name of the computer", str),
+        "machine_threads": ([m["threads"] for m in machines], "threads of a run", np.int32),
+    }
 
 
 def _timed_on(answers: Answers) -> str:
@@ -164,6 +176,7 @@ def _trials(
             result = answers(request)
             if result.get("applies", True):
                 found.append(_row(name, level, request, result, reference))
+                found[-1]["trial_machine"] = answers.machine_of(result)
         rows += found
         # What the reference does not resolve does not count.
         error = [max(row["error"], floor) if row["converged"] else np.nan for row in found]

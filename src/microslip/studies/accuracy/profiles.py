@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.datasets.variables import variable
 from microslip.solver.method_names import SHIPPED, method_named
-from microslip.studies.tables import variable
 
 MODELS = "models"
 CHOSEN = "auto"

@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.settings import Claims
+from microslip.datasets.variables import flags, variable
 from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
 from microslip.studies.claims.statements import PARTS, STATEMENTS
 from microslip.studies.claims.verdicts import Check
-from microslip.studies.tables import columns, finished, flags, value_of, variable
+from microslip.studies.tables import columns, finished, value_of
 from microslip.theory import hertz, paper
 
 ABOUT = (

@@ -6,8 +6,9 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.settings import Propulsion
+from microslip.datasets.variables import variable
 from microslip.studies.propulsion import propulsion as study
-from microslip.studies.tables import Answers, columns, finished, value_of, variable
+from microslip.studies.tables import Answers, columns, finished, value_of
 
 GROUPS: dict = {}
 """All of it is over lines and their points."""

@@ -7,9 +7,10 @@ import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
 from microslip.config.settings import Stability
+from microslip.datasets.variables import flags, variable
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
-from microslip.studies.tables import Answers, finished, flags, value_of, variable
+from microslip.studies.tables import Answers, finished, value_of
 
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
