@@ -13,8 +13,9 @@ from stubs.eq6_map import map_of
 
 import microslip
 from microslip.datasets.query import beyond
+from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.interpolation import Axis, Table
-from microslip.datasets.query.open_map import SOURCES, open_map
+from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.sweeps import sealed_files
 from microslip.sweeps.sealed_files import CacheError

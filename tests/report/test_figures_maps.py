@@ -12,7 +12,7 @@ import test_figures_groups as groups
 import xarray as xr
 from matplotlib.colors import to_rgb
 
-from microslip.datasets.query import open_map
+from microslip.datasets.query import accessor
 from microslip.report.figures import drawing, map_panel, signed, small_maps, ticks
 from microslip.report.figures import style as look
 from microslip.report.figures.surface import refined
@@ -101,7 +101,7 @@ def test_the_surface_is_that_of_friction_at():
     dataset = mapped()
     x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     assert min(fine.shape) > 150
-    said = open_map.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
     assert np.all(away <= said["mu_macro_error"].values)
     assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone

@@ -1,6 +1,5 @@
 """What the workflow is made of besides its rules: captions, pages about datasets, its layout."""
 
-import re
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace

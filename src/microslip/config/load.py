@@ -242,7 +242,7 @@ def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
         if (axis := getattr(given, drive, None)) is not None
     )
     of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(given, "amplitude", None)
-    more = {}
+    more: dict[str, Any] = {}
     if not of_paper:
         if not drives and not hasattr(given, "group"):
             raise Refusal("missing; required: force or stiffness")

@@ -5,10 +5,7 @@ parsed.
 """
 
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from microslip.config.settings import Accuracy, Claims, Propulsion, Stability
+from typing import Any
 
 # Sweeps are named like their datasets, motions as on the command line.
 MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
@@ -146,10 +143,10 @@ class Configuration:
     drives: dict  # name -> Sweep, of contacts that are pulled
     points_per_job: dict  # name of a sweep -> int; no dataset depends on it
     histories: dict  # transverse, field, transients -> dict of settings
-    accuracy: "Accuracy"
-    stability: "Stability"
-    claims: "Claims"
-    propulsion: "Propulsion"
+    accuracy: Any  # settings.Accuracy, and so on
+    stability: Any
+    claims: Any
+    propulsion: Any
     certified: dict = field(default_factory=dict)  # name -> CertifiedMap
 
     @property

@@ -68,9 +68,13 @@ def _kind(value: object) -> str | None:
     return "(number)" if isinstance(value, int | float) else None
 
 
+def _no_default(rule: dict[str, Any]) -> None:
+    del rule["default"]
+
+
 def _optional() -> Any:
     """A key that may be left out but is not null."""
-    return Field(default=None, json_schema_extra=lambda rule: rule.pop("default"))
+    return Field(default=None, json_schema_extra=_no_default)
 
 
 WHOLE = BeforeValidator(_whole)
@@ -379,23 +383,33 @@ class Histories(Settings):
 
 
 def _once(values: list[str] | None) -> list[str] | None:
-    twice = next((v for i, v in enumerate(values or ()) if v in (values or ())[:i]), None)
+    names = values or []
+    twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
     if twice is not None:
         raise Refusal(f"{twice} occurs twice; allowed: different values")
     return values
 
 
-def _methods(values: list[str] | None) -> list[str]:
-    for i, text in enumerate(values or ()):
+def _known(methods: list[str]) -> list[str]:
+    for i, text in enumerate(methods):
         try:
             method_names.check(text)
         except InputError as error:
             raise Refusal(f"{error.value!r}: {error.allowed}", f"[{i}]") from None
-    return list(method_names.names()) if values is None else values
+    return methods
 
 
-Names = Annotated[Annotated[list[str], Field(min_length=1)] | None, AfterValidator(_once)]
-Methods = Annotated[Names, AfterValidator(_methods)]
+def _every(methods: Any) -> Any:
+    return list(method_names.names()) if methods is None else methods
+
+
+_Names = Annotated[list[str], Field(min_length=1)]
+Methods = Annotated[
+    _Names,
+    BeforeValidator(_every, json_schema_input_type=_Names | None),
+    AfterValidator(_once),
+    AfterValidator(_known),
+]
 Block = Literal[
     "steps",
     "slow-transverse",
@@ -438,7 +452,7 @@ class StudyPoint(Settings):
         return self
 
 
-def _point(motion: str, velocity: float, amplitude: float | None, title: str) -> Any:
+def _point(motion: Any, velocity: float, amplitude: float | None, title: str) -> Any:
     return StudyPoint(motion=motion, velocity=velocity, amplitude=amplitude, title=title)
 
 

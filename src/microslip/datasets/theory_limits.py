@@ -59,7 +59,7 @@ def variables(sweep: Sweep) -> dict:
         axes = [_axis(sweep, dim) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))
-        about = {"description": form.description} if form.description else {}
+        about: dict = {"description": form.description} if form.description else {}
         found[name] = variable(form.arguments[::-1], values, form.long_name, **about)
     return found
 

@@ -66,11 +66,7 @@ def choice(point: Point, tolerance: float, repeats: int) -> dict:
 
 
 def probe(
-    point: Point,
-    method: str,
-    tolerance: float,
-    cells: int | None = None,
-    steps: int | None = None,
+    point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
 ) -> dict:
     """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
     tolerance."""

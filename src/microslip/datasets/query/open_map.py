@@ -80,10 +80,7 @@ def open_map(
 
 
 def _found(
-    name: str | os.PathLike[str],
-    results: str | os.PathLike[str],
-    chunks: object,
-    group: str | None,
+    name: str | os.PathLike[str], results: str | os.PathLike[str], chunks: object, group: str | None
 ) -> xr.Dataset:
     path = Path(name)
     if path.suffix != ".nc":

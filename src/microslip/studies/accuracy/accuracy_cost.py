@@ -54,10 +54,7 @@ def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
     for method in study.methods:
         for model in models_for(method, point.motion, point.poisson):
             for k, level, tolerance in ladder(model, method, study.levels):
-                yield (
-                    k,
-                    requests.trial(point, model, method, level, tolerance, study.repeats),
-                )
+                yield (k, requests.trial(point, model, method, level, tolerance, study.repeats))
     if SHIPPED in study.methods:
         for k, tolerance in enumerate(CHOICE_TOLERANCES):
             yield k, requests.choice(point, tolerance, study.repeats)

@@ -96,7 +96,8 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     models = list(study.SCALING_SIZES)
     coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
-    variables |= columns("machine", _machines(answers.machines))
+    if answers.machines:
+        variables |= columns("machine", _machines(answers.machines))
     measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
     return finished(variables, coords, title, answers, settings, **measured)
 

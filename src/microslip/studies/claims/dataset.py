@@ -9,10 +9,11 @@ import xarray as xr
 
 from microslip.config.settings import Claims
 from microslip.datasets.variables import flags, variable
-from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
+from microslip.studies.claims import static_limits, verdicts
+from microslip.studies.claims.parts import PARTS
 from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
-from microslip.studies.claims.statements import PARTS, STATEMENTS
+from microslip.studies.claims.statements import STATEMENTS
 from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import columns, finished, value_of
 from microslip.theory import hertz, paper
@@ -52,7 +53,7 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     answer(request) -> record, such as batches.answer with a store.
     """
     runs = Runs(answer)
-    found = {part.name: collected(part.name, settings, runs) for part in PARTS}
+    found = {part.name: list(part.checks(settings, runs)) for part in PARTS}
     variables = _claims(found) | _parts(found) | _checks(found)
     variables |= static_limits.variables(settings, runs) | _patches(settings, runs)
     variables |= _runs(runs.found.values())
@@ -62,12 +63,6 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     coords = {name: variables.pop(name) for name in sorted(coordinates)}
     title = "The statements of the paper, judged"
     return finished(variables, coords, title, runs, settings, comment=ABOUT)
-
-
-def collected(name: str, settings: Claims, runs: Runs) -> list[Check]:
-    """The checks of a part by its name: list of verdicts.Check."""
-    module = checks if hasattr(checks, name) else checks_static
-    return getattr(module, name)(settings, runs)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:

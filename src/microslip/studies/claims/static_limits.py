@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import j0
 
 from microslip.config.records import STATIC_AMPLITUDES
@@ -56,7 +57,7 @@ def limit(study: Claims, runs: Runs, motion: str, amplitude: float) -> Limit:
     return Limit(value, rounding + error + abs(resolved - value), (closed, rings))
 
 
-def asymptote(amplitude: np.ndarray) -> np.ndarray:
+def asymptote(amplitude: ArrayLike) -> np.ndarray:
     """Static limit of the oscillating bore at large amplitudes, where the stick zone is small.
 
     There its radius is c = (4/e) exp(-D(1/2) amplitude), the share of the bound that the rotation
