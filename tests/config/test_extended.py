@@ -300,14 +300,6 @@ def friction(monkeypatch, tmp_path):
     return microslip.open_map("circle", tmp_path).friction
 
 
-def test_within_the_map_friction_is_interpolated(friction):
-    answer = friction.at([0.3, 2.0], [0.7, 1.9])
-    v, a = answer.velocity, answer.amplitude
-    off = abs(answer.mu_macro - v / (1 + v + a))
-    assert (off <= answer.mu_macro_error).all()
-    assert (answer.mu_macro_error < 0.02).all()
-
-
 @pytest.mark.slow
 def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
     for place, said in (
