@@ -46,12 +46,6 @@ def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
     )
 
 
-def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
-    assert set(ladders.LADDERS) == set(MODELS)
-    assert single_run.applies("transverse", 0.0, "cartesian", "paper") == ""
-    assert paper.METHOD.resolution == (paper.CELLS, 1, paper.STEPS_PER_PERIOD)
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_ladders_climb_in_all_directions_at_once_and_tighten(model):
     rungs = ladders.ladder(model, "shipped", 6)
@@ -114,12 +108,6 @@ def test_references_are_ordinary_points_and_tight():
     assert accuracy_cost.truth(Point("transverse", 0.1, 0.5, 0.5))["tolerance"] == "3e-5"
     on_map = accuracy_cost.map_truth(study, study.points["mid"])
     assert on_map["tolerance"] == "0.0001"
-
-
-def test_without_the_shipped_method_there_is_no_choice_of_it():
-    study = configured({"methods": ["euler"]}).accuracy
-    found = [r for _, r in accuracy_cost.trials(study, study.points["mid"])]
-    assert {r["method"] for r in found} == {"euler"}
 
 
 @pytest.mark.parametrize("study", registry.DATASETS)
@@ -247,15 +235,6 @@ def test_a_time_is_the_median_after_a_first_call(monkeypatch):
     result, seconds = evaluate.timed(clock.run, 5)
     assert result == {"call": 1}
     assert (clock.calls, seconds) == (6, pytest.approx(0.2))
-
-
-def test_long_runs_are_timed_less_often(monkeypatch):
-    clock = Clock(monkeypatch, 1.5)
-    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(1.5)
-    assert clock.calls == 3
-    clock = Clock(monkeypatch, 60.0)
-    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(60.0)
-    assert clock.calls == 2
 
 
 def test_compiling_is_no_part_of_a_time(monkeypatch):
@@ -462,14 +441,6 @@ def test_exponents_of_power_laws(power, count):
     assert fronts.exponent(sizes[::-1], 0.7 * sizes[::-1] ** power) == pytest.approx(
         power, abs=1e-9
     )
-
-
-def test_an_exponent_is_that_of_large_sizes():
-    sizes = np.array([1.0, 2, 4, 8, 16, 32, math.nan])
-    values = np.where(sizes < 8, 100.0, sizes**2)
-    assert fronts.exponent(sizes, values) == pytest.approx(2.0)
-    assert math.isnan(fronts.exponent([1.0, 2.0], [1.0, 0.0]))
-    assert math.isnan(fronts.exponent([], []))
 
 
 # Under a pressure

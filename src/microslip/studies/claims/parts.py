@@ -1,8 +1,8 @@
 """Parts of the paper's statements, and the checks that judge them.
 
-A part has a function (study, runs) -> checks. Most parts compare the friction of requests with a
-formula; `_compared` and `_at_limit` make their functions. The error of a margin is that of the
-runs behind it.
+A part has a function (study, runs) -> checks. Most parts compare values of runs with a formula:
+`_judged` makes their functions from a source of values, the formula and the margin. The error of a
+margin is that of the values behind it.
 """
 
 from __future__ import annotations
@@ -88,75 +88,109 @@ def within(limit: float) -> Margin:
     return lambda value, against: limit - abs(value - against)
 
 
-# Friction against a formula
+# Values against a formula
+
+Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
+"""Place, value, its error and the runs behind it, one after another."""
 
 
-def _compared(
-    requests: Callable[[Claims], Iterable[dict]],
-    formula: Callable[..., Any],
-    margin: Margin,
-    names: tuple[str, ...] = ("amplitude",),
-) -> Checks:
-    """Checks of requested friction against formula(*numbers of the request with these names)."""
+def _judged(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
+    """Checks of values against formula(*numbers of the place)."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        for request in requests(study):
-            run = runs(request)
-            mu, error = friction(run)
-            place = {name: float(request[name]) for name in names}
+        for place, value, error, behind in values(study, runs):
             against = formula(*place.values())
-            yield check(mu, against, margin(mu, against), error, [run], **place)
+            yield check(value, against, margin(value, against), error, behind, **place)
 
     return checks
 
 
-def _map(
-    motion: str,
-    formula: Callable[..., Any],
-    margin: Margin,
-    chosen: Callable[[float], bool] = lambda amplitude: True,
-) -> Checks:
-    """Checks of all points of a motion against formula(amplitude, velocity)."""
-    return _compared(
+def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Values:
+    """Friction of requested points; names: of the numbers of their place."""
+
+    def values(study: Claims, runs: Runs) -> Iterator[tuple]:
+        for request in requests(study):
+            run = runs(request)
+            yield {name: float(request[name]) for name in names}, *friction(run), [run]
+
+    return values
+
+
+def _map(motion: str, chosen: Callable[[float], bool] = lambda amplitude: True) -> Values:
+    """Friction at all points of a motion, by amplitude and velocity."""
+    return _friction(
         lambda study: (
             asked.point(study, motion, velocity, amplitude)
             for amplitude in filter(chosen, study.amplitude[motion])
             for velocity in asked.velocities(study)
         ),
-        formula,
-        margin,
-        ("amplitude", "velocity"),
+        "amplitude",
+        "velocity",
     )
 
 
-def _slow(
-    motion: str, chosen: Callable[[float], bool], velocity: float | None = None
-) -> Callable[[Claims], Iterable[dict]]:
-    """Points at a velocity, None: the smallest, for amplitudes with static friction."""
-    return lambda study: (
-        asked.point(
-            study, motion, asked.velocities(study)[0] if velocity is None else velocity, amplitude
-        )
-        for amplitude in filter(chosen, asked.limited(study, motion))
+def _slow(motion: str, chosen: Callable[[float], bool], velocity: float | None = None) -> Values:
+    """Friction at a velocity, None: the smallest, for amplitudes with static friction."""
+    return _friction(
+        lambda study: (
+            asked.point(
+                study, motion, asked.velocities(study)[0] if velocity is None else velocity, a
+            )
+            for a in filter(chosen, asked.limited(study, motion))
+        ),
+        "amplitude",
     )
 
 
-def _at_limit(
-    motion: str,
-    formula: Callable[[float], Any],
-    margin: Callable[[float, float, float], float],
-    chosen: Callable[[float], bool],
-) -> Checks:
-    """Checks at the static limit: margin(formula, limit, amplitude)."""
+def _limit(motion: str, chosen: Callable[[float], bool]) -> Values:
+    """The static limit by amplitude."""
 
-    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        for a in filter(chosen, asked.limited(study, motion)):
-            limit = static.limit(study, runs, motion, a)
-            against = float(formula(a))
-            found = margin(against, limit.value, a)
-            yield check(limit.value, against, found, limit.error, limit.runs, amplitude=a)
+    def values(study: Claims, runs: Runs) -> Iterator[tuple]:
+        for amplitude in filter(chosen, asked.limited(study, motion)):
+            limit = static.limit(study, runs, motion, amplitude)
+            yield {"amplitude": amplitude}, limit.value, limit.error, limit.runs
 
-    return checks
+    return values
+
+
+def _end(quantity: str) -> Values:
+    """The end of each transient. Its error: the change from half as many rings, and the change over
+    the last tenth of the way."""
+
+    def values(study: Claims, runs: Runs) -> Iterator[tuple]:
+        for start in asked.STARTS:
+            two = [runs(asked.transient(start, cells)) for cells in asked.CELLS]
+            fine, coarse = (np.asarray(run.result[quantity], float) for run in two)
+            tail = fine[-max(fine.size // 10, 2) :]
+            error = abs(fine[-1] - coarse[-1]) + np.abs(tail - fine[-1]).max()
+            yield {"velocity": asked.TRANSIENT_VELOCITY}, fine[-1], error, two
+
+    return values
+
+
+def _field(index: int) -> Values:
+    """A number of `_tractions`; its error is the change from half as many rings."""
+
+    def values(study: Claims, runs: Runs) -> Iterator[tuple]:
+        for velocity in asked.FIELD_VELOCITIES:
+            two = [runs(asked.field(velocity, cells)) for cells in asked.CELLS]
+            fine, coarse = (_tractions(run)[index] for run in two)
+            yield {"velocity": velocity}, fine, abs(fine - coarse), two
+
+    return values
+
+
+def _tractions(run: Run) -> tuple[float, float]:
+    """Least traction over its bound, and largest angle to Eq 15 in degrees."""
+    names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
+    lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
+    along = np.asarray(run.result["forward_position"], float)
+    size = np.hypot(lateral, forward)
+    wanted = paper.steady_bore_traction(across, along, float(run.request["velocity"]))
+    turned = np.arctan2(
+        wanted[0] * forward - wanted[1] * lateral, wanted[0] * lateral + wanted[1] * forward
+    )
+    return float((size / bound).min()), float(np.degrees(np.abs(turned).max()))
 
 
 def _below_one(amplitude: float) -> bool:
@@ -179,14 +213,12 @@ def _steady(amplitude: float, velocity: float) -> float:
     return float(paper.large_amplitude_bore(velocity))
 
 
-def _nearer_than_slider(zone: float, limit: float, amplitude: float) -> float:
-    return abs(float(paper.static_slider(amplitude)) - limit) - abs(zone - limit)
-
-
-def _far_limits(study: Claims) -> Iterator[dict]:
-    for amplitude in study.amplitude["bore"]:
-        if amplitude >= FAR:
-            yield asked.point(study, "bore", 0.0, amplitude)
+def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
+    for place, mu, error, behind in _limit("transverse", _below_one)(study, runs):
+        slider, zone = (
+            float(eq(place["amplitude"])) for eq in (paper.static_slider, paper.static_transverse)
+        )
+        yield check(mu, zone, abs(slider - mu) - abs(zone - mu), error, behind, **place)
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -210,52 +242,6 @@ def _steady_nears(study: Claims, runs: Runs) -> Iterator[Check]:
             margin = abs(other - eq) - abs(mu - eq)
             place = {"amplitude": amplitude, "velocity": velocity}
             yield check(mu, eq, margin, error + its_error, two, **place)
-
-
-# Continuous bore
-
-
-def _settles(quantity: str, formula: Callable[[float], Any]) -> Checks:
-    """Checks of the end of each transient. Its error: the change from half as many rings, and the
-    change over the last tenth of the way."""
-
-    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        against = float(formula(asked.TRANSIENT_VELOCITY))
-        for start in asked.STARTS:
-            two = [runs(asked.transient(start, cells)) for cells in asked.CELLS]
-            fine, coarse = (np.asarray(run.result[quantity], float) for run in two)
-            tail = fine[-max(fine.size // 10, 2) :]
-            error = abs(fine[-1] - coarse[-1]) + np.abs(tail - fine[-1]).max()
-            margin = within(AGREES)(fine[-1], against)
-            yield check(fine[-1], against, margin, error, two, velocity=asked.TRANSIENT_VELOCITY)
-
-    return checks
-
-
-def _fields(index: int, against: float, margin: Margin) -> Checks:
-    """Checks of a number of `_tractions`; its error is the change from half as many rings."""
-
-    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        for velocity in asked.FIELD_VELOCITIES:
-            two = [runs(asked.field(velocity, cells)) for cells in asked.CELLS]
-            fine, coarse = (_tractions(run)[index] for run in two)
-            error = abs(fine - coarse)
-            yield check(fine, against, margin(fine, against), error, two, velocity=velocity)
-
-    return checks
-
-
-def _tractions(run: Run) -> tuple[float, float]:
-    """Least traction over its bound, and largest angle to Eq 15 in degrees."""
-    names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
-    lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
-    along = np.asarray(run.result["forward_position"], float)
-    size = np.hypot(lateral, forward)
-    wanted = paper.steady_bore_traction(across, along, float(run.request["velocity"]))
-    turned = np.arctan2(
-        wanted[0] * forward - wanted[1] * lateral, wanted[0] * lateral + wanted[1] * forward
-    )
-    return float((size / bound).min()), float(np.degrees(np.abs(turned).max()))
 
 
 # Periods of the oscillating bore
@@ -321,217 +307,174 @@ def _rises(rows: Callable[[Claims], Iterable[list[dict]]], names: tuple[str, ...
     return checks
 
 
-def _rows(motion: str) -> Checks:
+def _limits(far: float = 0.0) -> Values:
+    """The static limit of the bore in closed form, from an amplitude on."""
+    return _friction(
+        lambda study: (
+            asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"] if a >= far
+        ),
+        "amplitude",
+    )
+
+
+def _limits_on_rings() -> Values:
+    return _friction(
+        lambda study: (
+            asked.resolved_limit(study, "bore", a) for a in asked.limited(study, "bore")
+        ),
+        "amplitude",
+    )
+
+
+def _something_left(limits: Values) -> Checks:
+    return _judged(limits, lambda amplitude: 0.0, lambda mu, _: mu - VANISHES)
+
+
+def _along(motion: str) -> Checks:
     return _rises(
         lambda study: [row for row in asked.rows(study) if row[0]["motion"] == motion],
         ("amplitude", "velocity"),
     )
 
 
+ZONE = paper.static_bore
 PARTS = (
     Part(
-        1, "rigid_below", "Eq 6 lies below the computed friction", _map("transverse", _rigid, above)
+        *(1, "rigid_below", "Eq 6 lies below the computed friction"),
+        _judged(_map("transverse"), _rigid, above),
     ),
     Part(
-        1,
-        "rigid_near",
-        f"... and within {SLIGHT:g} of it",
-        _map("transverse", _rigid, within(SLIGHT)),
+        *(1, "rigid_near", f"... and within {SLIGHT:g} of it"),
+        _judged(_map("transverse"), _rigid, within(SLIGHT)),
     ),
     Part(
-        1,
-        "rigid_below_squares",
+        *(1, "rigid_below_squares"),
         "Eq 6 lies below the friction of the paper's own run, at its smallest velocity and the "
         "largest amplitude",
         _rigid_below_squares,
         counts=False,
     ),
     Part(
-        2,
-        "slider_above",
-        "Eq 7 lies above the static limit",
-        _at_limit("transverse", paper.static_slider, lambda eq, mu, _: eq - mu, _below_one),
+        *(2, "slider_above", "Eq 7 lies above the static limit"),
+        _judged(_limit("transverse", _below_one), paper.static_slider, below),
     ),
+    Part(2, "zone_nearer", "Eq 11 is nearer to the static limit than Eq 7", _zone_nearer),
     Part(
-        2,
-        "zone_nearer",
-        "Eq 11 is nearer to the static limit than Eq 7",
-        _at_limit("transverse", paper.static_transverse, _nearer_than_slider, _below_one),
-    ),
-    Part(
-        2,
-        "slider_above_march",
+        *(2, "slider_above_march"),
         "Eq 7 lies above even the friction at the smallest velocity, a bound of the limit",
-        _compared(_slow("transverse", _below_one), paper.static_slider, below),
+        _judged(_slow("transverse", _below_one), paper.static_slider, below),
         counts=False,
     ),
     Part(
-        2,
-        "zone_above",
-        "Eq 11 lies above the static limit too",
-        _at_limit("transverse", paper.static_transverse, lambda eq, mu, _: eq - mu, _below_one),
+        *(2, "zone_above", "Eq 11 lies above the static limit too"),
+        _judged(_limit("transverse", _below_one), paper.static_transverse, below),
         counts=False,
     ),
     Part(
-        3,
-        "force_settles",
-        f"the force ends within {AGREES:g} of Eq 21, from each start",
-        _settles("force_forward", paper.bore_forward),
+        *(3, "force_settles", f"the force ends within {AGREES:g} of Eq 21, from each start"),
+        _judged(_end("force_forward"), paper.bore_forward, within(AGREES)),
     ),
     Part(
-        3,
-        "torque_settles",
-        f"the torque ends within {AGREES:g} of Eq 22, from each start",
-        _settles("torque", paper.bore_torque),
+        *(3, "torque_settles", f"the torque ends within {AGREES:g} of Eq 22, from each start"),
+        _judged(_end("torque"), paper.bore_torque, within(AGREES)),
     ),
     Part(
-        3,
-        "force_steady",
-        f"certified steady force within {AGREES:g} of Eq 21",
-        _compared(asked.steady, paper.bore_forward, within(AGREES), ("velocity",)),
+        *(3, "force_steady", f"certified steady force within {AGREES:g} of Eq 21"),
+        _judged(_friction(asked.steady, "velocity"), paper.bore_forward, within(AGREES)),
         counts=False,
     ),
     Part(
-        4,
-        "on_bound",
-        f"every traction is at least {ON_BOUND:g} of its bound",
-        _fields(0, ON_BOUND, above),
+        *(4, "on_bound", f"every traction is at least {ON_BOUND:g} of its bound"),
+        _judged(_field(0), lambda velocity: ON_BOUND, above),
     ),
     Part(
-        4,
-        "aligned",
+        *(4, "aligned"),
         f"every traction is within {ALIGNED:g} degrees of the rigid slip (Eq 15)",
-        _fields(1, ALIGNED, below),
+        _judged(_field(1), lambda velocity: ALIGNED, below),
     ),
     Part(
-        5,
-        "steady_near",
-        f"Eq 29 is within {GOOD:g}, at amplitudes from {LARGE_BORE:g} on",
-        _map("bore", _steady, within(GOOD), lambda amplitude: amplitude >= LARGE_BORE),
+        *(5, "steady_near", f"Eq 29 is within {GOOD:g}, at amplitudes from {LARGE_BORE:g} on"),
+        _judged(_map("bore", lambda amplitude: amplitude >= LARGE_BORE), _steady, within(GOOD)),
     ),
     Part(
-        5,
-        "steady_nears",
-        "Eq 29 gets nearer from one amplitude to the next",
+        *(5, "steady_nears", "Eq 29 gets nearer from one amplitude to the next"),
         _steady_nears,
         counts=False,
     ),
     Part(
-        5,
-        "steady_near_below",
+        *(5, "steady_near_below"),
         f"Eq 29 is within {GOOD:g} at amplitudes below {LARGE_BORE:g} too",
-        _map("bore", _steady, within(GOOD), lambda amplitude: amplitude < LARGE_BORE),
+        _judged(_map("bore", lambda amplitude: amplitude < LARGE_BORE), _steady, within(GOOD)),
         counts=False,
     ),
     Part(
-        6,
-        "bore_zone_near",
+        *(6, "bore_zone_near"),
         f"Eq 33 is within {GOOD:g} of the static limit, at amplitudes above {TURNING_BORE:g}",
-        _at_limit(
-            *("bore", paper.static_bore, lambda eq, mu, _: GOOD - abs(eq - mu), _above_turning)
-        ),
+        _judged(_limit("bore", _above_turning), ZONE, within(GOOD)),
     ),
     Part(
-        6,
-        "bore_zone_relative",
-        f"... and within {100 * RELATIVE:g} % of the limit's own value",
-        _at_limit(
-            "bore",
-            paper.static_bore,
-            lambda eq, mu, _: RELATIVE * mu - abs(eq - mu),
-            _above_turning,
-        ),
+        *(6, "bore_zone_relative", f"... and within {100 * RELATIVE:g} % of the limit's own value"),
+        _judged(_limit("bore", _above_turning), ZONE, lambda mu, eq: RELATIVE * mu - abs(eq - mu)),
     ),
     Part(
-        6,
-        "bore_zone_above",
+        *(6, "bore_zone_above"),
         f"Eq 33 lies above the static limit, at amplitudes below {TURNING_BORE:g}",
-        _at_limit("bore", paper.static_bore, lambda eq, mu, _: eq - mu, _below_turning),
+        _judged(_limit("bore", _below_turning), ZONE, below),
     ),
     Part(
-        6,
-        "bore_zone_seen",
+        *(6, "bore_zone_seen"),
         f"Eq 33 is within {GOOD:g} of the friction at the paper's smallest velocity, above "
         f"{TURNING_BORE:g}",
-        _compared(
-            _slow("bore", _above_turning, asked.PAPER_VELOCITY), paper.static_bore, within(GOOD)
-        ),
+        _judged(_slow("bore", _above_turning, asked.PAPER_VELOCITY), ZONE, within(GOOD)),
         counts=False,
     ),
     Part(
-        6,
-        "bore_zone_above_march",
+        *(6, "bore_zone_above_march"),
         "there Eq 33 lies above even the friction at the smallest velocity, a bound of the limit",
-        _compared(_slow("bore", _below_turning), paper.static_bore, below),
+        _judged(_slow("bore", _below_turning), ZONE, below),
         counts=False,
     ),
     Part(
-        6,
-        "bore_zone_printed",
+        *(6, "bore_zone_printed"),
         f"Eq 33 as printed, without the square, is within {GOOD:g}, above {TURNING_BORE:g}",
-        _at_limit(
-            "bore", paper.static_bore_printed, lambda eq, mu, _: GOOD - abs(eq - mu), _above_turning
-        ),
+        _judged(_limit("bore", _above_turning), paper.static_bore_printed, within(GOOD)),
         counts=False,
     ),
     Part(
-        7,
-        "some_sticks",
-        "at every phase part of the contact sticks, more than one cell",
+        *(7, "some_sticks", "at every phase part of the contact sticks, more than one cell"),
         _periods(_some_sticks),
     ),
     Part(
-        7,
-        "alternates",
+        *(7, "alternates"),
         f"when least sticks one side leads by {ALTERNATES:g} of it, the other half a period later",
         _periods(_alternates),
     ),
     Part(
-        8,
-        "limit_positive",
-        f"the static limit is above {VANISHES:g} (closed form)",
-        _compared(
-            lambda study: (asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"]),
-            lambda amplitude: 0.0,
-            lambda mu, _: mu - VANISHES,
-        ),
+        *(8, "limit_positive", f"the static limit is above {VANISHES:g} (closed form)"),
+        _something_left(_limits()),
     ),
     Part(
-        8,
-        "limit_positive_rings",
+        *(8, "limit_positive_rings"),
         f"the static limit is above {VANISHES:g} on rings too, with no closed form",
-        _compared(
-            lambda study: (
-                asked.resolved_limit(study, "bore", a) for a in asked.limited(study, "bore")
-            ),
-            lambda amplitude: 0.0,
-            lambda mu, _: mu - VANISHES,
-        ),
+        _something_left(_limits_on_rings()),
         counts=False,
     ),
     Part(
-        8,
-        "limit_asymptote",
+        *(8, "limit_asymptote"),
         f"from amplitude {FAR:g} on it is within {100 * RELATIVE:g} % of an asymptote that never "
         "vanishes",
-        _compared(_far_limits, static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)),
+        _judged(_limits(FAR), static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)),
     ),
     Part(
-        9,
-        "rises_transverse",
-        "transverse: from one velocity to the next friction rises",
-        _rows("transverse"),
+        *(9, "rises_transverse", "transverse: from one velocity to the next friction rises"),
+        _along("transverse"),
     ),
     Part(
-        9,
-        "rises_bore",
-        "oscillating bore: from one velocity to the next friction rises",
-        _rows("bore"),
+        *(9, "rises_bore", "oscillating bore: from one velocity to the next friction rises"),
+        _along("bore"),
     ),
     Part(
-        9,
-        "rises_continuous_bore",
-        "continuous bore: likewise",
+        *(9, "rises_continuous_bore", "continuous bore: likewise"),
         _rises(lambda study: [asked.steady(study)], ("velocity",)),
     ),
 )
