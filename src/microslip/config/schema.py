@@ -89,10 +89,9 @@ def _line(error: "ErrorDetails") -> str:
     if kind == "missing":
         required = next(r["required"] for r in _rules(keys[:-1]) if "required" in r)
         return f"{_dotted(keys)}: missing; required: {', '.join(required)}"
-    rules = list(_rules(keys))
-    if error["loc"][-1:] == ("[key]",):
-        value = keys.pop()
-        rules = [rule["propertyNames"] for rule in _rules(keys)]
+    of_name = error["loc"][-1:] == ("[key]",)
+    keys = _keys(error["loc"][:-2]) if of_name else keys
+    rules = [rule["propertyNames"] if of_name else rule for rule in _rules(keys)]
     where = _dotted(keys) or "(top level)"
     if isinstance(value, float) and not math.isfinite(value):
         return f"{where}: {value} is not allowed; allowed: a finite number"
@@ -105,7 +104,7 @@ def _line(error: "ErrorDetails") -> str:
 
 def _keys(location: tuple[int | str, ...]) -> list[int | str]:
     """Keys and indices of a location, without the alternatives of unions and "[key]"."""
-    return [k for k in location if not (isinstance(k, str) and re.fullmatch(r"\(.*\)|\[key\]", k))]
+    return [key for key in location if key not in ("(list)", "(spacing)", "(number)", "[key]")]
 
 
 def _rules(keys: list[int | str]) -> Iterator[dict]:
