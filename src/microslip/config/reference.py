@@ -61,10 +61,9 @@ def _default(key: str, inner: dict[str, Any], rule: dict[str, Any]) -> str:
     if key in rule.get("required", ()):
         return "required"
     text = json.dumps(inner["default"]) if "default" in inner else ""
-    if 0 < len(text) <= LONGEST:
-        return f"`{text}`"
-    named = any("properties" in rule for rule in options(inner))
-    return "see below" if named else "as in config.yaml" if text else "none"
+    if text == "{}" and any("properties" in rule for rule in options(inner)):
+        return "see below"
+    return f"`{text}`" if 0 < len(text) <= LONGEST else "as in config.yaml" if text else "none"
 
 
 def main(path: str) -> None:

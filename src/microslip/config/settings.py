@@ -37,7 +37,11 @@ CONFIG = ConfigDict(
     allow_inf_nan=False,
     regex_engine="python-re",  # patterns look ahead
     use_attribute_docstrings=True,
+    validate_default=True,
+    defer_build=True,  # builds the validator of Root alone
 )
+PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
+"""For typed dicts, whose docstrings take long to extract."""
 MOST_LINES, MOST_PANELS = 8, 4
 """Lines of a panel of the propulsion figure, and its panels."""
 
@@ -74,7 +78,12 @@ def _no_default(rule: dict[str, Any]) -> None:
 
 def _optional() -> Any:
     """A key that may be left out but is not null."""
-    return Field(default=None, json_schema_extra=_no_default)
+    return Field(default=None, validate_default=False, json_schema_extra=_no_default)
+
+
+def _raw(value: Any) -> Any:
+    """A default as it would be written; it is validated like a given value."""
+    return Field(default=value)
 
 
 WHOLE = BeforeValidator(_whole)
@@ -114,26 +123,21 @@ Model = Literal["auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "ca
 # Axes
 
 
-@with_config(CONFIG)
+@with_config(PLAIN)
 class Range(TypedDict):
     """Coordinates from start to stop, both included, rounded to six significant digits."""
 
-    start: NonNegative
-    """First coordinate; above 0 for equal ratios."""
-    stop: NonNegative
-    """Last coordinate, above start."""
-    count: Annotated[int, Field(ge=2, le=100_000), WHOLE]
-    """Number of coordinates, start and stop included."""
+    start: Annotated[NonNegative, Field(description="First; above 0 for equal ratios.")]
+    stop: Annotated[NonNegative, Field(description="Last, above start.")]
+    count: Annotated[Count, Field(description="Number of coordinates.")]
 
 
-@with_config(CONFIG | ConfigDict(title="linear or log spacing"))
+@with_config(PLAIN | ConfigDict(title="linear or log spacing"))
 class Spacing(TypedDict, total=False):
     """One of the two spacings."""
 
-    linear: Range
-    """Equal distances from start to stop, both included."""
-    log: Range
-    """Equal ratios from start to stop, both included."""
+    linear: Annotated[Range, Field(description="Equal distances.")]
+    log: Annotated[Range, Field(description="Equal ratios.")]
 
 
 def _one(spacing: Spacing) -> Spacing:
@@ -239,7 +243,7 @@ class SteadySweep(Settings):
     velocity: Axis
     """Forward velocity: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq 28) or v0/(omega a) (Eq 13),
     as the motion has it. 0: static limit."""
-    poisson: Poisson = Poisson.of(0.0)
+    poisson: Poisson = _raw(0.0)
     """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
     model: Model = "auto"
     """Contact model. auto takes the cheapest one that is exact for the motion."""
@@ -316,16 +320,13 @@ class DriveSweep(_NamedSweep):
     """Damping beside the spring, over mu F_z / (u_lim omega). Number or axis."""
 
 
-@with_config(CONFIG)
+@with_config(PLAIN)
 class Sweeps(TypedDict, total=False):
     """Sweeps of the paper. One that is left out is not run."""
 
-    transverse: Sweep
-    """Forward motion with an oscillation across it (Eq 1): transverse.nc, Figures 1 and 2."""
-    bore: Sweep
-    """Forward motion with an oscillating rotation (Eq 23): bore.nc and Figure 6."""
-    continuous_bore: SteadySweep
-    """Forward motion with a steady rotation (Eq 12): continuous_bore.nc, Figures 3, 4 and 5."""
+    transverse: Annotated[Sweep, Field(description="Oscillation across the motion (Eq 1).")]
+    bore: Annotated[Sweep, Field(description="Oscillating rotation (Eq 23).")]
+    continuous_bore: Annotated[SteadySweep, Field(description="Steady rotation (Eq 12).")]
 
 
 # Single runs
@@ -371,11 +372,11 @@ class Transients(Settings):
 class Histories(Settings):
     """Single runs that Figures 1, 3 and 5 show, stored in the dataset of their motion."""
 
-    transverse: ForceHistory = ForceHistory()
+    transverse: ForceHistory = _raw({})
     """Forces over the first periods of a transverse oscillation (Figure 1)."""
-    field: TractionField = TractionField()
+    field: TractionField = _raw({})
     """Traction field of the steady continuous bore (Figure 3)."""
-    transients: Transients = Transients()
+    transients: Transients = _raw({})
     """Continuous bore from three initial states to its steady state (Figure 5)."""
 
 
@@ -452,26 +453,26 @@ class StudyPoint(Settings):
         return self
 
 
-def _point(motion: Any, velocity: float, amplitude: float | None, title: str) -> Any:
-    return StudyPoint(motion=motion, velocity=velocity, amplitude=amplitude, title=title)
+def _points(*rows: tuple[str, str, float, float | None, str]) -> dict[str, dict]:
+    keys = ("motion", "velocity", "amplitude", "title")
+    return {name: dict(zip(keys, row, strict=True)) for name, *row in rows}
 
 
-POINTS = {
-    "large-amplitude": _point("transverse", 0.5, 3, "large amplitude"),
-    "mid": _point("transverse", 0.1, 0.5, "mid-range"),
-    "near-static": _point("transverse", 0.002, 0.5, "near the static limit"),
-    "critical-amplitude": _point("transverse", 0.02, 1, "critical amplitude"),
-    "tiny-amplitude": _point("transverse", 0.05, 0.05, "tiny amplitude"),
-    "incompressible": StudyPoint(
-        motion="transverse", velocity=0.1, amplitude=0.7, poisson=0.5, title="incompressible"
-    ),
-    "steady-bore": _point("continuous-bore", 0.8, None, "steady bore"),
-    "slow-bore": _point("bore", 0.005, 1, "slow bore"),
-    "bore": _point("bore", 0.2, 1, "bore"),
-    "large-bore": _point("bore", 0.5, 5, "bore, centre of rotation inside"),
-    "tiny-bore": _point("bore", 0.05, 0.1, "tiny bore"),
-}
+POINTS = _points(
+    ("large-amplitude", "transverse", 0.5, 3.0, "large amplitude"),
+    ("mid", "transverse", 0.1, 0.5, "mid-range"),
+    ("near-static", "transverse", 0.002, 0.5, "near the static limit"),
+    ("critical-amplitude", "transverse", 0.02, 1.0, "critical amplitude"),
+    ("tiny-amplitude", "transverse", 0.05, 0.05, "tiny amplitude"),
+    ("incompressible", "transverse", 0.1, 0.7, "incompressible"),
+    ("steady-bore", "continuous-bore", 0.8, None, "steady bore"),
+    ("slow-bore", "bore", 0.005, 1.0, "slow bore"),
+    ("bore", "bore", 0.2, 1.0, "bore"),
+    ("large-bore", "bore", 0.5, 5.0, "bore, centre of rotation inside"),
+    ("tiny-bore", "bore", 0.05, 0.1, "tiny bore"),
+)
 """Points of the shipped study of accuracy."""
+POINTS["incompressible"]["poisson"] = 0.5
 
 
 class _Grid(Settings):
@@ -495,36 +496,36 @@ class _Grid(Settings):
 class ModelMap(_Grid):
     """Grid of the maps that show the cheapest model within a tolerance, at Poisson's ratio 0."""
 
-    velocity: MapAxis = Axis.of({"log": {"start": 0.001, "stop": 10, "count": 13}})
+    velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
     """Forward velocities of both motions, above 0."""
-    amplitude_transverse: MapAxis = Axis.of({"log": {"start": 0.1, "stop": 3, "count": 9}})
+    amplitude_transverse: MapAxis = _raw({"log": {"start": 0.1, "stop": 3, "count": 9}})
     """Amplitudes of the oscillation y0/u_lim, above 0."""
-    amplitude_bore: MapAxis = Axis.of({"log": {"start": 0.1, "stop": 5, "count": 9}})
+    amplitude_bore: MapAxis = _raw({"log": {"start": 0.1, "stop": 5, "count": 9}})
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0."""
-    tolerance: Tolerances = Tolerances.of([0.01, 0.001])
+    tolerance: Tolerances = _raw([0.01, 0.001])
     """Errors of mu_macro, absolute; a map for each."""
 
 
 class Accuracy(Settings):
     """Cost of accuracy: `snakemake accuracy` makes accuracy_cost.nc and its figures."""
 
-    methods: Methods = Field(default=None, validate_default=True)
+    methods: Methods = _raw(None)
     """Methods to compare: files of src/microslip/solver/methods with hyphens, and shipped, which is
     microslip.solve. Numbers may follow: "admm:penalty=0.1". null: all."""
-    points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = POINTS
+    points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
     """Points at which all methods and models run, by name; a panel each."""
     levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6
     """Levels of the resolution ladders, from the coarsest on."""
     repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
     """Readings of a time, of which the median counts."""
-    map: ModelMap = ModelMap()
+    map: ModelMap = _raw({})
     """Grid of the maps that show the cheapest model within a tolerance."""
 
 
 class Stability(Settings):
     """Failures of methods: `snakemake stability` makes stability.nc and its figure."""
 
-    methods: Methods = Field(default=None, validate_default=True)
+    methods: Methods = _raw(None)
     """Methods, as for accuracy."""
     tolerance: Tolerance = 1e-3
     """Largest accepted error of mu_macro, absolute."""
@@ -549,31 +550,25 @@ class SelfPropelledMotion(Settings):
     """Title of the line, drawn as it stands. null: the name."""
 
 
-def _motions() -> dict[str, SelfPropelledMotion]:
+def _motions() -> dict[str, dict]:
+    eight = "elliptic:forward_cycles=2,phase"
+    flat = "elliptic:forward=0.5,forward_cycles=2,phase=0"
     rows: dict[str, tuple[str, float, str, str]] = {
-        "eight": ("elliptic:forward_cycles=2,phase=0", 1, "loops", "eight"),
-        "eight-flat": (
-            *("elliptic:forward=0.5,forward_cycles=2,phase=0", 1),
-            *("loops", "eight, half as long"),
-        ),
-        "eight-ahead": ("elliptic:forward_cycles=2,phase=45", 1, "loops", "phase 45 degrees"),
-        "eight-behind": ("elliptic:forward_cycles=2,phase=-45", 1, "loops", "phase -45 degrees"),
-        "eight-large": (
-            *("elliptic:forward_cycles=2,phase=0", 3),
-            *("loops", "eight, three times as large"),
-        ),
+        "eight": (f"{eight}=0", 1.0, "loops", "eight"),
+        "eight-flat": (flat, 1.0, "loops", "eight, half as long"),
+        "eight-ahead": (f"{eight}=45", 1.0, "loops", "phase 45 degrees"),
+        "eight-behind": (f"{eight}=-45", 1.0, "loops", "phase -45 degrees"),
+        "eight-large": (f"{eight}=0", 3.0, "loops", "eight, three times as large"),
     }
     for name, motion, amplitude, panel in (
         ("pressed", "normal:forward=1,phase", 0.9, "forward to and fro, A 0.9"),
-        ("sliding", "normal:forward=1,load=0.2,phase", 4, "the same, sliding, A 4"),
+        ("sliding", "normal:forward=1,load=0.2,phase", 4.0, "the same, sliding, A 4"),
     ):
         for phase in range(60, 211, 30):
             title = f"phase {phase} degrees"
             rows[f"{name}-{phase}"] = f"{motion}={phase}", amplitude, panel, title
-    return {
-        name: SelfPropelledMotion(motion=motion, amplitude=amplitude, panel=panel, title=title)
-        for name, (motion, amplitude, panel, title) in rows.items()
-    }
+    keys = ("motion", "amplitude", "panel", "title")
+    return {name: dict(zip(keys, row, strict=True)) for name, row in rows.items()}
 
 
 class Propulsion(Settings):
@@ -583,7 +578,9 @@ class Propulsion(Settings):
     """Largest accepted error of a force, over mu times the mean normal load."""
     points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
     """Points of a line from stall to no load, its ends included."""
-    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _motions()
+    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = Field(
+        _motions()
+    )
     """Motions by name, a line each."""
 
     @model_validator(mode="after")
@@ -606,12 +603,12 @@ class Claims(_Grid):
 
     tolerance: Tolerance = 5e-4
     """Largest accepted error of mu_macro, absolute."""
-    velocity: PositiveAxis = Axis.of([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
+    velocity: PositiveAxis = _raw([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
     """Forward velocities of both motions, above 0. The smallest one of the paper, 0.005, is added
     where a statement needs it."""
-    amplitude_transverse: PositiveAxis = Axis.of([0.25, 0.5, 0.75, 1, 2, 3])
+    amplitude_transverse: PositiveAxis = _raw([0.25, 0.5, 0.75, 1, 2, 3])
     """Amplitudes of the oscillation y0/u_lim, above 0; at least one up to 1."""
-    amplitude_bore: PositiveAxis = Axis.of([0.5, 1, 2, 3, 5, 10])
+    amplitude_bore: PositiveAxis = _raw([0.5, 1, 2, 3, 5, 10])
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0; at least one up to 5."""
     cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
     """Rings, and angular points on half the disc, of the periods seen from inside, even. Half as
@@ -650,13 +647,13 @@ class Root(Settings):
     and a figure of each group."""
     drives: dict[PlainName, DriveSweep] = {}
     """Sweeps of contacts that a force or a spring drives, by name: `snakemake drives`."""
-    histories: Histories = Histories()
+    histories: Histories = _raw({})
     """Single runs that Figures 1, 3 and 5 show."""
-    accuracy: Accuracy = Accuracy()
+    accuracy: Accuracy = _raw({})
     """Cost of accuracy: `snakemake accuracy`."""
-    stability: Stability = Stability()
+    stability: Stability = _raw({})
     """Failures of methods: `snakemake stability`."""
-    propulsion: Propulsion = Propulsion()
+    propulsion: Propulsion = _raw({})
     """Self-propelled motions: `snakemake propulsion`."""
-    claims: Claims = Claims()
+    claims: Claims = _raw({})
     """The statements of the paper, judged: `snakemake claims`."""
