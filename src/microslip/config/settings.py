@@ -453,9 +453,9 @@ class StudyPoint(Settings):
         return self
 
 
-def _points(*rows: tuple[str, str, float, float | None, str]) -> dict[str, dict]:
-    keys = ("motion", "velocity", "amplitude", "title")
-    return {name: dict(zip(keys, row, strict=True)) for name, *row in rows}
+def _points(*rows: tuple) -> dict[str, dict]:
+    keys = ("motion", "velocity", "amplitude", "title", "poisson")
+    return {name: dict(zip(keys, row, strict=False)) for name, *row in rows}
 
 
 POINTS = _points(
@@ -464,7 +464,7 @@ POINTS = _points(
     ("near-static", "transverse", 0.002, 0.5, "near the static limit"),
     ("critical-amplitude", "transverse", 0.02, 1.0, "critical amplitude"),
     ("tiny-amplitude", "transverse", 0.05, 0.05, "tiny amplitude"),
-    ("incompressible", "transverse", 0.1, 0.7, "incompressible"),
+    ("incompressible", "transverse", 0.1, 0.7, "incompressible", 0.5),
     ("steady-bore", "continuous-bore", 0.8, None, "steady bore"),
     ("slow-bore", "bore", 0.005, 1.0, "slow bore"),
     ("bore", "bore", 0.2, 1.0, "bore"),
@@ -472,7 +472,6 @@ POINTS = _points(
     ("tiny-bore", "bore", 0.05, 0.1, "tiny bore"),
 )
 """Points of the shipped study of accuracy."""
-POINTS["incompressible"]["poisson"] = 0.5
 
 
 class _Grid(Settings):
@@ -571,6 +570,10 @@ def _motions() -> dict[str, dict]:
     return {name: dict(zip(keys, row, strict=True)) for name, row in rows.items()}
 
 
+MOTIONS = _motions()
+"""Motions of the shipped study of propulsion."""
+
+
 class Propulsion(Settings):
     """Self-propelled motions: `snakemake propulsion` makes propulsion.nc and its figure."""
 
@@ -578,9 +581,7 @@ class Propulsion(Settings):
     """Largest accepted error of a force, over mu times the mean normal load."""
     points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
     """Points of a line from stall to no load, its ends included."""
-    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = Field(
-        _motions()
-    )
+    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
     """Motions by name, a line each."""
 
     @model_validator(mode="after")
