@@ -24,7 +24,7 @@ def refuse_crowd(points: int, most: int, key: str = "") -> None:
         raise Refusal(f"{points} points are not allowed; allowed: at most {most}", key)
 
 
-def expanded(axis: Any) -> tuple[float, ...]:
+def coordinates(axis: Any) -> tuple[float, ...]:
     """Coordinates of an axis in ascending order.
 
     axis: a number, a list of numbers, or {"linear" or "log": {"start", "stop", "count"}}. Raises

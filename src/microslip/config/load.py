@@ -114,8 +114,8 @@ def with_files_found(
     filled = _settings(mapping, source).model_dump(warnings=False)
     for key in ("extended", "drives"):
         for name, sweep in filled[key].items():
-            with _refused(f"{source}: {key}.{name}"):
-                sweep["pressure"] = _placed(sweep["pressure"], folders, strict)
+            with _errors_at(f"{source}: {key}.{name}"):
+                sweep["pressure"] = _with_path(sweep["pressure"], folders, strict)
     return filled
 
 
@@ -125,11 +125,11 @@ def _settings(mapping: dict, source: str) -> Root:
     try:
         return Root.model_validate(mapping)
     except ValidationError as error:
-        line = schema.explained(error.errors(include_url=False))
+        line = schema.error_line(error.errors(include_url=False))
         raise ConfigError(f"{source}: {_one_line(line)}") from None
 
 
-def _placed(pressure: str, folders: Iterable, strict: bool) -> str:
+def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
     """The name of a pressure, with path and digest of the file that it names, if any.
 
     Raises InputError for a file that is not there, unless not strict.
@@ -148,7 +148,7 @@ def _placed(pressure: str, folders: Iterable, strict: bool) -> str:
 
 
 @contextmanager
-def _refused(where: str) -> Iterator[None]:
+def _errors_at(where: str) -> Iterator[None]:
     """Raise ConfigError, one line that begins with `where`, for refused values."""
     try:
         yield
@@ -195,7 +195,7 @@ def from_mapping(
         order = MOTION_OF_SWEEP if family == "sweeps" else members
         families[family] = {}
         for name in (name for name in order if name in members):
-            with _refused(f"{source}: {family}.{name}"):
+            with _errors_at(f"{source}: {family}.{name}"):
                 if family != "sweeps":
                     _refuse_taken(name, {*given} | ({*members} - {name}))
                 sweep = _sweep(name, members[name], folders, ask_solver)
@@ -208,13 +208,13 @@ def from_mapping(
                     if ask_solver:
                         certified.refuse_unsolvable(map_)
         given |= members
-    with _refused(f"{source}: extended"):
+    with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))
     if ask_solver:
         from microslip.adaptive.checks import checked_propulsion
 
         for name, motion in settings.propulsion.motions.items():
-            with _refused(f"{source}: propulsion.motions.{name}"):
+            with _errors_at(f"{source}: propulsion.motions.{name}"):
                 checked_propulsion(motion.motion, motion.amplitude, poisson=motion.poisson)
     return Configuration(
         results=settings.results,
@@ -237,7 +237,7 @@ def from_mapping(
 def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
     """The Sweep of settings; raises Refusal for settings that do not go together."""
     drives = tuple(
-        (drive, tuple(axis), isinstance(axis.given, list | dict))
+        (drive, tuple(axis), isinstance(axis.raw, list | dict))
         for drive in DRIVES
         if (axis := getattr(given, drive, None)) is not None
     )
@@ -246,7 +246,7 @@ def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
     if not of_paper:
         if not drives and not hasattr(given, "group"):
             raise Refusal("missing; required: force or stiffness")
-        pressure = _placed(given.pressure, folders, strict)
+        pressure = _with_path(given.pressure, folders, strict)
         more = {"title": given.title or name, "pressure": _by_content(pressure), "drives": drives}
         more |= {key: getattr(given, key) for key in ("group", "contacts") if hasattr(given, key)}
     sweep = Sweep(
@@ -255,7 +255,7 @@ def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
         velocity=tuple(given.velocity or ()),
         amplitude=None if amplitude is None else tuple(amplitude),
         poisson=tuple(given.poisson),
-        poisson_is_axis=isinstance(given.poisson.given, list),
+        poisson_is_axis=isinstance(given.poisson.raw, list),
         model=given.model,
         tolerance=None if given.tolerance is None else float(number(given.tolerance)),
         cells=given.cells,

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from microslip.config.schema import allowed, options, schema
+from microslip.config.schema import allowed_values, options, schema
 
 SECTIONS = {
     "Top level": "Root",
@@ -53,7 +53,7 @@ def _section(title: str, name: str) -> Iterator[str]:
         if common.get(key) == inner:
             continue
         meaning = " ".join(inner["description"].split())
-        values = allowed(options(inner)).replace("|", "\\|")
+        values = allowed_values(options(inner)).replace("|", "\\|")
         yield f"| `{key}` | {meaning} | {values} | {_default(key, inner, rule)} |"
 
 

@@ -49,7 +49,7 @@ def options(rule: dict) -> list[dict]:
     return [o for one in alternatives for o in options(one)] if alternatives else [rule]
 
 
-def explained(errors: Iterable["ErrorDetails"]) -> str:
+def error_line(errors: Iterable["ErrorDetails"]) -> str:
     """The first of pydantic's errors in one line: key, value, what is allowed.
 
     A mistyped key is both unknown and missing; the unknown key comes first, since it helps more.
@@ -99,7 +99,7 @@ def _line(error: "ErrorDetails") -> str:
     if isinstance(value, str) and {"number", "integer"} & types and "string" not in types:
         return f"{where}: {shown(value)} is text; {_as_number(value)}"
     hint = near_miss(value, [name for rule in rules for name in rule.get("enum", ())])
-    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {allowed(rules)}"
+    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {allowed_values(rules)}"
 
 
 def _keys(location: tuple[int | str, ...]) -> list[int | str]:
@@ -139,7 +139,7 @@ def _as_number(text: str) -> str:
     return f"write {mantissa}e{int(exponent):+d}"
 
 
-def allowed(rules: list[dict]) -> str:
+def allowed_values(rules: list[dict]) -> str:
     """Words for the values that one of the rules allows."""
     kinds = [rule.get("type") for rule in rules]
     texts = ["or null" if rule.get("type") == "null" else _phrase(rule) for rule in rules]
@@ -158,7 +158,7 @@ def _phrase(rule: dict) -> str:
         return rule["title"]
     kind = rule["type"]
     if kind == "array":
-        return f"a list of {allowed(options(rule['items'])).replace('a number', 'numbers')}"
+        return f"a list of {allowed_values(options(rule['items'])).replace('a number', 'numbers')}"
     if kind == "object" and "properties" in rule:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
     if kind == "object":

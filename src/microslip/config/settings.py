@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import core_schema
 from typing_extensions import TypedDict
 
-from microslip.config.axes import MOST_MAP_POINTS, expanded, refuse_crowd
+from microslip.config.axes import MOST_MAP_POINTS, coordinates, refuse_crowd
 from microslip.config.certified import LOOSEST_POINTS
 from microslip.config.records import STATIC_AMPLITUDES, Refusal
 from microslip.foundation.arguments import LARGEST
@@ -52,7 +52,7 @@ class Settings(BaseModel):
     model_config = CONFIG
 
     @model_serializer(mode="wrap")
-    def _given(self, handler: Callable) -> dict[str, Any]:
+    def _without_unset(self, handler: Callable) -> dict[str, Any]:
         """Leave out optional keys that were not given, so that the result can be read again."""
         values = handler(self).items()
         return {k: v for k, v in values if v is not None or k in self.model_fields_set}
@@ -157,29 +157,29 @@ class Axis(tuple[float, ...]):
 
     Attributes
     ----------
-    given : list, dict or number
+    raw : list, dict or number
         The axis as it was written.
     """
 
-    given: Any
+    raw: Any
     form: ClassVar[Any] = Annotated[_List | _Spacing, Discriminator(_kind)]
 
     @classmethod
-    def of(cls, given: Any) -> Self:
+    def of(cls, raw: Any) -> Self:
         """The axis that is written so; raises Refusal."""
-        axis = cls(expanded(given))
-        axis.given = given
+        axis = cls(coordinates(raw))
+        axis.raw = raw
         return axis
 
     @classmethod
     def __get_pydantic_core_schema__(
         cls, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        as_given = core_schema.plain_serializer_function_ser_schema(
-            lambda axis: axis and axis.given
+        as_written = core_schema.plain_serializer_function_ser_schema(
+            lambda axis: axis and axis.raw
         )
         form = handler.generate_schema(cls.form)
-        return core_schema.no_info_after_validator_function(cls.of, form, serialization=as_given)
+        return core_schema.no_info_after_validator_function(cls.of, form, serialization=as_written)
 
 
 class NumberOrAxis(Axis):
@@ -383,7 +383,7 @@ class Histories(Settings):
 # Studies
 
 
-def _once(values: list[str] | None) -> list[str] | None:
+def _refuse_repeats(values: list[str] | None) -> list[str] | None:
     names = values or []
     twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
     if twice is not None:
@@ -391,7 +391,7 @@ def _once(values: list[str] | None) -> list[str] | None:
     return values
 
 
-def _known(methods: list[str]) -> list[str]:
+def _refuse_unknown(methods: list[str]) -> list[str]:
     for i, text in enumerate(methods):
         try:
             method_names.check(text)
@@ -400,16 +400,16 @@ def _known(methods: list[str]) -> list[str]:
     return methods
 
 
-def _every(methods: Any) -> Any:
+def _all_methods(methods: Any) -> Any:
     return list(method_names.names()) if methods is None else methods
 
 
 _Names = Annotated[list[str], Field(min_length=1)]
 Methods = Annotated[
     _Names,
-    BeforeValidator(_every, json_schema_input_type=_Names | None),
-    AfterValidator(_once),
-    AfterValidator(_known),
+    BeforeValidator(_all_methods, json_schema_input_type=_Names | None),
+    AfterValidator(_refuse_repeats),
+    AfterValidator(_refuse_unknown),
 ]
 Block = Literal[
     "steps",
@@ -528,9 +528,9 @@ class Stability(Settings):
     """Methods, as for accuracy."""
     tolerance: Tolerance = 1e-3
     """Largest accepted error of mu_macro, absolute."""
-    axes: Annotated[Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_once)] = (
-        None
-    )
+    axes: Annotated[
+        Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_refuse_repeats)
+    ] = None
     """Blocks of the atlas; each varies one quantity. null: all."""
 
 

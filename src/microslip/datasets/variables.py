@@ -52,8 +52,8 @@ def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
     return {ANCILLARY: error} if error in names else {}
 
 
-def linked(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with every variable linked to its error."""
+def link_errors(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with every variable link_errors to its error."""
     found = dataset.copy()
     for name in found.variables:
         found[name].attrs |= error_of(name, found.variables)

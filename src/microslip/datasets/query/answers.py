@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.datasets.variables import flags, linked, variable
+from microslip.datasets.variables import flags, link_errors, variable
 
 SOURCES = (
     "map",
@@ -62,4 +62,4 @@ def answered(
     )
     if "poisson" not in found.dims:
         found = found.assign_coords(poisson=variable((), poisson, "Poisson's ratio"))
-    return linked(found)
+    return link_errors(found)

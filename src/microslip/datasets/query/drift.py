@@ -9,7 +9,7 @@ from microslip.datasets import certified_map
 from microslip.datasets.query import lazily
 from microslip.datasets.query.cells import cells_of
 from microslip.datasets.query.coordinates import grid_axes, labelled
-from microslip.datasets.variables import flags, linked, variable
+from microslip.datasets.variables import flags, link_errors, variable
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
@@ -96,7 +96,7 @@ class Drift:
         answer["state"] = flags(forces.dims, codes, "what becomes of the contact", STATES)
         about = {"motion": self._dataset.attrs["motion"]}
         answered = xr.Dataset(answer, coords=forces.coords, attrs=about)
-        return linked(answered.assign_coords(poisson=self._dataset["poisson"]))
+        return link_errors(answered.assign_coords(poisson=self._dataset["poisson"]))
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
         """Velocity and a bound of its error on a regular grid, for figures and plain xarray.

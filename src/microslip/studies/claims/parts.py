@@ -1,7 +1,7 @@
 """Parts of the paper's statements, and the checks that judge them.
 
 A part has a function (study, runs) -> checks. Most parts compare values of runs with a formula:
-`_judged` makes their functions from a source of values, the formula and the margin. The error of a
+`_judge` makes their functions from a source of values, the formula and the margin. The error of a
 margin is that of the values behind it.
 """
 
@@ -94,7 +94,7 @@ Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float,
 """Place, value, its error and the runs behind it, one after another."""
 
 
-def _judged(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
+def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
     """Checks of values against formula(*numbers of the place)."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -327,7 +327,7 @@ def _limits_on_rings() -> Values:
 
 
 def _something_left(limits: Values) -> Checks:
-    return _judged(limits, lambda amplitude: 0.0, lambda mu, _: mu - VANISHES)
+    return _judge(limits, lambda amplitude: 0.0, lambda mu, _: mu - VANISHES)
 
 
 def _along(motion: str) -> Checks:
@@ -341,11 +341,11 @@ ZONE = paper.static_bore
 PARTS = (
     Part(
         *(1, "rigid_below", "Eq 6 lies below the computed friction"),
-        _judged(_map("transverse"), _rigid, above),
+        _judge(_map("transverse"), _rigid, above),
     ),
     Part(
         *(1, "rigid_near", f"... and within {SLIGHT:g} of it"),
-        _judged(_map("transverse"), _rigid, within(SLIGHT)),
+        _judge(_map("transverse"), _rigid, within(SLIGHT)),
     ),
     Part(
         *(1, "rigid_below_squares"),
@@ -356,45 +356,45 @@ PARTS = (
     ),
     Part(
         *(2, "slider_above", "Eq 7 lies above the static limit"),
-        _judged(_limit("transverse", _below_one), paper.static_slider, below),
+        _judge(_limit("transverse", _below_one), paper.static_slider, below),
     ),
     Part(2, "zone_nearer", "Eq 11 is nearer to the static limit than Eq 7", _zone_nearer),
     Part(
         *(2, "slider_above_march"),
         "Eq 7 lies above even the friction at the smallest velocity, a bound of the limit",
-        _judged(_slow("transverse", _below_one), paper.static_slider, below),
+        _judge(_slow("transverse", _below_one), paper.static_slider, below),
         counts=False,
     ),
     Part(
         *(2, "zone_above", "Eq 11 lies above the static limit too"),
-        _judged(_limit("transverse", _below_one), paper.static_transverse, below),
+        _judge(_limit("transverse", _below_one), paper.static_transverse, below),
         counts=False,
     ),
     Part(
         *(3, "force_settles", f"the force ends within {AGREES:g} of Eq 21, from each start"),
-        _judged(_end("force_forward"), paper.bore_forward, within(AGREES)),
+        _judge(_end("force_forward"), paper.bore_forward, within(AGREES)),
     ),
     Part(
         *(3, "torque_settles", f"the torque ends within {AGREES:g} of Eq 22, from each start"),
-        _judged(_end("torque"), paper.bore_torque, within(AGREES)),
+        _judge(_end("torque"), paper.bore_torque, within(AGREES)),
     ),
     Part(
         *(3, "force_steady", f"certified steady force within {AGREES:g} of Eq 21"),
-        _judged(_friction(asked.steady, "velocity"), paper.bore_forward, within(AGREES)),
+        _judge(_friction(asked.steady, "velocity"), paper.bore_forward, within(AGREES)),
         counts=False,
     ),
     Part(
         *(4, "on_bound", f"every traction is at least {ON_BOUND:g} of its bound"),
-        _judged(_field(0), lambda velocity: ON_BOUND, above),
+        _judge(_field(0), lambda velocity: ON_BOUND, above),
     ),
     Part(
         *(4, "aligned"),
         f"every traction is within {ALIGNED:g} degrees of the rigid slip (Eq 15)",
-        _judged(_field(1), lambda velocity: ALIGNED, below),
+        _judge(_field(1), lambda velocity: ALIGNED, below),
     ),
     Part(
         *(5, "steady_near", f"Eq 29 is within {GOOD:g}, at amplitudes from {LARGE_BORE:g} on"),
-        _judged(_map("bore", lambda amplitude: amplitude >= LARGE_BORE), _steady, within(GOOD)),
+        _judge(_map("bore", lambda amplitude: amplitude >= LARGE_BORE), _steady, within(GOOD)),
     ),
     Part(
         *(5, "steady_nears", "Eq 29 gets nearer from one amplitude to the next"),
@@ -404,40 +404,40 @@ PARTS = (
     Part(
         *(5, "steady_near_below"),
         f"Eq 29 is within {GOOD:g} at amplitudes below {LARGE_BORE:g} too",
-        _judged(_map("bore", lambda amplitude: amplitude < LARGE_BORE), _steady, within(GOOD)),
+        _judge(_map("bore", lambda amplitude: amplitude < LARGE_BORE), _steady, within(GOOD)),
         counts=False,
     ),
     Part(
         *(6, "bore_zone_near"),
         f"Eq 33 is within {GOOD:g} of the static limit, at amplitudes above {TURNING_BORE:g}",
-        _judged(_limit("bore", _above_turning), ZONE, within(GOOD)),
+        _judge(_limit("bore", _above_turning), ZONE, within(GOOD)),
     ),
     Part(
         *(6, "bore_zone_relative", f"... and within {100 * RELATIVE:g} % of the limit's own value"),
-        _judged(_limit("bore", _above_turning), ZONE, lambda mu, eq: RELATIVE * mu - abs(eq - mu)),
+        _judge(_limit("bore", _above_turning), ZONE, lambda mu, eq: RELATIVE * mu - abs(eq - mu)),
     ),
     Part(
         *(6, "bore_zone_above"),
         f"Eq 33 lies above the static limit, at amplitudes below {TURNING_BORE:g}",
-        _judged(_limit("bore", _below_turning), ZONE, below),
+        _judge(_limit("bore", _below_turning), ZONE, below),
     ),
     Part(
         *(6, "bore_zone_seen"),
         f"Eq 33 is within {GOOD:g} of the friction at the paper's smallest velocity, above "
         f"{TURNING_BORE:g}",
-        _judged(_slow("bore", _above_turning, asked.PAPER_VELOCITY), ZONE, within(GOOD)),
+        _judge(_slow("bore", _above_turning, asked.PAPER_VELOCITY), ZONE, within(GOOD)),
         counts=False,
     ),
     Part(
         *(6, "bore_zone_above_march"),
         "there Eq 33 lies above even the friction at the smallest velocity, a bound of the limit",
-        _judged(_slow("bore", _below_turning), ZONE, below),
+        _judge(_slow("bore", _below_turning), ZONE, below),
         counts=False,
     ),
     Part(
         *(6, "bore_zone_printed"),
         f"Eq 33 as printed, without the square, is within {GOOD:g}, above {TURNING_BORE:g}",
-        _judged(_limit("bore", _above_turning), paper.static_bore_printed, within(GOOD)),
+        _judge(_limit("bore", _above_turning), paper.static_bore_printed, within(GOOD)),
         counts=False,
     ),
     Part(
@@ -463,7 +463,7 @@ PARTS = (
         *(8, "limit_asymptote"),
         f"from amplitude {FAR:g} on it is within {100 * RELATIVE:g} % of an asymptote that never "
         "vanishes",
-        _judged(_limits(FAR), static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)),
+        _judge(_limits(FAR), static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)),
     ),
     Part(
         *(9, "rises_transverse", "transverse: from one velocity to the next friction rises"),
