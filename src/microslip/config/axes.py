@@ -44,12 +44,12 @@ def coordinates(axis: Any) -> tuple[float, ...]:
 
 def _spaced(spacing: str, start: float, stop: float, count: int) -> list[float]:
     if spacing == "log" and start == 0:
-        raise Refusal(f"{start} is not allowed; allowed: a number > 0", "log.start")
+        raise Refusal("0 is not allowed; allowed: a number > 0", "log.start")
     if stop <= start:
-        said = f"{stop} is not allowed; allowed: a number above {start}"
+        said = f"{number(stop)} is not allowed; allowed: a number above {number(start)}"
         raise Refusal(said, f"{spacing}.stop")
     if spacing == "log" and math.isinf(stop / start):
-        said = f"{start} is not allowed; allowed: a number nearer {stop}"
+        said = f"{number(start)} is not allowed; allowed: a number nearer {number(stop)}"
         raise Refusal(said, f"{spacing}.start")
     if spacing == "linear":
         values = (start + (stop - start) * i / (count - 1) for i in range(count))

@@ -446,7 +446,7 @@ class StudyPoint(Settings):
     def _refuse_mismatch(self) -> Self:
         steady, amplitude = self.motion == "continuous-bore", self.amplitude
         if steady and amplitude is not None:
-            said = f"{amplitude} is not allowed; {self.motion} has no amplitude"
+            said = f"{amplitude:g} is not allowed; {self.motion} has no amplitude"
             raise Refusal(said, "amplitude")
         if not steady and amplitude is None:
             raise Refusal(f"missing; required for {self.motion}", "amplitude")
