@@ -46,4 +46,5 @@ def _register(xarray: Any) -> None:
         def of_dataset(dataset: Any, function: str = function) -> Any:
             return getattr(import_module("microslip.datasets.query.accessor"), function)(dataset)
 
-        xarray.register_dataset_accessor(name)(of_dataset)
+        if not hasattr(xarray.Dataset, name):  # the package may be imported anew
+            xarray.register_dataset_accessor(name)(of_dataset)
