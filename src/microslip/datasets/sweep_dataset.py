@@ -241,33 +241,24 @@ def _traction_field(record: dict) -> dict[str, tuple]:
 def _transients(records: Sequence[dict]) -> dict[str, tuple]:
     velocity = float(records[0]["request"]["velocity"])
     starts = [record["request"]["start"] for record in records]
-    dims = ("start", "transient_step")
-    rows = {
-        name: np.array([record["result"][name] for record in records], float)
-        for name in ("displacement_forward", "force_forward", "torque")
+    dims, force = ("start", "transient_step"), "forward friction force over mu F_z"
+    torque = point_variables.DESCRIPTIONS["mu_torque"]
+    texts = {"displacement": "forward travel over u_lim", "force_forward": force}
+    texts["torque"] = point_variables.TORQUE
+    names = {"displacement": "displacement_forward"}  # in the records
+    found = {
+        f"transient_{name}": variable(
+            dims, [record["result"][names.get(name, name)] for record in records], text
+        )
+        for name, text in texts.items()
     }
-    force, torque = "forward friction force over mu F_z", point_variables.TORQUE
-    steady = FORMS["continuous-bore"]
-    return {
-        "start": ("start", starts, {"long_name": "initial state of the transient"}),
-        "transient_displacement": variable(
-            dims, rows["displacement_forward"], "forward travel over u_lim"
-        ),
-        "transient_force_forward": variable(dims, rows["force_forward"], force),
-        "transient_torque": variable(
-            dims, rows["torque"], torque, description=point_variables.DESCRIPTIONS["mu_torque"]
-        ),
-        "transient_velocity": variable((), velocity, "forward velocity of the transients"),
-        "transient_force_theory": variable(
-            (),
-            steady["mu_forward_theory"].function(velocity),
-            "steady forward force (Eq 21)",
-            description=f"steady {force} (Eq 21)",
-        ),
-        "transient_torque_theory": variable(
-            (),
-            steady["mu_torque_theory"].function(velocity),
-            "steady torque (Eq 22)",
-            description=f"steady {point_variables.DESCRIPTIONS['mu_torque']} (Eq 22)",
-        ),
-    }
+    found["transient_torque"][2]["description"] = torque
+    said = "forward velocity of the transients"
+    found["transient_velocity"] = variable((), velocity, said)
+    for name, form, text, what in (
+        ("force", "mu_forward_theory", "steady forward force (Eq 21)", f"steady {force} (Eq 21)"),
+        ("torque", "mu_torque_theory", "steady torque (Eq 22)", f"steady {torque} (Eq 22)"),
+    ):
+        value = FORMS["continuous-bore"][form].function(velocity)
+        found[f"transient_{name}_theory"] = variable((), value, text, description=what)
+    return {"start": ("start", starts, {"long_name": "initial state of the transient"})} | found

@@ -98,8 +98,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
     if answers.machines:
         variables |= columns("machine", _machines(answers.machines))
-    measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
-    return finished(variables, coords, title, answers, settings, **measured)
+    return finished(variables, coords, title, answers, settings, comment=MEASURED)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -120,15 +119,6 @@ def _machines(machines: list[dict]) -> dict[str, tuple]:
         "machine_host": ([m["host"] for m in machines], "name of the computer", str),
         "machine_threads": ([m["threads"] for m in machines], "threads of a run", np.int32),
     }
-
-
-def _timed_on(answers: Answers) -> str:
-    """Every computer that a time was measured on, as one text."""
-    named = (
-        f"{machine['cpu']}, host {machine['host']}, threads {machine['threads']}"
-        for machine in answers.machines
-    )
-    return "; ".join(sorted(named))
 
 
 # Points and trials
@@ -216,37 +206,32 @@ def _row(point: str, level: int, request: dict, result: dict, reference: float) 
 
 def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
     dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
-    points = study.map_points(settings, motion)
-    best: dict[str, list] = {name: [] for name in ("", "_cells", "_seconds")}
-    found = [_candidates(settings, point, answers) for point in points]
-    for tolerance in settings.map.tolerance[::-1]:
-        for models, cells, seconds, error in found:
-            i = cheapest(seconds, error, tolerance)
-            best[""].append("" if i is None else models[i])
-            best["_cells"].append(0 if i is None else cells[i])
-            best["_seconds"].append(np.nan if i is None else seconds[i])
-    shape = (
-        len(settings.map.tolerance),
-        len(settings.map.amplitude[motion]),
-        len(settings.map.velocity),
-    )
-    described = {
-        "": (str, "", "cheapest model within the tolerance, empty if there is none"),
-        "_cells": (np.int32, "1", "cells that the cheapest model needs"),
-        "_seconds": (float, "s", "median CPU time of the cheapest model"),
-    }
+    tolerances = settings.map.tolerance[::-1]
+    found = [_candidates(settings, p, answers) for p in study.map_points(settings, motion)]
+    best = np.empty((len(CHEAPEST), len(tolerances), len(found)), object)
+    for t, tolerance in enumerate(tolerances):
+        for p, (trials, error) in enumerate(found):
+            i = cheapest([seconds for *_, seconds in trials], error, tolerance)
+            best[:, t, p] = ("", 0, np.nan) if i is None else trials[i]
+    shape = (len(tolerances), len(settings.map.amplitude[motion]), -1)
     return {
-        f"{motion}_cheapest{name}": variable(
-            dims, np.array(best[name], object).reshape(shape), long_name, kind, units
-        )
-        for name, (kind, units, long_name) in described.items()
+        f"{motion}_cheapest{name}": variable(dims, values.reshape(shape), long_name, kind, units)
+        for (name, kind, units, long_name), values in zip(CHEAPEST, best, strict=True)
     }
+
+
+CHEAPEST = (
+    ("", str, "", "cheapest model within the tolerance, empty if there is none"),
+    ("_cells", np.int32, "1", "cells that the cheapest model needs"),
+    ("_seconds", float, "s", "median CPU time of the cheapest model"),
+)
+"""Variables of a map: end of the name, type, units and long_name."""
 
 
 def _candidates(
     settings: Accuracy, point: Point, answers: Answers
-) -> tuple[list[str], list[int], list[float], np.ndarray]:
-    """Models, cells, seconds and errors of all trials at a point of a map, as lists."""
+) -> tuple[list[tuple[str, int, float]], np.ndarray]:
+    """Model, cells and seconds of all trials at a point of a map, and their errors."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
     requests = study.map_trials(settings, point)
     results = [answers(request) for request in requests]
@@ -255,13 +240,11 @@ def _candidates(
         for r in results
     ]
     models = [request["model"] for request in requests]
-    exact = exact_model(point.motion, point.poisson)
-    return (
-        models,
-        [request["cells"] for request in requests],
-        [value_of(result, "seconds") for result in results],
-        confirmed(models, error, exact),
-    )
+    trials = [
+        (request["model"], request["cells"], value_of(result, "seconds"))
+        for request, result in zip(requests, results, strict=True)
+    ]
+    return trials, confirmed(models, error, exact_model(point.motion, point.poisson))
 
 
 def _scaling(settings: Accuracy, answers: Answers) -> dict:

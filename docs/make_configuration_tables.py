@@ -1,6 +1,6 @@
-"""Tables of all keys of a configuration for config/README.md, from the models in `settings`.
+"""Tables of all keys of a configuration for config/README.md, from microslip.config.settings.
 
-``python -m microslip.config.reference config/README.md`` writes them anew.
+``python docs/make_configuration_tables.py config/README.md`` writes them anew.
 """
 
 import json
