@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -29,14 +29,18 @@ class Answers:
         self.versions: set[str] = set()
         self.machines: list[dict] = []
 
-    def __call__(self, request: dict) -> Any:  # a result; a Run of runs.Runs
+    def record(self, request: dict) -> dict:
+        """The record that answers a request."""
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
         machine = record["result"].get("machine")
         if machine is not None and machine not in self.machines:
             self.machines.append(machine)
-        return record["result"]
+        return record
+
+    def __call__(self, request: dict) -> Any:  # a result; a Run of runs.Runs
+        return self.record(request)["result"]
 
     def machine_of(self, result: dict) -> int:
         """Index in `machines` of the computer that a time was measured on; -1: none."""
@@ -64,6 +68,15 @@ def columns(dims: str | tuple, table: dict) -> dict:
     """Variables over the same dims; table: name -> (values, long_name, kind, units), the last two
     as far as they are not those of `variable`."""
     return {name: variable(dims, *row) for name, row in table.items()}
+
+
+def table(dim: str, rows: Iterable[tuple], columns: dict[str, tuple]) -> dict:
+    """Variables over rows; columns: name -> (function of a row's items, long_name, kind, units)."""
+    rows = list(rows)
+    return {
+        name: variable(dim, [read(*row) for row in rows], *about)
+        for name, (read, *about) in columns.items()
+    }
 
 
 def finished(

@@ -11,7 +11,6 @@ asks both.
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.records import MOTION_OF_SWEEP
+from microslip.config.schema import near_miss
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
@@ -86,14 +86,11 @@ def _found(
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
         if str(name) not in MOTION_OF_SWEEP and not path.is_file():
-            near = difflib.get_close_matches(str(name), MOTION_OF_SWEEP, n=1)
-            hint = f"did you mean {near[0]}? " if near else ""
-            raise InputError(
-                "name",
-                name,
-                f"{hint}allowed is {', '.join(MOTION_OF_SWEEP)}, another sweep of which {results} "
-                "has the dataset, or a path that ends in .nc",
+            allowed = (
+                f"{near_miss(name, MOTION_OF_SWEEP)}allowed is {', '.join(MOTION_OF_SWEEP)}, "
+                f"another sweep of which {results} has the dataset, or a path that ends in .nc"
             )
+            raise InputError("name", name, allowed)
     if not path.is_file():
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
     if is_damaged(path):

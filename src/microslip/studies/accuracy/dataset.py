@@ -42,26 +42,26 @@ GROUPS["profile"] = (
 )
 """Groups of the dataset besides the table of trials: titles and dims."""
 
-# Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
+# Columns of the table of trials: name -> (long_name, type, units). 0: a count does not apply.
 TRIAL_VARIABLES = {
-    "trial_point": (str, "", "point that the trial was run at"),
-    "trial_model": (str, "", "contact model, or auto for the choice that follows a tolerance"),
-    "trial_method": (str, "", "method that was run"),
-    "trial_level": (np.int32, "1", "level of the ladder of resolutions, or of tolerances"),
-    "trial_cells": (np.int32, "1", "rings, or squares across the contact"),
-    "trial_angles": (np.int32, "1", "angular points on half a ring"),
-    "trial_steps": (np.int32, "1", "time steps in a period"),
-    "trial_tolerance": (float, "1", "tolerance that was asked for"),
-    "mu_macro": (float, "1", MU_MACRO.description),
-    "error": (float, "1", "distance of mu_macro from the reference"),
-    "seconds": (float, "s", "median CPU time of a run, compiled"),
-    "effort": (float, "1", "iterations of the step solver times unknowns"),
-    "converged": (bool, "", "the run says that it converged"),
-    "reason": (str, "", "why the run did not converge, empty if it did"),
-    "trial_machine": (np.int32, "1", "computer of the time, an index of the group machines"),
-    "claimed_error": (float, "1", "error that the result claims for itself, where it claims one"),
-    "front_seconds": (bool, "", "no trial of the point is faster and as accurate"),
-    "front_effort": (bool, "", "no trial of the point takes less effort and is as accurate"),
+    "trial_point": ("point that the trial was run at", str),
+    "trial_model": ("contact model, or auto for the choice that follows a tolerance", str),
+    "trial_method": ("method that was run", str),
+    "trial_level": ("level of the ladder of resolutions, or of tolerances", np.int32),
+    "trial_cells": ("rings, or squares across the contact", np.int32),
+    "trial_angles": ("angular points on half a ring", np.int32),
+    "trial_steps": ("time steps in a period", np.int32),
+    "trial_tolerance": ("tolerance that was asked for",),
+    "mu_macro": (MU_MACRO.description,),
+    "error": ("distance of mu_macro from the reference",),
+    "seconds": ("median CPU time of a run, compiled", float, "s"),
+    "effort": ("iterations of the step solver times unknowns",),
+    "converged": ("the run says that it converged", bool),
+    "reason": ("why the run did not converge, empty if it did", str),
+    "trial_machine": ("computer of the time, an index of the group machines", np.int32),
+    "claimed_error": ("error that the result claims for itself, where it claims one",),
+    "front_seconds": ("no trial of the point is faster and as accurate", bool),
+    "front_effort": ("no trial of the point takes less effort and is as accurate", bool),
 }
 
 
@@ -77,10 +77,8 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     variables = _points(list(points.values()), titles, answers)
     trials = _trials(settings, points, answers, variables)
     tolerances = settings.map.tolerance[::-1]  # from loose to tight
-    rows = TRIAL_VARIABLES.items()
-    variables |= columns(
-        "trial", {n: (trials[n], long_name, kind, units) for n, (kind, units, long_name) in rows}
-    )
+    rows = {name: (trials[name], *about) for name, about in TRIAL_VARIABLES.items()}
+    variables |= columns("trial", rows)
     variables |= profiles.variables(trials, list(points), tolerances)
     variables |= _scaling(settings, answers)
     for motion in study.MAP_MOTIONS:
