@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from microslip.config.records import CertifiedMap, Refusal, Sweep
+from microslip.config.records import LOOSEST_POINTS, CertifiedMap, Refusal, Sweep
 from microslip.foundation.canonical import number
 
 if TYPE_CHECKING:
@@ -12,9 +12,6 @@ EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
 """Models of the half-space, whose drift thresholds are known."""
 SHARE_OF_POINTS = 0.3
 """Default tolerance of the points of a map, over the error of the map."""
-LOOSEST_POINTS = 1e-2
-"""Largest tolerance of the points of a map. The refinement takes larger errors for curvature of the
-map and halves cells without need."""
 
 
 def _demand(condition: bool, refused: str, allowed: str) -> None:

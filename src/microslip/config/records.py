@@ -32,6 +32,9 @@ MODELS_OF_MOTION = {
 }
 
 
+LOOSEST_POINTS = 1e-2
+"""Largest tolerance of the points of a map. The refinement takes larger errors for curvature of the
+map and halves cells without need."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Amplitudes up to which the maps of the paper show static friction, by motion."""
 

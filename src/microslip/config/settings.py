@@ -24,8 +24,7 @@ from pydantic_core import core_schema
 from typing_extensions import TypedDict
 
 from microslip.config.axes import MOST_MAP_POINTS, coordinates, refuse_crowd
-from microslip.config.certified import LOOSEST_POINTS
-from microslip.config.records import STATIC_AMPLITUDES, Refusal
+from microslip.config.records import LOOSEST_POINTS, STATIC_AMPLITUDES, Refusal
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.solver import method_names

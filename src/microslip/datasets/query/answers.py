@@ -8,6 +8,9 @@ import xarray as xr
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.variables import flags, link_errors, variable
 
+NEEDS = "microslip.at needs"
+LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
+"""Words for a dataset without a variable of a map."""
 SOURCES = (
     "map",
     "no vibration",

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
+from microslip.datasets.query.answers import LOST
 from microslip.datasets.query.interpolation import Axis, Table
-from microslip.datasets.query.nodes import LOST
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates

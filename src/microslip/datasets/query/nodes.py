@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from microslip.datasets.query.answers import LOST, NEEDS
 from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
 SAME = 1e-12
 """Poisson's ratios that differ by less are one."""
-NEEDS = "microslip.at needs"
-LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,7 @@ LABELLED = np.array([0.1, 0.5, 0.9])
 BEYOND = 0.01
 """Friction below 0 or above 1 by more than this is no error of the points."""
 MOST = 12
-"""Maps that a figure has room for, as `extended.MOST_PANELS`."""
+"""Maps that a figure has room for, as `load.MOST_PANELS`."""
 
 
 def spans_a_map(dataset: xr.Dataset) -> bool:
