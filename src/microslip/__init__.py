@@ -8,6 +8,7 @@ that importing the package costs next to nothing.
 from importlib import import_module as _import_module
 from typing import Any as _Any
 
+from microslip.foundation import accessor as _accessor
 from microslip.foundation import source_digest as _source_digest  # noqa: F401  reads what will be loaded
 
 _WHERE = {
@@ -56,6 +57,7 @@ _WHERE = {
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }
+_accessor.register()
 __all__ = sorted(_WHERE)
 __version__ = "0.1.0"
 

@@ -8,15 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
-import yaml
 from bad_input_tables.bad_command_lines import COMMAND_LINES, NUMBERS, RESULTS
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
 from microslip.app import cli
-from microslip.config import load, schema
+from microslip.config import load
 from microslip.config.strict_yaml import StrictLoader
-from microslip.foundation.arguments import LARGEST
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
@@ -85,13 +83,6 @@ def test_the_same_lines_come_from_a_process(there):
         assert [part for part in parts if part not in done.stderr] == []
 
 
-def test_the_command_line_has_the_limits_of_configurations():
-    rules = schema.schema()["$defs"]
-    limits = {name: rules[name]["maximum"] for name in ("cells", "steps", "non_negative")}
-    limits |= dict.fromkeys(["velocity", "amplitude"], limits.pop("non_negative"))
-    assert limits == LARGEST
-
-
 # Configurations
 
 
@@ -101,11 +92,6 @@ def refusal(path):
     message = str(caught.value)
     assert "\n" not in message and message.isprintable()
     return message
-
-
-def test_what_is_changed_is_good_before():
-    for key in ("results", "accuracy.levels"):
-        assert load.from_mapping(yaml.safe_load(changed({key: "1" if "." in key else "here"})))
 
 
 @pytest.mark.parametrize(

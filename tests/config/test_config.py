@@ -1,22 +1,25 @@
-"""Configurations: what is refused and how it is said, what is filled in and expanded."""
+"""Configurations: defaults, expanded axes, merged mappings, and the reference of all keys."""
 
 import itertools
 import json
-from dataclasses import replace
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
-import jsonschema
 import pytest
 import yaml
 from bad_input_tables.bad_configurations import GOOD
 
 from microslip.config import load as config
-from microslip.config import schema as schemas
 from microslip.config.load import ConfigError, load
+from microslip.models.registry import MODELS
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.solver import method_names
 
 ROOT = Path(__file__).parents[2]
-TRANSVERSE = "sweeps: {transverse: {velocity: [0.1], amplitude: [1]%s}}"
+PAPER = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}}
 
 
 def saved(folder, text):
@@ -34,6 +37,7 @@ def test_defaults_are_filled_in(tmp_path):
     assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
     assert found.histories["transients"]["velocity"] == 0.8
     assert found.sweeps["continuous_bore"].motion == "continuous-bore"
+    assert found.extended == found.groups == found.drives == found.certified == {}
 
 
 def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
@@ -71,7 +75,7 @@ def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
     text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
     found = load(saved(tmp_path, text))
     assert found.points_per_job == dict.fromkeys(found.sweeps, 3) | {"transverse": 7}
-    # What decides who computes a point is no part of what a dataset depends on.
+    # No dataset depends on it.
     plain = load(saved(tmp_path, GOOD))
     assert found.of_sweep("transverse") == plain.of_sweep("transverse")
 
@@ -82,151 +86,76 @@ def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):
     assert found["transverse"].velocity == (0.1, 0.3, 1.0)
     assert found["bore"].velocity == (0.1, 1.0, 10.0)
     assert found["bore"].amplitude == (0.0, 0.5, 1.0)
-    thirds = {"log": {"start": 1, "stop": 10, "count": 4}}
-    bore = {"velocity": thirds, "amplitude": [1]}
-    sweep = config.from_mapping({"sweeps": {"bore": bore}}).sweeps["bore"]
+    thirds = {"log": {"start": 1, "stop": 10, "count": 4.0}}
+    ratios = {"velocity": thirds, "amplitude": [1], "poisson": [0.3, 0]}
+    sweep = config.from_mapping({"sweeps": {"bore": ratios}}).sweeps["bore"]
     assert sweep.velocity == (1.0, 2.15443, 4.64159, 10.0)
-
-
-def test_a_list_of_poissons_ratios_is_an_axis(tmp_path):
-    text = TRANSVERSE % ", poisson: [0.3, 0]"
-    sweep = load(saved(tmp_path, text)).sweeps["transverse"]
     assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0, 0.3), True)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["config", "smoke"])
-def test_shipped_configurations_are_good(name):
-    found = load(ROOT / "config" / f"{name}.yaml")
-    assert list(found.sweeps) == ["transverse", "bore", "continuous_bore"]
-    assert found.sweeps["transverse"].amplitude[0] == 0  # where mu_macro is 1
+@pytest.mark.parametrize("name", ["config", "smoke", "poisson", "coarse"])
+def test_shipped_configurations_are_good_and_filled_ones_are_the_same(name):
+    given, folders = config.read_yaml(ROOT / "config" / f"{name}.yaml"), [ROOT / "config"]
+    found = config.from_mapping(given, folders=folders)
+    filled = config.with_files_found(given, folders=folders)
+    assert config.from_mapping(json.loads(json.dumps(filled))) == found
 
 
-def test_the_studies_name_every_method_that_can_be_run():
+def test_the_default_configuration_is_that_of_the_paper():
     found = load(ROOT / "config" / "config.yaml")
+    for name, top in (("transverse", 3.0), ("bore", 5.0)):
+        sweep = found.sweeps[name]
+        assert len(sweep.velocity) == len(sweep.amplitude) == 25
+        assert (sweep.amplitude[0], sweep.amplitude[-1]) == (0.0, top)
+        assert (sweep.velocity[0], sweep.velocity[-1]) == (1e-3, 10.0)
+    assert {0.1, 1.0, 10.0} <= set(found.sweeps["continuous_bore"].velocity)
+    # It names every method that can be run; two of them cannot be varied.
     assert set(found.accuracy.methods) == set(method_names.names())
-    # Neither can be varied: the run of the paper comes with its own resolution, and another package
-    # with its own march on squares.
     assert set(found.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
+    # Its studies are the defaults.
+    plain = config.from_mapping(PAPER)
+    for study in ("accuracy", "stability", "claims", "propulsion"):
+        one, other = getattr(plain, study), getattr(found, study)
+        methods = {"methods": other.methods} if hasattr(other, "methods") else {}
+        assert one.model_copy(update=methods) == other
+    assert plain.accuracy.methods == list(method_names.names())
 
 
-def test_the_studies_need_not_be_given():
-    shipped = load(ROOT / "config" / "config.yaml")
-    found = config.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
-    assert found.accuracy.methods == found.stability.methods == method_names.names()
-    assert replace(found.accuracy, methods=()) == replace(shipped.accuracy, methods=())
-    assert replace(found.stability, methods=()) == replace(shipped.stability, methods=())
-    assert found.accuracy.map_tolerance == (1e-2, 1e-3)
-    assert found.claims == shipped.claims
-
-
-def test_points_of_a_study_have_numbers_and_titles():
-    text = "{there: {motion: zigzag, velocity: 1, amplitude: 2}, steady: {motion: continuous-bore, "
-    points = yaml.safe_load(text + "velocity: 3, poisson: 0.5, title: at rest}}")
-    given = {
-        "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
-        "accuracy": {"points": points},
-    }
-    found = config.from_mapping(given).accuracy.points
-    assert found == {
-        "there": config.StudyPoint("there", "zigzag", 1.0, 2.0, 0.0, "there"),
-        "steady": config.StudyPoint("steady", "continuous-bore", 3.0, None, 0.5, "at rest"),
-    }
-
-
-@pytest.mark.parametrize(
-    "title",
-    [
-        "costs $5",
-        r"$\frac{",
-        r"\frac{1}{2}",
-        "{} % # _ ^ &",
-        "\N{GREEK SMALL LETTER NU} > 0",
-        "$",
-        "x" * 100,
-    ],
-)
+@pytest.mark.parametrize("title", [r"$\frac{", "{} % # _ ^ &", "\N{GREEK SMALL LETTER NU} > 0"])
 def test_titles_may_hold_what_is_markup_elsewhere(title):
-    """They are drawn as they stand, see test_plot_groups."""
-    sweep = {
-        "motion": "longitudinal",
-        "group": "g",
-        "velocity": [1],
-        "amplitude": [1],
-        "title": title,
-    }
     point = {"motion": "bore", "velocity": 1, "amplitude": 1}
-    given = {
-        "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
-        "extended": {"a": sweep},
-        "accuracy": {"points": {"named": point | {"title": title}, title: point}},
-    }
-    found = config.from_mapping(given, ask_solver=False)
-    assert found.extended["a"].title == title
-    assert [point.title for point in found.accuracy.points.values()] == [title, title]
+    points = {"named": point | {"title": title}, title: point}
+    found = config.from_mapping(PAPER | {"accuracy": {"points": points}}).accuracy.points
+    assert found["named"].title == title in found
 
 
-@pytest.mark.parametrize(
-    "title", ["", "  ", "x" * 101, "two\nlines", "a\tb", "\x00", "\ud800", "\u2028"]
-)
-def test_titles_that_cannot_be_drawn_or_written_are_refused_before_anything_is_computed(title):
-    sweep = {
-        "motion": "longitudinal",
-        "group": "g",
-        "velocity": [1],
-        "amplitude": [1],
-        "title": title,
-    }
+LINE = {"motion": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}
+
+
+@pytest.mark.parametrize("title", ["", "  ", "x" * 101, "two\nlines", "\x00", "\ud800", "\u2028"])
+def test_titles_that_cannot_be_drawn_or_written_are_refused(title):
     point = {"motion": "bore", "velocity": 1, "amplitude": 1}
     for more, where in (
-        ({"extended": {"a": sweep}}, "extended.a.title"),
+        ({"extended": {"a": LINE | {"title": title}}}, "extended.a.title"),
         ({"accuracy": {"points": {"p": point | {"title": title}}}}, "accuracy.points.p.title"),
         ({"accuracy": {"points": {title: point}}}, "accuracy.points"),
     ):
-        given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}} | more
-        with pytest.raises(
-            ConfigError, match=rf"^configuration: {where}: .*allowed: text on"
-        ) as found:
-            config.from_mapping(given, ask_solver=False)
-        assert "\n" not in str(found.value)
+        with pytest.raises(ConfigError, match=rf"^configuration: {where}: .*allowed: text on"):
+            config.from_mapping(PAPER | more, ask_solver=False)
 
 
-def test_default_sweeps_are_those_of_the_paper():
-    sweeps = load(ROOT / "config" / "config.yaml").sweeps
-    for name, top in (("transverse", 3.0), ("bore", 5.0)):
-        assert len(sweeps[name].velocity) == len(sweeps[name].amplitude) == 25
-        assert sweeps[name].amplitude[-1] == top
-        assert (sweeps[name].velocity[0], sweeps[name].velocity[-1]) == (1e-3, 10.0)
-    assert {0.1, 1.0, 10.0} <= set(sweeps["continuous_bore"].velocity)
-
-
-def test_the_schema_is_valid_closed_and_describes_every_key():
-    schema = schemas.schema()
-    jsonschema.Draft202012Validator.check_schema(schema)
-
-    def check(rule, where):
-        for name, inner in rule.get("properties", {}).items():
-            assert schemas._resolved(inner).get("description"), f"{where}.{name}"
-        if "properties" in rule:
-            assert rule["additionalProperties"] is False, where
-        for name in ("properties", "$defs"):
-            for key, inner in rule.get(name, {}).items():
-                check(inner, f"{where}.{key}")
-
-    check(schema, "schema")
-
-
-def test_the_workflow_shows_the_same_schema():
-    shown = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    assert yaml.safe_load(shown.read_text()) == schemas.schema()
+def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
+    """Written by docs/make_configuration_tables.py."""
+    copy = tmp_path / "README.md"
+    shutil.copy(ROOT / "config" / "README.md", copy)
+    subprocess.run(
+        [sys.executable, ROOT / "docs" / "make_configuration_tables.py", copy], check=True
+    )
+    assert copy.read_text() == (ROOT / "config" / "README.md").read_text()
 
 
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
-    from microslip.models.registry import MODELS
-    from microslip.motions.by_name import motion_named
-    from microslip.motions.problem import Problem
-
-    assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
     for sweep, motion in config.MOTION_OF_SWEEP.items():
         for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
             given = {"velocity": [1], "model": model, "poisson": poisson}
@@ -237,11 +166,8 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
                 refused = False
             except ConfigError:
                 refused = True
-            assert refused == bool(
-                MODELS[model].refuses(
-                    Problem(motion_named(motion), 1.0, given.get("amplitude", [None])[0], poisson)
-                )
-            )
+            problem = Problem(motion_named(motion), 1.0, given.get("amplitude", [None])[0], poisson)
+            assert refused == bool(MODELS[model].refuses(problem))
 
 
 def test_settings_of_a_sweep_are_plain_json(tmp_path):
@@ -253,15 +179,9 @@ def test_settings_of_a_sweep_are_plain_json(tmp_path):
 @pytest.mark.parametrize("model", ["auto", "polar", "cartesian", "rigid"])
 @pytest.mark.parametrize("poisson", [0, 0.3])
 def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):
-    """The solver refuses none of these, so neither does a configuration, under either key."""
     axes = {"velocity": [0, 1], "amplitude": [0.5], "poisson": poisson, "model": model}
-    loaded = config.from_mapping(
-        {
-            "sweeps": {"transverse": axes, "bore": axes},
-            "extended": {"line": {**axes, "motion": "longitudinal", "group": "g"}},
-        }
-    )
-    assert [grid.velocity[0] for grid in loaded.grids.values()] == [0, 0, 0]
+    given = {"sweeps": {"transverse": axes, "bore": axes}, "extended": {"line": LINE | axes}}
+    assert [grid.velocity[0] for grid in config.from_mapping(given).grids.values()] == [0, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -279,3 +199,57 @@ def test_no_tolerance_goes_with_an_imposed_resolution_alone(name, given, missing
     imposed = {"cells": 8} | ({"steps": 16} if name == "transverse" else {})
     grid = config.from_mapping({"sweeps": {name: axes | imposed}}).sweeps[name]
     assert grid.tolerance is None
+
+
+EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
+MAP = {"velocity": [0.1, 10], "amplitude": [0, 3]}
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"motions": {"m": EIGHT | {"motion": "bore"}}}, "m.motion: 'bore': allowed is a self"),
+        ({"motions": {f"m{i}": EIGHT for i in range(9)}}, "m8.panel: loops has more than 8 lines"),
+        (
+            {"motions": {f"m{i}": EIGHT | {"panel": f"p{i}"} for i in range(5)}},
+            "m4.panel: p4 is one of more than 4; allowed: p0, p1, p2, p3",
+        ),
+    ],
+)
+def test_self_propelled_motions_propel_and_fit_on_a_figure(given, said):
+    with pytest.raises(ConfigError, match=said):
+        config.from_mapping(PAPER | {"propulsion": given})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"error": 1e-3, "tolerance": 1e-2}, "tolerance: 0.01 is not allowed; .* less than the"),
+        ({}, "error: missing; required: error"),
+    ],
+)
+def test_points_of_a_certified_map_are_better_than_the_map(given, said):
+    with pytest.raises(ConfigError, match=rf"transverse.adaptive.{said}"):
+        config.from_mapping({"sweeps": {"transverse": MAP | {"adaptive": given}}})
+
+
+def test_a_certified_map_has_a_range_and_a_free_resolution():
+    for changed, said in (
+        ({"velocity": [1]}, "is not allowed here; allowed: with two amplitudes"),
+        ({"cells": 8}, "is not allowed with cells or steps imposed"),
+    ):
+        with pytest.raises(ConfigError, match=f"transverse.adaptive: {said}"):
+            config.from_mapping(
+                {"sweeps": {"transverse": MAP | changed | {"adaptive": {"error": 1e-2}}}}
+            )
+
+
+def test_yaml_is_read_strictly_where_it_would_be_misread(tmp_path):
+    for text, said in (
+        ("010", "base 8"),
+        ("1:30", "base 60"),
+        ("1.0e-400", "nearer 0"),
+        ("yes", "true is not allowed"),
+    ):
+        with pytest.raises(ConfigError, match=said):
+            load(saved(tmp_path, yaml.safe_dump(PAPER) + f"points_per_job: {text}\n"))

@@ -94,7 +94,7 @@ def written(tmp_path, name, given):
 
 @pytest.mark.slow
 def test_a_dataset_under_forces_holds_velocities(tmp_path):
-    with xr.open_dataset(written(tmp_path, "weights", WEIGHTS)) as data:
+    with xr.open_dataset(written(tmp_path, "weights", WEIGHTS | {"amplitude": [0.5]})) as data:
         assert data.velocity.dims == data.mu_macro.dims == ("amplitude", "force")
         assert data.drive == "force"
         point = data.sel(amplitude=0.5, force=0.6)

@@ -10,16 +10,15 @@ import xarray as xr
 from stubs.sweep_stub import Solver
 
 import microslip
-from microslip.config import extended, load
+from microslip.config import load
 from microslip.config import records as settings
-from microslip.datasets import sweep_dataset, theory_limits
-from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.datasets import sweep_dataset
+from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
 from microslip.studies import registry
 from microslip.sweeps import batches as sweep
 from microslip.sweeps.cache import Store
 from microslip.theory import masing, paper
-from microslip.theory.catalogue import FORMS
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
 CIRCLE = {"motion": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
@@ -41,14 +40,7 @@ def test_defaults_are_those_of_other_sweeps():
     assert (sweep.pressure, sweep.group, sweep.title) == ("hertz", "loops", "circle")
     assert (sweep.model, sweep.tolerance, sweep.poisson) == ("auto", 1e-3, (0.0,))
     assert list(found.grids) == ["bore", "circle"]
-    assert found.points_per_job == {"bore": 50, "circle": 50}
     assert found.of_sweep("circle")["histories"] == {}
-    assert json.loads(json.dumps(found.of_sweep("circle")))["sweep"]["group"] == "loops"
-
-
-def test_there_need_be_none():
-    found = load.from_mapping({"sweeps": PAPER})
-    assert found.extended == found.groups == {}
 
 
 def test_groups_keep_the_order_of_their_sweeps():
@@ -85,8 +77,7 @@ def test_a_figure_has_room_for_so_many():
         configured(**{f"a{i}": ratios for i in range(5)})
 
 
-def test_jobs_do_not_ask_the_solver(monkeypatch):
-    monkeypatch.setattr(extended, "_ask_solver", None)
+def test_jobs_do_not_ask_the_solver():
     given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
     found = load.from_mapping(given, ask_solver=False)
     assert found.extended["circle"].motion == "no such"
@@ -149,18 +140,6 @@ def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypat
     sweep.run_batch(requests_of(), Store(tmp_path))
     assert seen == 4 * [POWER] + 4 * [None]
     assert sweep.label(requests[0]).startswith("elliptic at pressure power:exponent=1, poisson 0")
-
-
-def test_a_pressure_from_a_file_is_named_by_its_content(tmp_path):
-    file = tmp_path / "even.csv"
-    rows = [f"{x},{y},1" for x in (-1, 0, 1) for y in (-1, 0, 1)]
-    file.write_text("\n".join(["forward,lateral,pressure", *rows]))
-    first = requests_of(pressure=f"file:{file}")[0]["pressure"]
-    assert first.startswith("file:sha256=")
-    file.write_text(file.read_text().replace("0,0,1", "0,0,2"))
-    assert requests_of(pressure=f"file:{file}")[0]["pressure"] != first
-    with pytest.raises(load.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
-        requests_of(pressure="file:gone.csv")
 
 
 EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
@@ -239,14 +218,6 @@ def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
         assert data.attrs["pressure_file"] == "pad.csv"
 
 
-def test_python_finds_the_points_of_a_sweep(monkeypatch, tmp_path):
-    solver = Solver(monkeypatch)
-    grid = configured(circle=CIRCLE | {"velocity": [0.5], "amplitude": [1]}).extended["circle"]
-    sweep.run_batch(sweep.PointRequests(grid), Store(tmp_path))
-    found = microslip.solve_stored("elliptic:phase=90", 0.5, 1, results=tmp_path)
-    assert (solver.calls, found.mu_macro) == (1, pytest.approx(0.2))
-
-
 # Datasets
 
 
@@ -290,13 +261,6 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
     )
 
 
-def test_limits_are_those_of_the_paper_under_its_pressure_alone():
-    assert FORMS.keys() <= MOTIONS.keys()
-    assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"].long_name
-    assert theory_limits.formulas("elliptic") == {}
-    assert "mu_static" in theory_limits.formulas("bore")
-
-
 # Questions
 
 
@@ -306,14 +270,6 @@ def friction(monkeypatch, tmp_path):
     axes = {"velocity": list(np.geomspace(0.1, 10, 9)), "amplitude": list(np.linspace(0, 2, 9))}
     built(tmp_path, **axes)
     return microslip.open_map("circle", tmp_path).friction
-
-
-def test_within_the_map_friction_is_interpolated(friction):
-    answer = friction.at([0.3, 2.0], [0.7, 1.9])
-    v, a = answer.velocity, answer.amplitude
-    off = abs(answer.mu_macro - v / (1 + v + a))
-    assert (off <= answer.mu_macro_error).all()
-    assert (answer.mu_macro_error < 0.02).all()
 
 
 @pytest.mark.slow
@@ -336,12 +292,3 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
     friction = microslip.open_map("circle", tmp_path).friction
     assert float(friction.at(0, 0.7).mu_macro) == 0
     assert float(friction.at(0.1, 0.5).mu_macro) == pytest.approx(0.1 / 1.6)
-
-
-@pytest.mark.slow
-def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
-    Solver(monkeypatch)
-    built(tmp_path, motion="transverse", pressure=POWER)
-    friction = microslip.open_map("circle", tmp_path).friction
-    with pytest.raises(ValueError, match="no limit of pressure power:exponent=1 is known"):
-        friction.at(0.01, 1)

@@ -79,13 +79,6 @@ def test_grids_and_questions_the_other_way_round_have_one(dataset):
     assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
 
 
-def test_chunks_answer_alike(dataset):
-    velocity = xr.DataArray(np.geomspace(0.02, 5.0, 40), dims="n")
-    at_once = dataset.microslip.at(velocity, 1.3, poisson=0.25)
-    lazy = dataset.microslip.at(velocity.chunk(n=7), 1.3, poisson=0.25)
-    xr.testing.assert_identical(lazy.compute(), at_once)
-
-
 def test_a_map_of_another_version_is_refused(dataset):
     text = dataset.attrs[certified_map.COORDINATES].replace('"poisson"', '"nu"')
     with pytest.raises(InputError, match="make it again"):

@@ -6,8 +6,6 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.config import load
-from microslip.config.records import ConfigError
 from microslip.datasets import certified_map
 from microslip.sweeps import map_rounds
 from microslip.sweeps.batches import key_of
@@ -65,12 +63,6 @@ def test_over_poissons_ratio_it_answers_at_any():
     assert friction[0] <= 0.5 <= friction[1]
 
 
-def test_chunks_answer_alike():
-    dataset, amplitude = built(), xr.DataArray(np.linspace(0, 1.5, 40), dims="n")
-    lazy = dataset.microslip.at(0.0, amplitude.chunk(n=7))
-    xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(0.0, amplitude))
-
-
 def test_what_slides_is_not_answered():
     with pytest.raises(ValueError, match="velocity = 0.1: the map has none such"):
         built().microslip.at(0.1, 0.5)
@@ -80,8 +72,3 @@ def test_a_grid_is_at_velocity_0():
     grid = built().microslip.on_grid(amplitude=5)
     assert grid.velocity.values.tolist() == [0.0]
     assert grid.amplitude.values == pytest.approx([0, 0.375, 0.75, 1.125, 1.5])
-
-
-def test_one_velocity_above_0_is_refused():
-    with pytest.raises(ConfigError, match="or the velocity 0 in their place"):
-        load.from_mapping({"sweeps": {"transverse": STATIC | {"velocity": [0.1]}}})

@@ -9,8 +9,8 @@ import microslip
 from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.datasets import certified_map
-from microslip.datasets.query.drift import STATES
-from microslip.datasets.query.open_map import Drift, Friction
+from microslip.datasets.query.accessor import Friction
+from microslip.datasets.query.drift import STATES, Drift
 from microslip.foundation.errors import InputError
 from microslip.sweeps import map_rounds
 from microslip.theory.drift_threshold import threshold

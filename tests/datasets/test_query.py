@@ -3,6 +3,8 @@
 import errno
 import json
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import netCDF4
@@ -12,9 +14,9 @@ import xarray as xr
 from stubs.eq6_map import map_of
 
 import microslip
-from microslip.datasets.query import beyond
+from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.interpolation import Axis, Table
-from microslip.datasets.query.open_map import SOURCES, open_map
+from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.sweeps import sealed_files
 from microslip.sweeps.sealed_files import CacheError
@@ -28,6 +30,23 @@ def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
     """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
     v, a = np.meshgrid(velocity, amplitude)
     return map_of(paper.large_amplitude_transverse(v, a**1.5), velocity, amplitude, error, **more)
+
+
+OPENED = """
+{imports}
+with xr.open_dataset({path!r}) as data:
+    print(float(data.microslip.at(0.3, 1.1).mu_macro))
+"""
+
+
+@pytest.mark.parametrize(
+    "imports", ["import microslip, xarray as xr", "import xarray as xr, microslip"]
+)
+def test_importing_the_package_is_enough_to_ask_a_dataset(imports, tmp_path):
+    made_up().to_netcdf(tmp_path / "map.nc")
+    code = OPENED.format(imports=imports, path=str(tmp_path / "map.nc"))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert float(done.stdout) == float(made_up().microslip.at(0.3, 1.1).mu_macro)
 
 
 def test_a_dataset_can_be_pickled_after_it_was_asked():
@@ -74,25 +93,6 @@ def test_the_bound_holds_at_a_kink(kink):
     miss = np.abs(value - np.abs(x - kink))
     assert miss.max() > 5e-3  # the cubic does miss it
     assert (miss <= error + 1e-12).mean() > 0.99
-
-
-def test_the_bound_falls_with_the_fourth_power_of_the_spacing():
-    x = np.array([0.3333])
-
-    def bound(count):
-        axis = Axis(np.linspace(0, 1, count))
-        values = np.tile(np.sin(3 * axis.values), (3, 1))
-        table = Table(Axis(np.arange(3.0)), axis, values, np.zeros(values.shape))
-        return float(table._miss[1][1].max()), table.at(np.ones(1), x)
-
-    orders = np.log2([bound(n)[0] / bound(2 * n - 1)[0] for n in (17, 33)])
-    assert orders == pytest.approx(4.0, abs=0.4)
-
-
-def test_axes_find_their_measure():
-    assert Axis(np.geomspace(0.01, 10, 7)).logarithmic
-    assert not Axis(np.linspace(0.01, 10, 7)).logarithmic
-    assert not Axis(np.array([0.0, 0.1, 1.0])).logarithmic
 
 
 # The accessor
@@ -164,14 +164,6 @@ def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
         assert float(answer.poisson) == nu
 
 
-def test_more_poissons_ratios_leave_less_error():
-    few, many = (
-        over_poisson(p).microslip.at(1.0, 1.5, poisson=0.15) for p in ((0, 0.5), (0, 0.1, 0.2, 0.5))
-    )
-    node = made_up().microslip.at(1.0, 1.5)
-    assert float(few.mu_macro_error) > float(many.mu_macro_error) > float(node.mu_macro_error)
-
-
 def test_one_of_the_poissons_ratios_is_its_own_map_alone():
     both = over_poisson((0.0, 0.5))
     both["converged"][0, 6, 6] = False
@@ -214,10 +206,9 @@ def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_an
         assert at_0 - 0.012 <= float(still.mu_macro) <= at_0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("poisson", [0.25, 0.5])
-def test_the_static_limit_at_any_poissons_ratio_holds_what_the_solver_computes(poisson):
-    for amplitude in (0.3, 0.75, 0.9, 0.97):
+@pytest.mark.long
+def test_the_static_limit_at_any_poissons_ratio_holds_what_the_solver_computes():
+    for amplitude, poisson in ((0.75, 0.25), (0.9, 0.5)):
         still = over_poisson((0.0, 0.5)).microslip.at(0.0, amplitude, poisson=poisson)
         truth = microslip.solve("transverse", 0.0, amplitude, poisson=poisson, tolerance=1e-3)
         off = abs(float(still.mu_macro) - truth.mu_macro)
@@ -249,13 +240,6 @@ def test_a_part_of_a_dataset_answers_as_the_whole(part):
     assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
     # the largest miss around a cell is the same, unless nodes beside it were cut away
     assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
-
-
-def test_a_part_that_was_saved_answers_as_the_whole(tmp_path):
-    whole = made_up(error=1e-4, tolerance=1e-3)
-    whole.isel(velocity=slice(2, None)).to_netcdf(tmp_path / "part.nc")
-    with xr.open_dataset(tmp_path / "part.nc") as part:
-        xr.testing.assert_allclose(part.microslip.at(0.15, 1.3), whole.microslip.at(0.15, 1.3))
 
 
 def test_one_column_of_a_map_knows_its_own_velocity():
@@ -445,16 +429,6 @@ def test_no_error_is_larger_than_the_energy_balance_allows():
     drop = 1 / ((v / a) ** 2 + 0.5)
     assert (answer.mu_macro_error <= np.minimum(drop, 1.0) + 1e-9).all()
     assert (answer.mu_macro >= 1 - drop - 1e-9).all()
-
-
-def test_a_bracket_is_never_left():
-    edge = beyond.Estimate(np.array([0.999]), np.array([1e-4]))
-    value, error = beyond.faster(
-        beyond.LIMITS["bore"], edge, np.array([50.0]), np.array([1.0]), 10.0
-    )
-    assert 1 - 0.2 / 49**2 <= value[0] <= 1.0
-    # The bracket ends where 1 - mu_macro falls with twice the asymptotic power, the square.
-    assert value[0] + error[0] >= 1.0 - 0.9e-3 * (10.0 / 50.0) ** 4
 
 
 def test_the_steady_bore_is_a_closed_form_beyond_its_axis():

@@ -89,11 +89,6 @@ def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
         assert data.mu_macro_change_error.values == pytest.approx(both.values)
 
 
-def test_one_poissons_ratio_changes_nothing(tmp_path, solver):
-    with on_disk("transverse", tmp_path) as data:
-        assert "mu_macro_change" not in data
-
-
 def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
     Solver(monkeypatch, fails=2.0)
     with on_disk("transverse", tmp_path) as data:
@@ -188,6 +183,8 @@ def test_conventions_and_provenance(name, tmp_path, solver):
                 assert variable.attrs["units"] in ("1", "rad")
                 assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
         assert data.Conventions == "CF-1.11"
+        assert data.source.startswith(f"microslip {microslip.__version__}") and data.institution
+        assert data.mu_macro.ancillary_variables == "mu_macro_error"
         assert data.microslip_version == microslip.__version__
         assert len(data.source_digest) == 64
         assert json.loads(data.configuration)["sweep"]["velocity"] == [0.1, 1, 10]
@@ -231,19 +228,13 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
     assert {p.name for p in tmp_path.glob("*.nc*")} == {"bore.nc", ".bore.nc.sha256"}
 
 
-@pytest.mark.parametrize("block", [1, 2, 3, 4, 6, 7, 12])
+@pytest.mark.parametrize("block", [1, 4, 7])
 def test_blocks_of_any_size_give_the_same_dataset(block, tmp_path, monkeypatch, solver):
     with on_disk("transverse", tmp_path, NU) as whole:
         whole.load()
     monkeypatch.setattr(point_variables, "BLOCK", block)
-    held = []
-    seen = point_variables._column
-    monkeypatch.setattr(
-        point_variables, "_column", lambda b, *rest: held.append(len(b)) or seen(b, *rest)
-    )
     with on_disk("transverse", tmp_path, NU) as cut:
         xr.testing.assert_identical(cut.load(), whole)
-    assert max(held) <= block
 
 
 def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, solver):
@@ -281,19 +272,6 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
             assert np.isnan(data.tolerance) == (tolerance is None)
             if tolerance:
                 assert all("at the imposed resolution" in str(r) for r in data.reason.values.flat)
-
-
-def test_the_static_limit_at_any_poissons_ratio_is_a_point_of_a_sweep(tmp_path, solver):
-    axes = {"velocity": [0, 0.1], "amplitude": [0.5, 1], "poisson": [0, 0.3], "model": "polar"}
-    with on_disk("transverse", tmp_path, {"transverse": axes}) as data:
-        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
-        assert float(data.velocity[0]) == 0.0
-
-
-def test_periods_are_halves_of_full_ones_in_the_file(tmp_path, solver):
-    with on_disk("transverse", tmp_path) as data:
-        assert data.periods.dtype == float and set(data.periods.values.flat) == {2.5}
-        assert "full periods" in data.periods.long_name
 
 
 # Tables, plots and joins of a stranger's, in plain xarray

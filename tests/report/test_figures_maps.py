@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists
 
-from microslip.datasets.query import open_map
+from microslip.datasets.query import accessor
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, groups, map_panel, panels, signed
 from microslip.report.figures import style as look
@@ -111,7 +111,7 @@ def test_the_surface_is_that_of_friction_at():
     dataset = mapped()
     x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     assert min(fine.shape) > 150
-    said = open_map.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
     assert np.all(away <= said["mu_macro_error"].values)
     assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone

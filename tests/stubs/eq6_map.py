@@ -3,7 +3,6 @@
 import numpy as np
 import xarray as xr
 
-from microslip.datasets.query import open_map as opened  # noqa: F401  registers the accessor
 from microslip.theory import paper
 
 FINE = {"velocity": np.geomspace(0.01, 10, 41), "amplitude": np.linspace(0.05, 4, 41)}

@@ -65,6 +65,13 @@ def mu_of(request):
 
 
 def accuracy_result(request):
+    """Answers, and the computer of those with a time."""
+    result = untimed(request)
+    timed = {"machine": {"cpu": "a processor", "host": "here", "threads": 1}}
+    return result | timed if "seconds" in result else result
+
+
+def untimed(request):
     """Answers: errors of 0.1/cells^2, times of cells * 1e-3 s, work of cells^2; the slider is wrong
     by 0.005 and takes 1e-5 s."""
     kind = request["kind"]

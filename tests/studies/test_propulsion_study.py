@@ -1,13 +1,9 @@
 """The study of self-propelled motions: what is asked, its dataset and its figure."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from stubs import propulsion_stub, studies_stub
 
-from microslip.config import load
-from microslip.config.records import ConfigError
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.report.figures import drawing
 from microslip.studies import registry
@@ -77,34 +73,3 @@ def test_a_line_is_kept_and_found_again(tmp_path):
     assert again == first and seconds == 0.0
     assert first["result"]["converged"] and len(first["result"]["velocity"]) == 2
     assert list(tmp_path.glob("propulsion_lines/elliptic/**/*.json"))
-
-
-@pytest.mark.parametrize(
-    ("motion", "said"),
-    [
-        (
-            {"motion": "elliptic"},
-            "propulsion.motions.odd.motion: 'elliptic': allowed is a self-propelled",
-        ),
-        ({"motion": "eliptic"}, "propulsion.motions.odd.motion: 'eliptic'"),
-        ({"amplitude": 0}, "propulsion.motions.odd.amplitude: 0"),
-        ({"panel": " "}, "propulsion.motions.odd.panel"),
-    ],
-)
-def test_a_motion_that_cannot_be_asked_is_refused(motion, said):
-    with pytest.raises(ConfigError, match=said):
-        propulsion_stub.configured(motions={"odd": propulsion_stub.EIGHT | motion})
-
-
-def test_more_lines_than_a_panel_can_tell_apart_are_refused():
-    many = {f"line{i}": propulsion_stub.EIGHT for i in range(9)}
-    with pytest.raises(ConfigError, match="line8.panel: loops has more than 8 lines"):
-        propulsion_stub.configured(motions=many)
-    many = {f"line{i}": propulsion_stub.EIGHT | {"panel": f"p{i}"} for i in range(5)}
-    with pytest.raises(ConfigError, match="line4.panel: p4 is one of more than 4; allowed: p0, p1"):
-        propulsion_stub.configured(motions=many)
-
-
-def test_the_study_need_not_be_given():
-    shipped = load.load(Path(__file__).parents[2] / "config" / "config.yaml")
-    assert load.from_mapping({"sweeps": studies_stub.SWEEPS}).propulsion == shipped.propulsion

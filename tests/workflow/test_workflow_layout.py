@@ -1,6 +1,5 @@
 """What the workflow is made of besides its rules: captions, pages about datasets, its layout."""
 
-import re
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from microslip.config import load, schema
+from microslip.config import load
 from microslip.foundation import source_digest
 from microslip.report import dataset_page
 from microslip.report.figures import drawing
@@ -47,7 +46,8 @@ def test_every_dataset_has_a_caption(wildcards):
 @cache
 def settings():
     """The default configuration with its defaults filled in."""
-    return schema.filled(load.read_yaml(ROOT / "config" / "config.yaml"))
+    given = load.read_yaml(ROOT / "config" / "config.yaml")
+    return load.with_files_found(given, folders=[ROOT / "config"])
 
 
 @cache
@@ -87,20 +87,6 @@ def test_the_layout_is_that_of_the_catalogue():
     assert usage["software-stack-deployment"]
     assert (ROOT / "workflow" / "Snakefile").is_file()
     assert list((ROOT / "workflow" / "rules").glob("*.smk"))
-
-
-def test_the_configuration_is_described_key_by_key():
-    text = re.sub("```.*?```", "", (ROOT / "config" / "README.md").read_text(), flags=re.DOTALL)
-    named = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", text))))
-    assert keys_of(schema.schema()) <= named
-
-
-def keys_of(rule):
-    """Names of all keys that a schema knows."""
-    rule = schema._resolved(rule)
-    deeper = [*rule.get("properties", {}).values(), rule.get("additionalProperties")]
-    found = [keys_of(part) for part in deeper if isinstance(part, dict)]
-    return set(rule.get("properties", {})).union(*found)
 
 
 def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):

@@ -1,45 +1,45 @@
-"""The configuration of sweeps and studies: read YAML, check it, fill in defaults, expand the axes.
+"""Configurations of sweeps and studies: a YAML file to checked records.
 
-The JSON schema in config.schema.yaml holds the shape, the ranges, the defaults and a description of
-every key. What it cannot say is checked here: duplicates, and settings that do not go together.
-
-Imports nothing heavy, since the workflow reads it whenever it is parsed.
+`settings` holds types, ranges and defaults of all keys; here are the checks across keys, and the
+expansion of axes.
 """
 
 import codecs
 import io
+import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import yaml
 
-from microslip.config import axes as grids
-from microslip.config import certified, extended, propulsion, schema
-from microslip.config.axes import axis_of, refuse_crowd
+from microslip.config import certified, extended, schema
+from microslip.config.axes import DRIVES, MOST_POINTS, refuse_crowd
 from microslip.config.records import (
+    MODELS_OF_MOTION,
     MOTION_OF_SWEEP,
-    Accuracy,
-    Claims,
+    TAKEN,
     ConfigError,
     Configuration,
-    Stability,
-    StudyPoint,
+    Refusal,
+    Sweep,
 )
+from microslip.config.settings import Root, SteadySweep
 from microslip.config.strict_yaml import StrictLoader
+from microslip.foundation import named_files
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 from microslip.foundation.user_files import content_of
-from microslip.solver import method_names
 
-# The points of a study's map are computed by every model, at every tolerance.
-MOST_MAP_POINTS = 10_000
-
-# Bytes of a configuration; that of the paper has 18 kB, and PyYAML reads about 100 kB a second.
 MOST_BYTES = 1_000_000
+"""Largest size of a configuration; PyYAML reads about 100 kB a second."""
+MOST_PANELS, MOST_LINES = 12, 8
+"""Sweeps on a figure of maps and on one of lines, each counted once per Poisson's ratio."""
 
-# Up to these amplitudes there is static friction to be judged, by the maps of the paper.
-STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
+
+# Files
 
 
 def load(path: str | os.PathLike) -> Configuration:
@@ -53,7 +53,7 @@ def load(path: str | os.PathLike) -> Configuration:
 def read_yaml(path: str | os.PathLike) -> dict:
     """Parse a YAML file into a dict, refusing keys that occur twice.
 
-    Raises ConfigError, one line with the file, and the line in it that is at fault.
+    Raises ConfigError: one line with the file and the line in it that is at fault.
     """
     if "\0" in str(path):
         raise ConfigError(f"{str(path)!r}: cannot be read: no name of a file")
@@ -79,29 +79,13 @@ def read_yaml(path: str | os.PathLike) -> dict:
     if mapping is None:
         raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
-        raise ConfigError(
-            f"{path}: {schema.shown(mapping)} is not a mapping; allowed: keys and values"
-        )
+        said = f"{schema.shown(mapping)} is not a mapping; allowed: keys and values"
+        raise ConfigError(f"{path}: {said}")
     return mapping
 
 
-def with_files_found(
-    mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
-) -> dict:
-    """A parsed configuration, its defaults filled in, that says where the files lie that it names.
-
-    A job that is handed it finds them wherever it runs.  Arguments as for `from_mapping`; strict:
-    whether a file that is not there is refused.  Raises ConfigError.
-    """
-    filled = schema.filled(mapping)
-    where = f"{source}: extended"
-    found = extended.with_files_found(filled["extended"], where, folders, strict)
-    pulled = extended.with_files_found(filled["drives"], f"{source}: drives", folders, strict)
-    return filled | {"extended": found, "drives": pulled}
-
-
 def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
-    """Bytes as a stream that knows its name; raises ConfigError for what is not UTF-8."""
+    """Bytes as a stream with a name; raises ConfigError for what is not UTF-8."""
     try:
         text = io.StringIO(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -112,8 +96,72 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
         raise ConfigError(
             f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8{hint}"
         ) from None
-    text.name = str(path)  # what the parser calls it
+    text.name = str(path)  # the parser's name for it
     return text
+
+
+# Settings
+
+
+def with_files_found(
+    mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
+) -> dict:
+    """A parsed configuration with its defaults and the paths of its files filled in.
+
+    A job reads the result wherever it runs. Arguments as for `from_mapping`; strict: whether a
+    missing file is refused. Raises ConfigError.
+    """
+    filled = _settings(mapping, source).model_dump(warnings=False)
+    for key in ("extended", "drives"):
+        for name, sweep in filled[key].items():
+            with _errors_at(f"{source}: {key}.{name}"):
+                sweep["pressure"] = _with_path(sweep["pressure"], folders, strict)
+    return filled
+
+
+def _settings(mapping: dict, source: str) -> Root:
+    from pydantic import ValidationError
+
+    try:
+        return Root.model_validate(mapping)
+    except ValidationError as error:
+        line = schema.error_line(error.errors(include_url=False))
+        raise ConfigError(f"{source}: {_one_line(line)}") from None
+
+
+def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
+    """The name of a pressure, with path and digest of the file that it names, if any.
+
+    Raises InputError for a file that is not there, unless not strict.
+    """
+    if not named_files.speaks_of_file(pressure):
+        return pressure
+    try:
+        file = named_files.parsed(pressure)
+        if not (file.digest and file.path):
+            return named_files.found(pressure, folders)[0].placed
+        named_files.remember([pressure])  # found before
+    except InputError:
+        if strict:
+            raise
+    return pressure
+
+
+@contextmanager
+def _errors_at(where: str) -> Iterator[None]:
+    """Raise ConfigError, one line that begins with `where`, for refused values."""
+    try:
+        yield
+    except ConfigError:
+        raise
+    except Refusal as error:
+        key = f".{error.key}" if error.key else ""
+        raise ConfigError(_one_line(f"{where}{key}: {error}")) from None
+    except InputError as error:  # its arguments have the names of the keys
+        line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
+        raise ConfigError(_one_line(line)) from None
+    except ValueError as error:  # readers of files have words of their own
+        raise ConfigError(_one_line(f"{where}: {error}")) from None
 
 
 def from_mapping(
@@ -121,147 +169,145 @@ def from_mapping(
 ) -> Configuration:
     """Check a parsed configuration and return it as a Configuration.
 
-    source: how messages name the origin, usually the file. ask_solver: whether the solver, which
-    takes some half a second to import, is to say if it knows what `extended` names, and whether
-    files have to be there; nothing else in what is returned depends on it. folders: where files
-    that it names are looked for, before the working directory. Raises ConfigError.
+    Parameters
+    ----------
+    mapping : dict
+        Parsed YAML.
+    source : str
+        Name of the origin in messages, usually the file.
+    ask_solver : bool
+        Whether motions, pressures and drives are checked by the solver, which takes half a second
+        to import, and whether files have to be there. The result does not depend on it.
+    folders : iterable of paths
+        Folders of files that the configuration names, before the working directory.
+
+    Raises
+    ------
+    ConfigError
+        One line: source, key, value, what is allowed.
     """
-    try:
-        problem = schema.problem(mapping)
-    except RecursionError:
-        problem = "not valid YAML: a key that holds itself"
-    if problem is not None:
-        raise ConfigError(f"{source}: {_one_line(problem)}")
-    filled = with_files_found(mapping, source, folders, strict=ask_solver)
-    sweeps = {
-        name: grids.of_paper(name, filled["sweeps"][name], f"{source}: sweeps.{name}")
-        for name in MOTION_OF_SWEEP
-        if name in filled["sweeps"]
-    }
-    others = extended.sweeps(filled["extended"], f"{source}: extended")
-    pulled = extended.pulled_sweeps(filled["drives"], f"{source}: drives", others)
+    settings = _settings(mapping, source)
+    given: dict[str, SteadySweep] = {}
+    families: dict[str, dict[str, Sweep]] = {}
+    maps = {}
+    for family in ("sweeps", "extended", "drives"):
+        members = getattr(settings, family)
+        order = MOTION_OF_SWEEP if family == "sweeps" else members
+        families[family] = {}
+        for name in (name for name in order if name in members):
+            with _errors_at(f"{source}: {family}.{name}"):
+                if family != "sweeps":
+                    _refuse_taken(name, {*given} | ({*members} - {name}))
+                sweep = _sweep(name, members[name], folders, ask_solver)
+                families[family][name] = sweep
+                if ask_solver and family != "sweeps":
+                    extended.refuse_unsolvable(sweep)
+                if (adaptive := getattr(members[name], "adaptive", None)) is not None:
+                    map_ = certified.map_of(sweep, adaptive)
+                    maps[map_.name] = map_
+                    if ask_solver:
+                        certified.refuse_unsolvable(map_)
+        given |= members
+    with _errors_at(f"{source}: extended"):
+        _refuse_mixtures(list(families["extended"].values()))
     if ask_solver:
-        extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
-        extended.refuse_unsolvable(list(pulled.values()), f"{source}: drives")
-    extended.refuse_mixtures(list(others.values()), f"{source}: extended")
-    drifting = certified.maps(pulled, filled["drives"], f"{source}: drives")
-    if ask_solver and drifting:
-        certified.refuse_unsolvable(drifting, f"{source}: drives")
-    given = filled["sweeps"] | filled["extended"] | filled["drives"]
+        from microslip.adaptive.checks import checked_propulsion
+
+        for name, motion in settings.propulsion.motions.items():
+            with _errors_at(f"{source}: propulsion.motions.{name}"):
+                checked_propulsion(motion.motion, motion.amplitude, poisson=motion.poisson)
     return Configuration(
-        results=filled["results"],
+        results=settings.results,
+        **families,
         points_per_job={
-            name: given[name]["points_per_job"] or filled["points_per_job"]
-            for name in (*sweeps, *others, *pulled)
+            name: sweep.points_per_job or settings.points_per_job for name, sweep in given.items()
         },
-        sweeps=sweeps,
-        extended=others,
-        drives=pulled,
-        histories=filled["histories"],
-        accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
-        stability=_stability(filled["stability"], f"{source}: stability"),
-        claims=_claims(filled["claims"], f"{source}: claims"),
-        propulsion=propulsion.study(filled["propulsion"], f"{source}: propulsion", ask_solver),
-        certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
-        | certified.maps(others, filled["extended"], f"{source}: extended")
-        | drifting,
+        histories={name: dict(run) for name, run in settings.histories},
+        accuracy=settings.accuracy,
+        stability=settings.stability,
+        claims=settings.claims,
+        propulsion=settings.propulsion,
+        certified=maps,
     )
 
 
-# From settings to studies
+# Sweeps
 
 
-def _accuracy(given: dict, where: str) -> Accuracy:
-    grid = given["map"]
-    axes = {
-        name: axis_of(grid[name], f"{where}.map.{name}", positive=True)
-        for name in ("velocity", "amplitude_transverse", "amplitude_bore", "tolerance")
-    }
-    for name, values in axes.items():
-        if len(values) < 2 and name != "tolerance":
-            raise ConfigError(
-                f"{where}.map.{name}: {list(values)} is not allowed; allowed: two numbers or more"
+def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
+    """The Sweep of settings; raises Refusal for settings that do not go together."""
+    drives = tuple(
+        (drive, tuple(axis), isinstance(axis.raw, list | dict))
+        for drive in DRIVES
+        if (axis := getattr(given, drive, None)) is not None
+    )
+    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(given, "amplitude", None)
+    more: dict[str, Any] = {}
+    if not of_paper:
+        if not drives and not hasattr(given, "group"):
+            raise Refusal("missing; required: force or stiffness")
+        pressure = _with_path(given.pressure, folders, strict)
+        more = {"title": given.title or name, "pressure": _by_content(pressure), "drives": drives}
+        more |= {key: getattr(given, key) for key in ("group", "contacts") if hasattr(given, key)}
+    sweep = Sweep(
+        name=name,
+        motion=MOTION_OF_SWEEP[name] if of_paper else given.motion,
+        velocity=tuple(given.velocity or ()),
+        amplitude=None if amplitude is None else tuple(amplitude),
+        poisson=tuple(given.poisson),
+        poisson_is_axis=isinstance(given.poisson.raw, list),
+        model=given.model,
+        tolerance=None if given.tolerance is None else float(number(given.tolerance)),
+        cells=given.cells,
+        steps=given.steps,
+        **more,
+    )
+    axes = [sweep.velocity or (None,), sweep.amplitude or (None,), sweep.poisson]
+    refuse_crowd(math.prod(map(len, axes + [values for _, values, _ in drives])), MOST_POINTS)
+    models = MODELS_OF_MOTION[sweep.motion] if of_paper else (sweep.model,)
+    if sweep.model not in models:
+        said = f'"{sweep.model}" does not apply to {sweep.motion}; allowed: {", ".join(models)}'
+        raise Refusal(said, "model")
+    if of_paper and sweep.model == "radial" and sweep.poisson[-1] > 0:
+        said = f"{sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
+        raise Refusal(said, "poisson")
+    return sweep
+
+
+def _refuse_taken(name: str, others: Iterable[str]) -> None:
+    """Refuse the name of another result."""
+    if name in TAKEN or name in others or name.removeprefix("certified_") in others:
+        raise Refusal("another result has this name; allowed: a new one")
+
+
+def _by_content(pressure: str) -> str:
+    """The name of a pressure, without the place of a file whose content is known."""
+    if not named_files.speaks_of_file(pressure):
+        return pressure
+    file = named_files.parsed(pressure)
+    return file.name if file.digest else pressure
+
+
+def _refuse_mixtures(sweeps: list[Sweep]) -> None:
+    """Refuse a group of sweeps that cannot be one figure."""
+    for group in dict.fromkeys(sweep.group for sweep in sweeps):
+        together = [sweep for sweep in sweeps if sweep.group == group]
+        first, last = together[0], together[-1]
+        for sweep in together:
+            if sweep.drawn_over != first.drawn_over:
+                raise Refusal(
+                    f"{group} is drawn over {first.drawn_over}, as {first.name} asks, and this "
+                    f"over {sweep.drawn_over}; allowed: another group",
+                    f"{sweep.name}.group",
+                )
+        most = MOST_PANELS if first.spans_a_map else MOST_LINES
+        drawn = sum(len(sweep.poisson) for sweep in together)
+        if drawn > most:
+            ratios = " at their Poisson's ratios" if drawn > len(together) else ""
+            raise Refusal(
+                f"{group} has {drawn} sweeps{ratios}; allowed: up to {most}, or another group",
+                f"{last.name}.group",
             )
-    for name in ("amplitude_transverse", "amplitude_bore"):
-        count = len(axes["velocity"]) * len(axes[name])
-        refuse_crowd(count, f"{where}.map.velocity x {name}", MOST_MAP_POINTS)
-    points = [_study_point(name, p, f"{where}.points") for name, p in given["points"].items()]
-    return Accuracy(
-        methods=_methods(given["methods"], where),
-        points={point.name: point for point in points},
-        levels=given["levels"],
-        repeats=given["repeats"],
-        map_velocity=axes["velocity"],
-        map_amplitude={s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")},
-        map_tolerance=axes["tolerance"][::-1],
-    )
-
-
-def _stability(given: dict, where: str) -> Stability:
-    axes = given["axes"]
-    return Stability(
-        methods=_methods(given["methods"], where),
-        tolerance=float(number(given["tolerance"])),
-        axes=None if axes is None else tuple(_once(axes, f"{where}.axes")),
-    )
-
-
-def _claims(given: dict, where: str) -> Claims:
-    names = ("velocity", "amplitude_transverse", "amplitude_bore")
-    axes = {name: axis_of(given[name], f"{where}.{name}", positive=True) for name in names}
-    for name in names[1:]:
-        count = len(axes["velocity"]) * len(axes[name])
-        refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
-    amplitude = {s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")}
-    for motion, values in amplitude.items():
-        if values[0] > STATIC_AMPLITUDES[motion]:
-            raise ConfigError(
-                f"{where}.amplitude_{motion}: {list(values)} is not allowed; allowed: at least one "
-                f"number up to {STATIC_AMPLITUDES[motion]:g}, where there is static friction"
-            )
-    return Claims(
-        tolerance=float(number(given["tolerance"])),
-        velocity=axes["velocity"],
-        amplitude=amplitude,
-        cells=given["cells"],
-    )
-
-
-def _study_point(name: str, given: dict, where: str) -> StudyPoint:
-    where = f"{where}.{name}.amplitude"
-    steady, amplitude = given["motion"] == "continuous-bore", given["amplitude"]
-    if steady and amplitude is not None:
-        raise ConfigError(
-            f"{where}: {amplitude} is not allowed; {given['motion']} has no amplitude"
-        )
-    if not steady and amplitude is None:
-        raise ConfigError(f"{where}: missing; required for {given['motion']}")
-    return StudyPoint(
-        name=str(name),
-        motion=given["motion"],
-        velocity=float(number(given["velocity"])),
-        amplitude=None if steady else float(number(amplitude)),
-        poisson=float(number(given["poisson"])),
-        title=given["title"] or str(name),
-    )
-
-
-def _methods(given: list[str] | None, where: str) -> tuple[str, ...]:
-    if given is None:
-        return method_names.names()
-    for i, text in enumerate(_once(given, f"{where}.methods")):
-        try:
-            method_names.check(text)
-        except InputError as error:
-            raise ConfigError(f"{where}.methods[{i}]: {error.value!r}: {error.allowed}") from None
-    return tuple(given)
-
-
-def _once(values: list[str], where: str) -> list[str]:
-    twice = next((value for i, value in enumerate(values) if value in values[:i]), None)
-    if twice is not None:
-        raise ConfigError(f"{where}: {twice} occurs twice; allowed: different values")
-    return values
 
 
 def _one_line(text: object) -> str:

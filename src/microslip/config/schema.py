@@ -1,108 +1,60 @@
-"""The JSON schema of a configuration, and what is wrong with one in a line.
-
-The schema, config.schema.yaml, lies beside this module, so that an installed package has it; the
-workflow's folder of schemas links to it. It is closed: a key that it does not know is an error.
-"""
+"""The JSON schema of a configuration, and one line for what is wrong with one."""
 
 import difflib
 import json
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import jsonschema
-import yaml
+from microslip.config.records import Refusal
 
-PATH = Path(__file__).parent / "config.schema.yaml"
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+UNKNOWN = ("extra_forbidden", "invalid_key")
+"""Types of pydantic's errors for unknown keys."""
 
 
 @cache
 def schema() -> dict:
-    """Return the schema as a dict, shared by all callers: do not change it."""
-    # Every job reads it; libyaml, where PyYAML has it, takes a fifth of the time.
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    return yaml.load(PATH.read_text(encoding="utf-8"), loader)
+    """Return the JSON schema as a dict, shared by all callers: do not change it."""
+    from pydantic.json_schema import GenerateJsonSchema
+
+    from microslip.config.settings import Root
+
+    class Generator(GenerateJsonSchema):
+        """Titles are those of the models; names of keys have a schema of their own."""
+
+        def field_title_should_be_set(self, schema: Any) -> bool:
+            return False
+
+        def dict_schema(self, schema: Any) -> dict:
+            keys, values = schema["keys_schema"], schema["values_schema"]
+            names = {"propertyNames": self.generate_inner(keys)}
+            rule = super().dict_schema(schema) | names
+            rule.pop("patternProperties", None)
+            return rule | {"additionalProperties": self.generate_inner(values)}
+
+    dialect = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": dialect} | Root.model_json_schema(schema_generator=Generator)
 
 
-def problem(mapping: object) -> str | None:
-    """Say in one line what is wrong with a configuration: key, value, what is allowed.
+def options(rule: dict) -> list[dict]:
+    """Alternatives of a rule of the schema, without references."""
+    if "$ref" in rule:
+        return options(schema()["$defs"][rule["$ref"].rpartition("/")[2]])
+    alternatives = rule.get("anyOf") or rule.get("oneOf")
+    return [o for one in alternatives for o in options(one)] if alternatives else [rule]
 
-    mapping: parsed YAML. Returns None if it fits the schema.
+
+def error_line(errors: Iterable["ErrorDetails"]) -> str:
+    """The first of pydantic's errors in one line: key, value, what is allowed.
+
+    A mistyped key is both unknown and missing; the unknown key comes first, since it helps more.
     """
-    not_finite = _not_finite(mapping, ())
-    if not_finite:
-        return not_finite
-    errors = jsonschema.Draft202012Validator(schema()).iter_errors(mapping)
-    # A mistyped key is both unknown and missing; the first of the two helps more.
-    first = min(
-        errors, key=lambda e: (e.validator != "additionalProperties", _key(e)), default=None
-    )
-    return None if first is None else _explain(first)
-
-
-def filled(mapping: object) -> dict:
-    """Copy a configuration that fits the schema, with all defaults filled in."""
-    return _filled(mapping, schema())
-
-
-# Defaults
-
-
-def _filled(value: Any, rule: dict) -> Any:
-    """Copy `value` with the defaults of the schema `rule` filled in, and whole floats as int."""
-    rule = _resolved(rule)
-    if isinstance(value, dict):
-        rules = rule.get("properties", {})
-        whole = {k: _resolved(r)["default"] for k, r in rules.items() if "default" in _resolved(r)}
-        # Where the keys are free, all their values follow one rule.
-        free = rule.get("additionalProperties")
-        return {k: _filled(v, rules.get(k, free)) for k, v in {**whole, **value}.items()}
-    if isinstance(value, list):
-        return list(value)
-    if "integer" in rule.get("type", ()) and value is not None:
-        return int(value)
-    return value
-
-
-def _resolved(rule: dict) -> dict:
-    if "$ref" not in rule:
-        return rule
-    return {**schema()["$defs"][rule["$ref"].rpartition("/")[2]], **rule}
-
-
-# Messages
-
-
-def _not_finite(value: object, path: tuple) -> str | None:
-    # JSON has no such numbers, so the schema does not see them.
-    if isinstance(value, float) and not math.isfinite(value):
-        return f"{_dotted(path)}: {value} is not allowed; allowed: a finite number"
-    items: Iterable[tuple[object, object]] = ()
-    if isinstance(value, dict):
-        items = value.items()
-    elif isinstance(value, list):
-        items = enumerate(value)
-    return next(filter(None, (_not_finite(item, (*path, key)) for key, item in items)), None)
-
-
-def _explain(error: jsonschema.ValidationError) -> str:
-    """One line for a jsonschema error: key, value, what is allowed."""
-    rule, value = error.schema, error.instance
-    if error.validator == "additionalProperties":
-        return _unknown_key(error)
-    if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in value)
-        path = _dotted((*error.absolute_path, missing))
-        return f"{path}: missing; required: {', '.join(error.validator_value)}"
-    where = _key(error)
-    kinds = set(_types(rule))
-    if isinstance(value, str) and {"number", "integer"} & kinds and "string" not in kinds:
-        return f"{where}: {shown(value)} is text; {_as_number(value)}"
-    hint = near_miss(value, rule.get("enum", ()))
-    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {_allowed(rule)}"
+    return _line(min(errors, key=lambda e: (e["type"] not in UNKNOWN, _dotted(_keys(e["loc"])))))
 
 
 def near_miss(given: object, known: Iterable[str]) -> str:
@@ -111,11 +63,63 @@ def near_miss(given: object, known: Iterable[str]) -> str:
     return f"did you mean {near[0]}? " if near else ""
 
 
-def _unknown_key(error: jsonschema.ValidationError) -> str:
-    known = list(error.schema.get("properties", {}))
-    unknown = next(key for key in error.instance if key not in known)
-    path = _dotted((*error.absolute_path, str(unknown)))
-    return f"{path}: unknown key; {near_miss(unknown, known)}allowed: {', '.join(known)}"
+def shown(value: object) -> str:
+    """Write a value as in JSON, cut to 60 characters."""
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (ValueError, RecursionError):  # it contains itself
+        text = repr(value)
+    text = text.encode("utf-8", "backslashreplace").decode()  # halves of a character, too
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+# Messages
+
+
+def _line(error: "ErrorDetails") -> str:
+    keys, value, kind = _keys(error["loc"]), error["input"], error["type"]
+    refusal = error.get("ctx", {}).get("error")
+    if isinstance(refusal, Refusal):
+        return f"{_dotted([*keys, *filter(None, [refusal.key])])}: {refusal}"
+    if kind in UNKNOWN:
+        keys[-1] = str(keys[-1])
+        known = [key for rule in _rules(keys[:-1]) for key in rule.get("properties", ())]
+        hint = near_miss(keys[-1], known)
+        return f"{_dotted(keys)}: unknown key; {hint}allowed: {', '.join(known)}"
+    if kind == "missing":
+        required = next(r["required"] for r in _rules(keys[:-1]) if "required" in r)
+        return f"{_dotted(keys)}: missing; required: {', '.join(required)}"
+    of_name = error["loc"][-1:] == ("[key]",)
+    keys = _keys(error["loc"][:-2]) if of_name else keys
+    rules = [rule["propertyNames"] if of_name else rule for rule in _rules(keys)]
+    where = _dotted(keys) or "(top level)"
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{where}: {value} is not allowed; allowed: a finite number"
+    types = {rule.get("type") for rule in rules}
+    if isinstance(value, str) and {"number", "integer"} & types and "string" not in types:
+        return f"{where}: {shown(value)} is text; {_as_number(value)}"
+    hint = near_miss(value, [name for rule in rules for name in rule.get("enum", ())])
+    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {allowed_values(rules)}"
+
+
+def _keys(location: tuple[int | str, ...]) -> list[int | str]:
+    """Keys and indices of a location, without the alternatives of unions and "[key]"."""
+    return [key for key in location if key not in ("(list)", "(spacing)", "(number)", "[key]")]
+
+
+def _rules(keys: list[int | str]) -> Iterator[dict]:
+    """Alternatives of the rule for the value at these keys."""
+    rules = options(schema())
+    for key in keys:
+        inner = [_inside(rule, key) for rule in rules]
+        rules = [option for rule in inner if rule for option in options(rule)]
+    yield from rules
+
+
+def _inside(rule: dict, key: int | str) -> dict | None:
+    if rule.get("type") == "array":
+        return rule["items"] if isinstance(key, int) else None
+    return rule.get("properties", {}).get(key) or rule.get("additionalProperties") or None
 
 
 def _as_number(text: str) -> str:
@@ -135,47 +139,37 @@ def _as_number(text: str) -> str:
     return f"write {mantissa}e{int(exponent):+d}"
 
 
-def _allowed(rule: dict) -> str:
+def allowed_values(rules: list[dict]) -> str:
+    """Words for the values that one of the rules allows."""
+    kinds = [rule.get("type") for rule in rules]
+    texts = ["or null" if rule.get("type") == "null" else _phrase(rule) for rule in rules]
+    if kinds[:2] == ["number", "array"]:
+        texts[1] = "or a list of them"
+    if "object" in kinds and "array" in kinds:
+        texts[-1] = f"or {texts[-1]}"
+        texts[-2] += ","
+    return " ".join(texts)
+
+
+def _phrase(rule: dict) -> str:
     if "enum" in rule:
         return ", ".join(rule["enum"])
-    kinds = _types(rule)
-    if "array" in kinds and "object" in kinds:
-        return f"a list of {_allowed(_resolved(rule['items']))}, or linear or log spacing"
-    if kinds[:1] == ["array"]:
-        one = _allowed(_resolved(rule["items"]))
-        return " ".join([f"a list of {one}", *(["or null"] if "null" in kinds else [])])
-    if kinds == ["object"] and "properties" not in rule:
-        return "a mapping of names" + (", one at least" if rule.get("minProperties") else "")
-    if kinds == ["object"]:
+    if " " in rule.get("title", ""):
+        return rule["title"]
+    kind = rule["type"]
+    if kind == "array":
+        return f"a list of {allowed_values(options(rule['items'])).replace('a number', 'numbers')}"
+    if kind == "object" and "properties" in rule:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
-    words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
-    words |= {"string": rule.get("title", "text"), "null": "or null"}
+    if kind == "object":
+        return "a mapping of names" + (", one at least" if "minProperties" in rule else "")
+    words = {"number": "a number", "integer": "a whole number", "string": "text"}
+    word = "an even number" if rule.get("multipleOf") == 2 else words[kind]
     limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
-    if rule.get("multipleOf") == 2:
-        words["integer"] = "an even number"
-    if kinds[:1] == ["string"] and "number" in kinds:
-        words["number"] = "or a number"
-    first, *others = [words[kind] for kind in kinds]
-    return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
+    return f"{word} {' and '.join(ranges)}".strip()
 
 
-def _types(rule: dict) -> list[str]:
-    kinds = rule.get("type", [])
-    return [kinds] if isinstance(kinds, str) else kinds
-
-
-def _key(error: jsonschema.ValidationError) -> str:
-    return _dotted(error.absolute_path) or "(top level)"
-
-
-def _dotted(path: Iterable) -> str:
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
-    return text.removeprefix(".")
-
-
-def shown(value: object) -> str:
-    """Write a value as in JSON, cut to 60 characters."""
-    text = json.dumps(value, default=str, ensure_ascii=False)
-    text = text.encode("utf-8", "backslashreplace").decode()  # halves of a character, too
-    return text if len(text) <= 60 else f"{text[:57]}..."
+def _dotted(keys: Iterable[int | str]) -> str:
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)
+    return text.replace(".[", "[").removeprefix(".")

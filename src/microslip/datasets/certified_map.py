@@ -16,12 +16,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from microslip.config.extended import solver_names
 from microslip.config.quantities import MU_MACRO
 from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_rounds
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
@@ -83,7 +83,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         {
             **_at_points(map_, values, errors),
             **_borders(coordinates, found.cells),
-            "cell_error": _variable("cell", found.errors, _bound_of(map_)),
+            "cell_error": variable("cell", found.errors, _bound_of(map_)),
             "cell_node": (
                 ("cell", "node"),
                 picked,
@@ -148,13 +148,13 @@ def _at_points(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> di
     """Variables of what was solved for."""
     if map_.force is None:
         return {
-            "mu_macro": _variable("point", values, MU_MACRO.description),
-            "mu_macro_error": _variable("point", errors, "estimated error of mu_macro"),
+            "mu_macro": variable("point", values, MU_MACRO.description),
+            "mu_macro_error": variable("point", errors, "estimated error of mu_macro"),
         }
     velocity, error = velocity_of(values, errors)
     return {
-        "velocity": _variable("point", velocity, "mean forward velocity"),
-        "velocity_error": _variable("point", error, "estimated error of velocity"),
+        "velocity": variable("point", velocity, "mean forward velocity"),
+        "velocity_error": variable("point", error, "estimated error of velocity"),
     }
 
 
@@ -171,9 +171,5 @@ def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cel
         for name, ends, verb in zip(
             BORDERS[direction], borders[:, :, i].T, ("begins", "ends"), strict=True
         ):
-            found[name] = _variable("cell", ends, f"{SCALED[direction]} where the cell {verb}")
+            found[name] = variable("cell", ends, f"{SCALED[direction]} where the cell {verb}")
     return found
-
-
-def _variable(dim: str, values: ArrayLike, long_name: str) -> tuple:
-    return dim, np.array(values, float), {"long_name": long_name, "units": "1"}

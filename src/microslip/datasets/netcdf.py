@@ -18,6 +18,7 @@ from typing import Any
 import netCDF4
 import xarray as xr
 
+from microslip.datasets.variables import link_errors
 from microslip.foundation.errors import CacheError
 
 Groups = Mapping[str, tuple[str, tuple[str, ...]]]
@@ -67,6 +68,7 @@ def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr
 
 
 def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
+    dataset = link_errors(dataset)
     encoding = {name: _encoding(name, v.dtype.kind) for name, v in dataset.variables.items()}
     dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding, **how)
 

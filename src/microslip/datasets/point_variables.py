@@ -14,6 +14,7 @@ from microslip.config.quantities import MU_MACRO
 from microslip.config.quantities import TORQUE as TORQUE_OF
 from microslip.config.records import Sweep
 from microslip.datasets.netcdf import characters_of
+from microslip.datasets.variables import attributes, error_of
 from microslip.foundation.canonical import canonical_json
 
 # Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply. A
@@ -87,6 +88,7 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     boxes = list(_boxes(shape))
     for name, (kind, long_name) in table.items():
         _create(file, name, kind, long_name, tuple(axes), boxes[0] if len(boxes) > 1 else None)
+        file[name].setncatts(error_of(name, table))
     records, count = iter(points), 0
     versions: set[str] = set()
     for box in boxes:
@@ -116,6 +118,7 @@ def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) 
     file.set_auto_mask(False)
     for name, (source, sign, long_name) in CHANGES.items():
         _create(file, name, float, long_name, dims, box)
+        file[name].setncatts(error_of(name, CHANGES))
         first = file[source][0]
         for i in range(file[source].shape[0]):
             file[name][i] = file[source][i] + sign * first
@@ -184,14 +187,3 @@ def _text(value: str, width: int) -> bytes:
     if len(coded) <= width:
         return coded
     return coded[: width - 3].decode(errors="ignore").encode() + b"..."
-
-
-def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
-    """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
-    if kind is str:
-        return {"long_name": long_name}
-    if kind is bool:
-        # Stored as bytes with these meanings; xarray gives them back as bool.
-        values = np.array([0, 1], np.int8)
-        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
-    return {"long_name": long_name, "units": units}

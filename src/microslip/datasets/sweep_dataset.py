@@ -12,13 +12,13 @@ from collections.abc import Iterable, Iterator, Sequence
 import netCDF4
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 import microslip
 from microslip.config.extended import solver_names
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.records import Sweep
 from microslip.datasets import netcdf, point_variables, theory_limits
+from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.motions.by_name import motion_named
@@ -26,6 +26,9 @@ from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
+METHOD = "boundary element method, elastic half-space with local Coulomb friction"
+INSTITUTION = "not stated"
+"""The workflow knows no institution; whoever publishes a dataset fills in the attribute."""
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
 
 
@@ -123,6 +126,8 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     return {
         "Conventions": CONVENTIONS,
         "title": title,
+        "source": f"microslip {microslip.__version__}: {METHOD}",
+        "institution": INSTITUTION,
         "references": PAPER,
         "microslip_version": microslip.__version__,
         "source_digest": source_digest.of_solver(),
@@ -206,11 +211,11 @@ def _force_history(record: dict) -> dict[str, tuple]:
     result, request = record["result"], record["request"]
     step, friction = "history_step", "friction force over mu F_z"
     return {
-        "history_phase": _variable(step, result["phase"], "phase of the oscillation", "rad"),
-        "history_force_forward": _variable(step, result["force_forward"], f"forward {friction}"),
-        "history_force_lateral": _variable(step, result["force_lateral"], f"lateral {friction}"),
-        "history_velocity": _variable((), request["velocity"], "forward velocity of the history"),
-        "history_amplitude": _variable((), request["amplitude"], "amplitude of the history"),
+        "history_phase": variable(step, result["phase"], "phase of the oscillation", units="rad"),
+        "history_force_forward": variable(step, result["force_forward"], f"forward {friction}"),
+        "history_force_lateral": variable(step, result["force_lateral"], f"lateral {friction}"),
+        "history_velocity": variable((), request["velocity"], "forward velocity of the history"),
+        "history_amplitude": variable((), request["amplitude"], "amplitude of the history"),
     }
 
 
@@ -226,49 +231,34 @@ FIELD = {
 def _traction_field(record: dict) -> dict[str, tuple]:
     result, velocity = record["result"], record["request"]["velocity"]
     centre = "centre of rotation, lateral, over a"
-    variables = {f"field_{name}": _variable("cell", result[name], FIELD[name]) for name in FIELD}
+    variables = {f"field_{name}": variable("cell", result[name], FIELD[name]) for name in FIELD}
     return variables | {
-        "field_velocity": _variable((), velocity, "forward velocity of the traction field"),
-        "field_centre_lateral": _variable((), result["centre_lateral"], centre),
+        "field_velocity": variable((), velocity, "forward velocity of the traction field"),
+        "field_centre_lateral": variable((), result["centre_lateral"], centre),
     }
 
 
 def _transients(records: Sequence[dict]) -> dict[str, tuple]:
     velocity = float(records[0]["request"]["velocity"])
     starts = [record["request"]["start"] for record in records]
-    dims = ("start", "transient_step")
-    rows = {
-        name: np.array([record["result"][name] for record in records], float)
-        for name in ("displacement_forward", "force_forward", "torque")
+    dims, force = ("start", "transient_step"), "forward friction force over mu F_z"
+    torque = point_variables.DESCRIPTIONS["mu_torque"]
+    texts = {"displacement": "forward travel over u_lim", "force_forward": force}
+    texts["torque"] = point_variables.TORQUE
+    names = {"displacement": "displacement_forward"}  # in the records
+    found = {
+        f"transient_{name}": variable(
+            dims, [record["result"][names.get(name, name)] for record in records], text
+        )
+        for name, text in texts.items()
     }
-    force, torque = "forward friction force over mu F_z", point_variables.TORQUE
-    steady = FORMS["continuous-bore"]
-    return {
-        "start": ("start", starts, {"long_name": "initial state of the transient"}),
-        "transient_displacement": _variable(
-            dims, rows["displacement_forward"], "forward travel over u_lim"
-        ),
-        "transient_force_forward": _variable(dims, rows["force_forward"], force),
-        "transient_torque": _variable(
-            dims, rows["torque"], torque, description=point_variables.DESCRIPTIONS["mu_torque"]
-        ),
-        "transient_velocity": _variable((), velocity, "forward velocity of the transients"),
-        "transient_force_theory": _variable(
-            (),
-            steady["mu_forward_theory"].function(velocity),
-            "steady forward force (Eq 21)",
-            description=f"steady {force} (Eq 21)",
-        ),
-        "transient_torque_theory": _variable(
-            (),
-            steady["mu_torque_theory"].function(velocity),
-            "steady torque (Eq 22)",
-            description=f"steady {point_variables.DESCRIPTIONS['mu_torque']} (Eq 22)",
-        ),
-    }
-
-
-def _variable(
-    dims: str | tuple[str, ...], values: ArrayLike, long_name: str, units: str = "1", **more: str
-) -> tuple:
-    return dims, np.array(values, float), {"long_name": long_name, "units": units} | more
+    found["transient_torque"][2]["description"] = torque
+    said = "forward velocity of the transients"
+    found["transient_velocity"] = variable((), velocity, said)
+    for name, form, text, what in (
+        ("force", "mu_forward_theory", "steady forward force (Eq 21)", f"steady {force} (Eq 21)"),
+        ("torque", "mu_torque_theory", "steady torque (Eq 22)", f"steady {torque} (Eq 22)"),
+    ):
+        value = FORMS["continuous-bore"][form].function(velocity)
+        found[f"transient_{name}_theory"] = variable((), value, text, description=what)
+    return {"start": ("start", starts, {"long_name": "initial state of the transient"})} | found

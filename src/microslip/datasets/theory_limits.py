@@ -5,10 +5,10 @@ fine enough to draw. A formula in theory/catalogue.py appears in the dataset of 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from microslip.config.extended import solver_names
 from microslip.config.records import Sweep
+from microslip.datasets.variables import variable
 from microslip.theory import catalogue
 from microslip.theory.catalogue import ClosedForm
 
@@ -59,7 +59,8 @@ def variables(sweep: Sweep) -> dict:
         axes = [_axis(sweep, dim) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))
-        found[name] = _variable(form.arguments[::-1], values, form.long_name, form.description)
+        about: dict = {"description": form.description} if form.description else {}
+        found[name] = variable(form.arguments[::-1], values, form.long_name, **about)
     return found
 
 
@@ -77,9 +78,9 @@ def curves(sweep: Sweep) -> dict:
         values = form.function(fine, *(axis[-1] for axis in axes[1:]))
         at = f", at amplitude {axes[1][-1]:g}" if others else ""
         group = found.setdefault(f"{along}s", {})
-        group[along] = _variable((along,), fine, f"fine {first} axis of the limits")
+        group[along] = variable((along,), fine, f"fine {first} axis of the limits")
         said = f"{form.description or form.long_name}{at}"
-        group[f"{name}_curve"] = _variable((along,), values, form.long_name, said)
+        group[f"{name}_curve"] = variable((along,), values, form.long_name, description=said)
     return found
 
 
@@ -91,10 +92,3 @@ def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
         spaced = np.geomspace(positive[0], axis[-1], CURVE_POINTS)
         return np.array([float(f"{v:.12g}") for v in spaced])
     return np.linspace(axis[0], axis[-1], CURVE_POINTS)
-
-
-def _variable(
-    dims: tuple[str, ...], values: ArrayLike, long_name: str, description: str = ""
-) -> tuple:
-    more = {"description": description} if description else {}
-    return dims, np.array(values, float), {"long_name": long_name, "units": "1"} | more

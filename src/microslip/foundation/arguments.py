@@ -9,8 +9,8 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values: larger ones are typing errors, or exceed the memory or range of floats.
-A test compares them with the schema of configurations."""
+"""Largest allowed values: larger ones are typing errors, or exceed the memory or range of
+floats."""
 SMALLEST_TOLERANCE = 1e-6
 LARGEST_BODY = 1e6
 """Largest allowed stiffness, mass and damping of a drive, in working units."""

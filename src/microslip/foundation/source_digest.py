@@ -48,8 +48,8 @@ ASKS = {"sweeps/__init__.py", "sweeps/evaluate.py"}
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
 """Folders of modules that requests name, and the key of the request."""
 
-NAMES_ONLY = {f"foundation/{name}.py" for name in ("kernel_cache", "source_digest")}
-"""Modules that name results and folders; the values of results do not depend on them."""
+NAMES_ONLY = {f"foundation/{name}.py" for name in ("accessor", "kernel_cache", "source_digest")}
+"""Modules on which the values of results do not depend."""
 
 HINTS = {"annotation": ast.arg, "returns": ast.FunctionDef | ast.AsyncFunctionDef}
 """Fields of the syntax tree that hold the hints of functions, and the nodes that have them.

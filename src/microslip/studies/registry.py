@@ -10,7 +10,6 @@ heavy, since the workflow reads it whenever it is parsed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -47,7 +46,7 @@ def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
 
 def settings(study: str, configuration: Configuration) -> dict:
     """All settings that the dataset of a study depends on, as a dict for JSON."""
-    return asdict(getattr(configuration, study))
+    return getattr(configuration, study).model_dump()
 
 
 def build(study: str, configuration: Configuration, answer: Callable) -> object:

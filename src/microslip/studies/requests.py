@@ -11,7 +11,8 @@ Requests that are timed (trial, choice, scaling) name the model of the CPU, so t
 different CPUs have different keys and never meet in one chart.
 """
 
-from microslip.config.records import StudyPoint
+from typing import NamedTuple
+
 from microslip.foundation.canonical import number
 from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
@@ -22,8 +23,17 @@ MOST_WORK = 5_000_000
 """Step solves x unknowns that a probe may take: several times what the shipped method needs."""
 
 
-def of_point(point: StudyPoint) -> dict:
-    """The part of a request that says where: point is a records.StudyPoint."""
+class Point(NamedTuple):
+    """A point of a motion, all numbers dimensionless; amplitude None: the motion is steady."""
+
+    motion: str
+    velocity: float
+    amplitude: float | None = None
+    poisson: float = 0.0
+
+
+def of_point(point: Point) -> dict:
+    """The part of a request that names the point."""
     return {
         "motion": point.motion,
         "velocity": number(point.velocity),
@@ -33,7 +43,7 @@ def of_point(point: StudyPoint) -> dict:
 
 
 def trial(
-    point: StudyPoint, model: str, method: str, level: Level, tolerance: float, repeats: int
+    point: Point, model: str, method: str, level: Level, tolerance: float, repeats: int
 ) -> dict:
     """One timed run; level: ladders.Level.  A steady motion takes no steps."""
     return of_point(point) | {
@@ -49,18 +59,14 @@ def trial(
     }
 
 
-def choice(point: StudyPoint, tolerance: float, repeats: int) -> dict:
+def choice(point: Point, tolerance: float, repeats: int) -> dict:
     """One timed solve, as anybody would call it."""
     kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
     return of_point(point) | kind | {"repeats": repeats}
 
 
 def probe(
-    point: StudyPoint,
-    method: str,
-    tolerance: float,
-    cells: int | None = None,
-    steps: int | None = None,
+    point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
 ) -> dict:
     """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
     tolerance."""
@@ -69,7 +75,7 @@ def probe(
     return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
-def reference(point: StudyPoint, tolerance: float | None = None) -> dict:
+def reference(point: Point, tolerance: float | None = None) -> dict:
     """An ordinary point; tolerance: None for what a reference is worth."""
     if tolerance is None:
         rings = exact_model(point.motion, point.poisson) == "radial"

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar, overload
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from pydantic import BaseModel
 
-from microslip.datasets import point_variables, sweep_dataset
+from microslip.datasets import sweep_dataset
+from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json, sha256
 
 Kind = TypeVar("Kind")
@@ -28,14 +29,23 @@ class Answers:
         self.versions: set[str] = set()
         self.machines: list[dict] = []
 
-    def __call__(self, request: dict) -> Any:  # a result; a Run of runs.Runs
+    def record(self, request: dict) -> dict:
+        """The record that answers a request."""
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
         machine = record["result"].get("machine")
         if machine is not None and machine not in self.machines:
             self.machines.append(machine)
-        return record["result"]
+        return record
+
+    def __call__(self, request: dict) -> Any:  # a result; a Run of runs.Runs
+        return self.record(request)["result"]
+
+    def machine_of(self, result: dict) -> int:
+        """Index in `machines` of the computer that a time was measured on; -1: none."""
+        machine = result.get("machine")
+        return self.machines.index(machine) if machine in self.machines else -1
 
 
 @overload
@@ -54,26 +64,19 @@ def value_of(result: dict, name: str, kind: type = float) -> Any:
     return kind(value)
 
 
-def variable(
-    dims: str | tuple, values: ArrayLike, long_name: str, kind: type = float, units: str = "1"
-) -> tuple:
-    """A variable of a dataset with its attributes; kind: type of its values."""
-    values = np.asarray(values).astype(object if kind is str else kind)
-    return dims, values, point_variables.attributes(kind, long_name, units)
-
-
-def flags(dims: str | tuple, values: ArrayLike, long_name: str, meanings: tuple) -> tuple:
-    """A variable of small numbers that stand for words."""
-    dims, values, about = variable(dims, values, long_name, np.int8)
-    del about["units"]
-    numbers = np.arange(len(meanings), dtype=np.int8)
-    return dims, values, about | {"flag_values": numbers, "flag_meanings": " ".join(meanings)}
-
-
 def columns(dims: str | tuple, table: dict) -> dict:
     """Variables over the same dims; table: name -> (values, long_name, kind, units), the last two
     as far as they are not those of `variable`."""
     return {name: variable(dims, *row) for name, row in table.items()}
+
+
+def table(dim: str, rows: Iterable[tuple], columns: dict[str, tuple]) -> dict:
+    """Variables over rows; columns: name -> (function of a row's items, long_name, kind, units)."""
+    rows = list(rows)
+    return {
+        name: variable(dim, [read(*row) for row in rows], *about)
+        for name, (read, *about) in columns.items()
+    }
 
 
 def finished(
@@ -81,13 +84,13 @@ def finished(
     coords: dict,
     title: str,
     answers: Answers,
-    settings: dict,
+    settings: BaseModel,
     **attributes: object,
 ) -> xr.Dataset:
-    """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
+    """A Dataset with its provenance; settings are kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.
     digest = sha256("\n".join(sorted(answers.keys)))
     described = sweep_dataset.provenance(
-        title, settings, answers.versions, results_digest=digest, **attributes
+        title, settings.model_dump(), answers.versions, results_digest=digest, **attributes
     )
     return xr.Dataset(variables, coords, described)

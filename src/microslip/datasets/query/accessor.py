@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from microslip.datasets import certified_map
 from microslip.datasets.query import beyond, cells, lazily
 from microslip.datasets.query.answers import (
     EXACT,
@@ -23,13 +25,11 @@ from microslip.datasets.query.answers import (
     answered,
 )
 from microslip.datasets.query.cells import CellNodes, Map
-from microslip.datasets.query.coordinates import labelled
-from microslip.datasets.query.grid import axes_of_grid
+from microslip.datasets.query.coordinates import grid_axes, labelled
+from microslip.datasets.query.drift import Drift
 from microslip.datasets.query.inverse import Inverse
-from microslip.datasets.query.nodes import Nodes, poisson_within, refuse_negative
-from microslip.datasets.query.nodes_once import NodesOnce
+from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_negative
 from microslip.datasets.query.solver import pulled_by, solved
-from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
@@ -39,7 +39,11 @@ Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Friction, its error and codes of SOURCES, shape (n,) each."""
 
 
-@xr.register_dataset_accessor("friction")
+def accessor(dataset: xr.Dataset) -> Friction | Drift:
+    """The accessor `dataset.microslip`: Drift for certified maps over forces, else Friction."""
+    return Drift(dataset) if certified_map.is_of_drift(dataset) else Friction(dataset)
+
+
 class Friction(Inverse):
     """Friction at any point of a motion, from a dataset of one of its sweeps.
 
@@ -64,9 +68,8 @@ class Friction(Inverse):
         self._motion, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._limits_known = beyond.known_of(dataset)
-        self._nodes = NodesOnce()
-        # by what they are made of: a dataset may be changed in place
-        self._tables: dict[tuple, Map | None] = {}
+        self._known: tuple[tuple, Nodes | CellNodes] | None = None
+        self._tables: dict[tuple[float, bool], Map | None] = {}
 
     def at(
         self,
@@ -118,13 +121,7 @@ class Friction(Inverse):
             velocities, amplitudes = self._labelled(velocity, amplitude)
             asked = {"amplitude": amplitudes, "velocity": velocities}
             return lazily.answered(self.at, self._dataset, asked, **settings)
-        nodes: Nodes | CellNodes
-        if cells.is_certified(self._dataset):
-            nodes = cells.cells_of(self._dataset)
-        else:
-            nodes = self._nodes.of(self._dataset, periodic=self._periodic, poisson=poisson)
-        if self._limits_known:
-            refuse_negative(nodes)
+        nodes = self._nodes(poisson)
         nu = poisson_within(nodes.poisson, poisson)
         velocities, amplitudes = self._points(velocity, amplitude)
         flat_velocity = velocities.values.ravel().astype(float)
@@ -177,7 +174,7 @@ class Friction(Inverse):
         wanted = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._periodic:
             wanted["amplitude"] = amplitude
-        return self.at(**axes_of_grid(self._dataset, wanted), **settings)
+        return self.at(**grid_axes(self._dataset, wanted), **settings)
 
     # The question
 
@@ -200,14 +197,31 @@ class Friction(Inverse):
         velocities = labelled("velocity", velocity)
         return velocities, None if amplitude is None else labelled("amplitude", amplitude)
 
+    def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
+        """The points of the map, read once for as long as the dataset stays the same.
+
+        Reading them takes ten times as long as interpolating, and a dataset may be changed in
+        place, so the digest of all data is compared.
+        """
+        digest = (_digest(self._dataset), poisson)
+        if digest[0] is None or self._known is None or self._known[0] != digest:
+            nodes: Nodes | CellNodes
+            if cells.is_certified(self._dataset):
+                nodes = cells.cells_of(self._dataset)
+            else:
+                nodes = nodes_of(self._dataset, periodic=self._periodic, poisson=poisson)
+            if self._limits_known:
+                refuse_negative(nodes)
+            self._known, self._tables = (digest, nodes), {}
+        return self._known[1]
+
     def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
         """The map for one Poisson's ratio, see Nodes.table."""
-        key = nodes.fingerprint, nu, still
-        if key not in self._tables:
-            self._tables[key] = nodes.table(nu, still=still)
-        return self._tables[key]
+        if (nu, still) not in self._tables:
+            self._tables[nu, still] = nodes.table(nu, still=still)
+        return self._tables[nu, still]
 
-    # What no limit is known of
+    # Motions without known limits
 
     def _map_alone(
         self,
@@ -217,15 +231,33 @@ class Friction(Inverse):
         nu: float,
         tolerance: float | None,
     ) -> Answer:
-        rows = np.nan_to_num(amplitude)
-        tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
-        if tolerance is None:
-            what = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
-            if not beyond.is_alone(self._dataset):
-                what = f"{what} under a spring or of several contacts"
-            refuse_beyond(*tables, velocity, rows, what)
-        value, error = within(*tables, velocity, rows)
+        """The map alone: NaN and an infinite error outside of it, or InputError."""
+        value, error = np.full(len(velocity), np.nan), np.full(len(velocity), np.inf)
+        rows, outside = np.nan_to_num(amplitude), np.ones(len(velocity), bool)
+        table, still = self._table(nodes, nu), self._table(nodes, nu, still=True)
+        for part, chosen in ((table, velocity > 0.0), (still, velocity == 0.0)):
+            if part is not None:
+                held = chosen & part.rows.holds(rows) & part.columns.holds(velocity)
+                value[held], error[held] = part.at(rows[held], velocity[held])
+                outside &= ~held
+        if tolerance is None and outside.any():
+            first = int(np.flatnonzero(outside)[0])
+            part = still if velocity[first] == 0.0 else table
+            self._refuse_outside(part, velocity[first], rows[first])
         return value, error, np.full(len(value), MAP)
+
+    def _refuse_outside(self, part: Map | None, velocity: float, amplitude: float) -> None:
+        what = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
+        if not beyond.is_alone(self._dataset):
+            what = f"{what} under a spring or of several contacts"
+        advice = f"no limit of {what} is known: with a tolerance the solver is asked"
+        if part is None:
+            raise ValueError(f"velocity = {velocity:g}: the map has none such; {advice}")
+        axes = (("velocity", part.columns, velocity), ("amplitude", part.rows, amplitude))
+        for name, axis, given in axes:
+            if not axis.holds(np.array(given)):
+                low, high = axis.values[[0, -1]]
+                raise ValueError(f"{name} = {given:g}: allowed is {low:g} to {high:g}; {advice}")
 
     def _note(self, error: np.ndarray, source: np.ndarray) -> dict[str, str]:
         """{"note": text} where points outside the tabulated range have a larger error estimate."""
@@ -314,3 +346,19 @@ class Friction(Inverse):
             value[k], error[k] = np.nan, np.inf
             if found.converged:
                 value[k], error[k] = found.mu_macro, found.mu_macro_error
+
+
+READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
+"""Variables that a map of nodes is made of; those of a certified map begin with "cell_"."""
+
+
+def _digest(dataset: xr.Dataset) -> bytes | None:
+    """Digest of what a map is made of; None if its numbers are not in memory."""
+    found = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
+    for name, variable in dataset.variables.items():
+        if name in READ or str(name).startswith("cell_"):
+            if variable.chunks:
+                return None
+            found.update(f"|{name} {variable.dims} {variable.dtype} {variable.shape}|".encode())
+            found.update(variable.values.tobytes())
+    return found.digest()

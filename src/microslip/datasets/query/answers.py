@@ -6,7 +6,11 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
+from microslip.datasets.variables import flags, link_errors, variable
 
+NEEDS = "microslip.at needs"
+LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
+"""Words for a dataset without a variable of a map."""
 SOURCES = (
     "map",
     "no vibration",
@@ -48,27 +52,17 @@ def answered(
     xarray.Dataset
         mu_macro, mu_macro_error and source.
     """
-    value, error, source = answer
-
-    def variable(values: np.ndarray, long_name: str, **more: object) -> tuple:
-        attributes = {"long_name": long_name} | more
-        return shape.dims, values.reshape(shape.shape), attributes
-
+    value, error, source = (part.reshape(shape.shape) for part in answer)
+    about = "where the answer comes from"
     found = xr.Dataset(
         {
-            "mu_macro": variable(value, MU_MACRO.description, units="1"),
-            "mu_macro_error": variable(error, "bound of its error", units="1"),
-            "source": variable(
-                source.astype(np.int8),
-                "where the answer comes from",
-                flag_values=np.arange(len(SOURCES), dtype=np.int8),
-                flag_meanings=" ".join(name.replace(" ", "_") for name in SOURCES),
-            ),
+            "mu_macro": variable(shape.dims, value, MU_MACRO.description),
+            "mu_macro_error": variable(shape.dims, error, "bound of its error"),
+            "source": flags(shape.dims, source, about, SOURCES),
         },
         coords=shape.coords,
         attrs={"motion": motion},
     )
-    if "poisson" in found.dims:
-        return found
-    about = {"long_name": "Poisson's ratio", "units": "1"}
-    return found.assign_coords(poisson=((), poisson, about))
+    if "poisson" not in found.dims:
+        found = found.assign_coords(poisson=variable((), poisson, "Poisson's ratio"))
+    return link_errors(found)

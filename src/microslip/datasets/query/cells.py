@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
+from microslip.datasets.query.answers import LOST
 from microslip.datasets.query.interpolation import Axis, Table
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates
@@ -160,13 +160,6 @@ class CellNodes:
     errors: np.ndarray
     cells: CellTable
 
-    @property
-    def fingerprint(self) -> bytes:
-        """Digest of the map, different for different maps."""
-        parts = self.poisson, self.cells.borders, self.cells.nodes, self.cells.bounds
-        said = self.cells.coordinates.to_json().encode()
-        return hashlib.sha256(b"|".join([said, *(part.tobytes() for part in parts)])).digest()
-
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
         """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
         if still != self.cells.is_static:
@@ -183,8 +176,7 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     wanted = (*solved, "poisson", "cell_node", "cell_error")
     for name in (*wanted, *sum(names, ())):
         if name not in dataset.variables:
-            allowed = "microslip.at needs it, and the dataset has lost it: keep it"
-            raise InputError(name, None, allowed)
+            raise InputError(name, None, LOST)
     values, errors = (dataset[name].values for name in solved)
     picked = dataset["cell_node"].values.astype(int)
     if picked.max() >= len(values):
@@ -202,8 +194,6 @@ def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     try:
         return certified_map.coordinates_in(dataset)
     except (KeyError, TypeError, ValueError):
-        raise InputError(
-            certified_map.COORDINATES,
-            dataset.attrs[certified_map.COORDINATES],
-            "is none of this version's; allowed: a certified map that it made: make it again",
-        ) from None
+        given = dataset.attrs[certified_map.COORDINATES]
+        allowed = "is none of this version's; allowed: a certified map that it made: make it again"
+        raise InputError(certified_map.COORDINATES, given, allowed) from None

@@ -1,9 +1,9 @@
-"""Points of a request: velocities and amplitudes as labelled arrays of floats."""
+"""Coordinates of a request: labelled arrays of finite numbers >= 0."""
 
 from __future__ import annotations
 
 from decimal import Decimal
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,8 @@ from microslip.foundation.errors import InputError
 from microslip.theory import hertz
 
 ALLOWED = "allowed is a finite number >= 0, or several"
+DIGITS = 6
+"""Significant digits of evenly spaced coordinates, as in a configuration."""
 
 
 def labelled(name: str, given: object) -> xr.DataArray:
@@ -21,7 +23,7 @@ def labelled(name: str, given: object) -> xr.DataArray:
     if array.dtype.kind not in "iuf":
         raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
     if isinstance(array, xr.DataArray) and array.chunks is not None:
-        return array  # its numbers are looked at when they are there
+        return array  # its numbers are checked when they are computed
     try:
         hertz.checked(name, np.asarray(array, float))
     except ValueError:
@@ -31,9 +33,8 @@ def labelled(name: str, given: object) -> xr.DataArray:
     if array.ndim > 1:
         allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
         raise InputError(name, given, allowed)
-    return xr.DataArray(
-        array, dims=(name,) * array.ndim, coords={name: array} if array.ndim else {}
-    )
+    dims = (name,) * array.ndim
+    return xr.DataArray(array, dims=dims, coords={name: array} if dims else {})
 
 
 def _array(name: str, given: Any) -> np.ndarray:
@@ -56,3 +57,33 @@ def _array(name: str, given: Any) -> np.ndarray:
 
 def _is_plain(value: object) -> bool:
     return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)
+
+
+def grid_axes(dataset: xr.Dataset, request: dict[str, Any]) -> dict[str, Any]:
+    """Coordinates of a regular grid; request: by name their number, or the coordinates themselves.
+
+    Velocities have equal ratios, other axes equal steps. Raises InputError for a number below 2.
+    """
+    return {
+        name: _spaced(dataset, name, int(given)) if _is_count(name, given) else given
+        for name, given in request.items()
+    }
+
+
+def _is_count(name: str, given: object) -> bool:
+    if not isinstance(given, Integral) or isinstance(given, bool):
+        return False
+    if given < 2:
+        raise InputError(name, given, "allowed is how many, 2 or more, or a sequence of which ones")
+    return True
+
+
+def _spaced(dataset: xr.Dataset, name: str, count: int) -> np.ndarray:
+    if name not in dataset.variables:
+        raise InputError(name, None, "microslip.on_grid needs it, and the dataset has lost it")
+    values = dataset[name].values
+    positive = values[values > 0.0] if name == "velocity" else values
+    low, high = float(positive.min()), float(positive.max())
+    even = np.geomspace if name == "velocity" else np.linspace
+    inner = [float(f"{value:.{DIGITS}g}") for value in even(low, high, count)[1:-1]]
+    return np.array([low, *inner, high])

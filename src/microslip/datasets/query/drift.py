@@ -8,8 +8,8 @@ import xarray as xr
 from microslip.datasets import certified_map
 from microslip.datasets.query import lazily
 from microslip.datasets.query.cells import cells_of
-from microslip.datasets.query.coordinates import labelled
-from microslip.datasets.query.grid import axes_of_grid
+from microslip.datasets.query.coordinates import grid_axes, labelled
+from microslip.datasets.variables import flags, link_errors, variable
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
@@ -83,7 +83,20 @@ class Drift:
         velocity[state == RUNS_AWAY] = np.inf
         scaled = coordinates.scaled(flat[moves], rows[moves], least[moves])
         velocity[moves], error[moves] = velocity_of(*found.cells.at_scaled(scaled))
-        return self._answered(forces, (velocity, error, least, state))
+        texts = {
+            "velocity": (velocity, "mean forward velocity"),
+            "velocity_error": (error, "bound of its error"),
+            "threshold": (least, "force up to which the contact stays where it is"),
+        }
+        answer = {
+            name: variable(forces.dims, values.reshape(forces.shape), text)
+            for name, (values, text) in texts.items()
+        }
+        codes = state.reshape(forces.shape)
+        answer["state"] = flags(forces.dims, codes, "what becomes of the contact", STATES)
+        about = {"motion": self._dataset.attrs["motion"]}
+        answered = xr.Dataset(answer, coords=forces.coords, attrs=about)
+        return link_errors(answered.assign_coords(poisson=self._dataset["poisson"]))
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
         """Velocity and a bound of its error on a regular grid, for figures and plain xarray.
@@ -103,30 +116,7 @@ class Drift:
         InputError
             As `at` does, and for less than two of them.
         """
-        return self.at(**axes_of_grid(self._dataset, {"force": force, "amplitude": amplitude}))
-
-    def _answered(self, shape: xr.DataArray, answer: tuple[np.ndarray, ...]) -> xr.Dataset:
-        velocity, error, least, state = answer
-        texts = (
-            "mean forward velocity",
-            "bound of its error",
-            "force up to which the contact stays where it is",
-        )
-        names = ("velocity", "velocity_error", "threshold")
-        found: dict[str, tuple] = {
-            name: (shape.dims, values.reshape(shape.shape), {"long_name": text, "units": "1"})
-            for name, values, text in zip(names, (velocity, error, least), texts, strict=True)
-        }
-        flags = {
-            "long_name": "what becomes of the contact",
-            "flag_values": np.arange(len(STATES), dtype=np.int8),
-            "flag_meanings": " ".join(name.replace(" ", "_") for name in STATES),
-        }
-        found["state"] = shape.dims, state.reshape(shape.shape), flags
-        about = {"motion": self._dataset.attrs["motion"]}
-        return xr.Dataset(found, coords=shape.coords, attrs=about).assign_coords(
-            poisson=self._dataset["poisson"]
-        )
+        return self.at(**grid_axes(self._dataset, {"force": force, "amplitude": amplitude}))
 
 
 def _refuse_beyond(coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets.query.coordinates import labelled
+from microslip.datasets.variables import flags, variable
 from microslip.foundation.errors import InputError
 
 OUTCOMES = (
@@ -167,11 +168,10 @@ def _answers(asked: _Questions, low: float, high: float) -> tuple[np.ndarray, np
     ends = []
     for node, step in ((first, 1), (last, -1)):
         # The neighbour is within the error, or else the crossing is between both.
-        near = inside[row, np.clip(node + step, 0, len(places) - 1)]
-        inner = np.where(near, places[np.clip(node + step, 0, len(places) - 1)], place)
-        outer = places[node]
+        next_node = np.clip(node + step, 0, len(places) - 1)
+        inner = np.where(inside[row, next_node], places[next_node], place)
         at_end = inside[row, node]
-        ends.append(np.where(at_end, outer, _end(asked, outer, inner, row, at_end)))
+        ends.append(_end(asked, places[node], inner, row, at_end))
     bounded = ~inside[row, first] & ~inside[row, last]
     for k in range(count):
         own = place[row == k]
@@ -226,10 +226,11 @@ def _roots(
 def _end(
     asked: _Questions, outer: np.ndarray, inner: np.ndarray, row: np.ndarray, skip: np.ndarray
 ) -> np.ndarray:
-    """End of the interval within the error, between a place outside of it and one inside."""
+    """End of the interval within the error, between a place outside of it and one inside; the
+    outer place itself where `skip`."""
     from scipy.optimize.elementwise import find_root
 
-    end = np.where(np.isnan(inner), outer, inner)
+    end = np.where(skip | np.isnan(inner), outer, inner)
     if skip.all():
         return end
     left, right = np.minimum(outer, end)[~skip], np.maximum(outer, end)[~skip]
@@ -254,17 +255,18 @@ def _dataset(
     most = int(root.max(initial=0)) + 1
     table = np.full((4, len(outcome), most), np.nan)
     table[:, row, root] = rows[:, 1:].T
-    dims = (*shape.dims, "root")
-    size = (*shape.shape, most)
-    about = {"units": "1"}
-    names = (sought, f"{sought}_low", f"{sought}_high")
-    values: dict[str, tuple] = {
-        name: (dims, part.reshape(size), about) for name, part in zip(names, table, strict=False)
+    dims, size = (*shape.dims, "root"), (*shape.shape, most)
+    texts = {
+        sought: f"{sought} with the wanted friction",
+        f"{sought}_low": "lower end of its interval",
+        f"{sought}_high": "upper end of its interval",
     }
-    values["bounded"] = dims, (table[3] == 1.0).reshape(size)
-    flags = {
-        "flag_values": np.arange(len(OUTCOMES), dtype=np.int8),
-        "flag_meanings": " ".join(name.replace(" ", "_") for name in OUTCOMES),
+    values = {
+        name: variable(dims, part.reshape(size), text)
+        for (name, text), part in zip(texts.items(), table, strict=False)
     }
-    values["outcome"] = shape.dims, outcome.astype(np.int8).reshape(shape.shape), flags
+    inside = (table[3] == 1.0).reshape(size)
+    values["bounded"] = variable(dims, inside, "both ends lie inside of the range", bool)
+    codes = outcome.reshape(shape.shape)
+    values["outcome"] = flags(shape.dims, codes, "outcome of the search", OUTCOMES)
     return xr.Dataset(values, coords=shape.coords, attrs={"motion": motion})

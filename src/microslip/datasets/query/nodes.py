@@ -7,13 +7,13 @@ miss when ratios are left out, of two ratios how far their values are apart.
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
+from microslip.datasets.query.answers import LOST, NEEDS
 from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
@@ -21,8 +21,6 @@ from microslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from microslip.datasets.query.cells import CellNodes
 
-READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
-"""Variables of a dataset that its nodes are made of, besides the attribute `tolerance`."""
 SAME = 1e-12
 """Poisson's ratios that differ by less are one."""
 
@@ -44,12 +42,6 @@ class Nodes:
     velocity: np.ndarray
     values: np.ndarray
     errors: np.ndarray
-
-    @property
-    def fingerprint(self) -> bytes:
-        """Digest of the nodes, different for different nodes."""
-        parts = self.poisson, self.amplitude, self.velocity, self.values, self.errors
-        return hashlib.sha256(b"|".join(part.tobytes() for part in parts)).digest()
 
     def table(self, poisson: float, *, still: bool = False) -> Table | None:
         """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
@@ -101,31 +93,21 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
         dataset = dataset.assign_coords(poisson=float(poisson))
     for name in ("mu_macro", "mu_macro_error", *axes):
         if name not in dataset.variables:
-            raise InputError(
-                name, None, "microslip.at needs it, and the dataset has lost it: keep it"
-            )
-    _refuse_no_numbers(dataset, ("mu_macro", "mu_macro_error", *axes))
+            raise InputError(name, None, LOST)
+        if dataset[name].dtype.kind not in "iuf":
+            raise InputError(name, f"of type {dataset[name].dtype}", f"{NEEDS} numbers there")
     if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
-        raise InputError(
-            "poisson",
-            f"over {dataset['poisson'].dims}",
-            "microslip.at needs one, or an axis of them",
-        )
-    chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset))
-    chosen = chosen.compute()
-    for extra in set(chosen.dims) - set(axes):
-        raise InputError(
-            str(extra),
-            f"{chosen.sizes[extra]} entries",
-            "microslip.at needs one of them: select it",
-        )
+        given = f"over {dataset['poisson'].dims}"
+        raise InputError("poisson", given, f"{NEEDS} one, or an axis of them")
+    chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset)).compute()
+    for extra in (dim for dim in chosen.dims if dim not in axes):
+        given = f"{chosen.sizes[extra]} entries"
+        raise InputError(str(extra), given, f"{NEEDS} one of them: select it")
     for dim in axes:
         if dim not in chosen.dims:
             chosen = chosen.expand_dims(dim)
         if not chosen.sizes[dim]:
-            raise InputError(
-                dim, "no entry", "microslip.at needs one at least, and none is selected"
-            )
+            raise InputError(dim, "no entry", f"{NEEDS} one at least, and none is selected")
     _refuse_contradictions(chosen, axes)
     chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
     values, errors = (
@@ -141,13 +123,6 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     return nodes
 
 
-def _refuse_no_numbers(dataset: xr.Dataset, names: tuple[str, ...]) -> None:
-    for name in names:
-        kind = dataset[name].dtype
-        if kind.kind not in "iuf":
-            raise InputError(name, f"of type {kind}", "microslip.at needs numbers there")
-
-
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
     """Raise InputError if nodes that occur twice, as after a join, contradict each other."""
     for axis in axes:
@@ -161,11 +136,8 @@ def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
             apart = np.abs(one["mu_macro"] - other["mu_macro"]).where(both, 0.0)
             allowed = one["mu_macro_error"] + other["mu_macro_error"]
             if bool((apart > allowed).any()):
-                raise InputError(
-                    axis,
-                    float(values[index]),
-                    "is there twice with mu_macro that differ by more than their errors: keep one",
-                )
+                said = "is there twice with mu_macro that differ by more than their errors"
+                raise InputError(axis, float(values[index]), f"{said}: keep one")
 
 
 def _refuse_impossible(nodes: Nodes) -> None:
@@ -177,9 +149,8 @@ def _refuse_impossible(nodes: Nodes) -> None:
             allowed = "0 to 0.5" if name == "poisson" else "a finite number >= 0"
             raise InputError(name, float(wrong[0]), f"in the dataset; allowed is {allowed}")
     if (nodes.errors < 0.0).any():
-        raise InputError(
-            "mu_macro_error", float(np.nanmin(nodes.errors)), "in the dataset; allowed is 0 or more"
-        )
+        least = float(np.nanmin(nodes.errors))
+        raise InputError("mu_macro_error", least, "in the dataset; allowed is 0 or more")
     _refuse_values(nodes, -1.0)
 
 
@@ -192,9 +163,8 @@ def _refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
     """Raise InputError for mu_macro outside of least to 1: the force is at most mu F_z."""
     off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
     if off.any():
-        raise InputError(
-            "mu_macro", float(nodes.values[off][0]), f"in the dataset; allowed is {least:g} to 1"
-        )
+        allowed = f"in the dataset; allowed is {least:g} to 1"
+        raise InputError("mu_macro", float(nodes.values[off][0]), allowed)
 
 
 def _known(dataset: xr.Dataset) -> xr.DataArray:
@@ -202,25 +172,21 @@ def _known(dataset: xr.Dataset) -> xr.DataArray:
     if "converged" in dataset:
         return dataset["converged"] == 1  # not what a join has filled in
     if "tolerance" not in dataset.attrs:
-        raise InputError(
-            "converged", None, "microslip.at needs it, and the dataset has lost it: keep it"
-        )
+        raise InputError("converged", None, LOST)
     tolerance = dataset.attrs["tolerance"]
     try:
         return dataset["mu_macro_error"] <= float(tolerance)
     except (TypeError, ValueError):
-        raise InputError(
-            "tolerance", tolerance, "microslip.at needs a number there, or the variable converged"
-        ) from None
+        allowed = f"{NEEDS} a number there, or the variable converged"
+        raise InputError("tolerance", tolerance, allowed) from None
 
 
 def poisson_within(known: np.ndarray, poisson: float | None) -> float:
     """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
     low, high = float(known[0]), float(known[-1])
-    allowed = f"allowed is {low:g}" + (
-        f" to {high:g}" if high > low else ", the dataset's only one"
-    )
-    if poisson is None and high > low:
+    many = high > low
+    allowed = f"allowed is {low:g}" + (f" to {high:g}" if many else ", the dataset's only one")
+    if poisson is None and many:
         raise InputError("poisson", None, f"{allowed}: the dataset has more than one")
     if not (poisson is None or is_real(poisson)):
         raise InputError("poisson", poisson, f"{allowed}, one number")

@@ -11,7 +11,6 @@ asks both.
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 from typing import Any
@@ -19,22 +18,10 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.records import MOTION_OF_SWEEP
-from microslip.datasets.certified_map import is_of_drift
+from microslip.config.schema import near_miss
 from microslip.datasets.netcdf import group_names, refuse_oversized
-from microslip.datasets.query.accessor import Friction
-from microslip.datasets.query.answers import SOURCES
-from microslip.datasets.query.drift import Drift
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
-
-__all__ = ["SOURCES", "Drift", "Friction", "open_map"]
-
-
-@xr.register_dataset_accessor("microslip")
-def accessor(dataset: xr.Dataset) -> Friction | Drift:
-    """The accessor `dataset.microslip`: Drift for certified maps over forces, else Friction."""
-    return Drift(dataset) if is_of_drift(dataset) else Friction(dataset)
-
 
 SOLVED = {"mu_macro", "velocity_error"}
 """Variables of which the dataset of a sweep has one at least."""
@@ -93,23 +80,17 @@ def open_map(
 
 
 def _found(
-    name: str | os.PathLike[str],
-    results: str | os.PathLike[str],
-    chunks: object,
-    group: str | None,
+    name: str | os.PathLike[str], results: str | os.PathLike[str], chunks: object, group: str | None
 ) -> xr.Dataset:
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
         if str(name) not in MOTION_OF_SWEEP and not path.is_file():
-            near = difflib.get_close_matches(str(name), MOTION_OF_SWEEP, n=1)
-            hint = f"did you mean {near[0]}? " if near else ""
-            raise InputError(
-                "name",
-                name,
-                f"{hint}allowed is {', '.join(MOTION_OF_SWEEP)}, another sweep of which {results} "
-                "has the dataset, or a path that ends in .nc",
+            allowed = (
+                f"{near_miss(name, MOTION_OF_SWEEP)}allowed is {', '.join(MOTION_OF_SWEEP)}, "
+                f"another sweep of which {results} has the dataset, or a path that ends in .nc"
             )
+            raise InputError("name", name, allowed)
     if not path.is_file():
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
     if is_damaged(path):

@@ -36,7 +36,7 @@ LABELLED = np.array([0.1, 0.5, 0.9])
 BEYOND = 0.01
 """Friction below 0 or above 1 by more than this is no error of the points."""
 MOST_MAPS = 12
-"""Maps that a figure has room for, as `extended.MOST_PANELS`."""
+"""Maps that a figure has room for, as `load.MOST_PANELS`."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
 """Limits from theory at Poisson's ratio 0, by the axis of the lines."""
 JOINING = 0.5

@@ -12,11 +12,11 @@ part of it, and cut so that another method in the configuration adds pieces and 
 from collections.abc import Iterator
 from itertools import groupby
 
-from microslip.config.load import StudyPoint
-from microslip.config.records import Accuracy
+from microslip.config.settings import Accuracy
 from microslip.solver.method_names import SHIPPED
 from microslip.studies import requests
 from microslip.studies.ladders import ladder, models_for
+from microslip.studies.requests import Point
 
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_MOTIONS = ("transverse", "bore")
@@ -38,38 +38,43 @@ LARGE, LONE_SIZES = 64, 4
 many of the sizes one job can measure together."""
 
 
-def trials(study: Accuracy, point: StudyPoint) -> Iterator[tuple[int, dict]]:
+def points(study: Accuracy) -> dict[str, Point]:
+    """Points of the trials by name."""
+    return {
+        name: Point(given.motion, given.velocity, given.amplitude, given.poisson)
+        for name, given in study.points.items()
+    }
+
+
+def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
     """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
 
-    study: records.Accuracy. The level of a choice counts its tolerances.
+    The level of a choice counts its tolerances.
     """
     for method in study.methods:
         for model in models_for(method, point.motion, point.poisson):
             for k, level, tolerance in ladder(model, method, study.levels):
-                yield (
-                    k,
-                    requests.trial(point, model, method, level, tolerance, study.repeats),
-                )
+                yield (k, requests.trial(point, model, method, level, tolerance, study.repeats))
     if SHIPPED in study.methods:
         for k, tolerance in enumerate(CHOICE_TOLERANCES):
             yield k, requests.choice(point, tolerance, study.repeats)
 
 
-def truth(point: StudyPoint) -> dict | None:
+def truth(point: Point) -> dict | None:
     """The request that the trials of a point are compared with; None where Eq 21 is exact."""
     return requests.reference(point) if point.amplitude is not None else None
 
 
-def map_points(study: Accuracy, motion: str) -> list[StudyPoint]:
-    """The points of a map as records.StudyPoint, amplitude by amplitude, the velocity fastest."""
+def map_points(study: Accuracy, motion: str) -> list[Point]:
+    """Points of a map, amplitude by amplitude, the velocity fastest."""
     return [
-        StudyPoint("", motion, velocity, amplitude, 0.0, "")
-        for amplitude in study.map_amplitude[motion]
-        for velocity in study.map_velocity
+        Point(motion, velocity, amplitude)
+        for amplitude in study.map.amplitude[motion]
+        for velocity in study.map.velocity
     ]
 
 
-def map_trials(study: Accuracy, point: StudyPoint) -> list[dict]:
+def map_trials(study: Accuracy, point: Point) -> list[dict]:
     """Requests of the trials at one point of a map, all models with the shipped method."""
     repeats = min(study.repeats, MAP_REPEATS)
     return [
@@ -80,9 +85,9 @@ def map_trials(study: Accuracy, point: StudyPoint) -> list[dict]:
     ]
 
 
-def map_truth(study: Accuracy, point: StudyPoint) -> dict:
+def map_truth(study: Accuracy, point: Point) -> dict:
     """The request that the trials at a point of a map are compared with."""
-    return requests.reference(point, TRUTH_SHARE * min(study.map_tolerance))
+    return requests.reference(point, TRUTH_SHARE * min(study.map.tolerance))
 
 
 def scaling(study: Accuracy, model: str) -> list[dict]:
@@ -93,14 +98,14 @@ def scaling(study: Accuracy, model: str) -> list[dict]:
 
 def pieces(study: Accuracy) -> tuple[list, list]:
     """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
-    points = list(study.points.values())
-    long = [[request] for request in map(truth, points) if request is not None]
+    places = list(points(study).values())
+    long = [[request] for request in map(truth, places) if request is not None]
     for model in SCALING_SIZES:
         sizes = scaling(study, model)
         long += [[request] for request in reversed(sizes[LONE_SIZES:])] + [sizes[:LONE_SIZES]]
     shipped: list[list[dict]] = []
     others: dict[str, list[dict]] = {}
-    for point in points:
+    for point in places:
         asked: dict[bool, list[dict]] = {True: [], False: []}
         for _, request in trials(study, point):
             if request.get("method", SHIPPED) == SHIPPED:
@@ -122,7 +127,7 @@ def _takes_long(request: dict) -> bool:
     return request.get("model") == "cartesian" and request.get("cells", 0) >= LARGE
 
 
-def _map_row(study: Accuracy, points: list[StudyPoint]) -> list[dict]:
+def _map_row(study: Accuracy, points: list[Point]) -> list[dict]:
     return [
         request
         for point in points

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.config.records import Accuracy, StudyPoint
+from microslip.config.settings import Accuracy
+from microslip.datasets.variables import variable
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
-from microslip.studies.tables import Answers, columns, finished, value_of, variable
+from microslip.studies.requests import Point
+from microslip.studies.tables import Answers, columns, finished, value_of
 from microslip.theory import paper
 
 MEASURED = (
     "seconds are CPU times measured in the runs that made this file: medians, compiled, after one "
-    "run that is not timed. They belong to the machine, see timed_on, and vary a little; all other "
-    "values are reproducible."
+    "run that is not timed. They belong to the computers in the group machines and vary a little; "
+    "all other values are reproducible."
 )
 
 GROUPS = {
@@ -34,66 +35,68 @@ GROUPS = {
     )
     for motion in study.MAP_MOTIONS
 }
+GROUPS["machines"] = ("Computers that times were measured on", ("machine",))
 GROUPS["profile"] = (
     "How much dearer than the best a model or a method is",
     ("competitor", "map_tolerance", "point"),
 )
 """Groups of the dataset besides the table of trials: titles and dims."""
 
-# Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
+# Columns of the table of trials: name -> (long_name, type, units). 0: a count does not apply.
 TRIAL_VARIABLES = {
-    "trial_point": (str, "", "point that the trial was run at"),
-    "trial_model": (str, "", "contact model, or auto for the choice that follows a tolerance"),
-    "trial_method": (str, "", "method that was run"),
-    "trial_level": (np.int32, "1", "level of the ladder of resolutions, or of tolerances"),
-    "trial_cells": (np.int32, "1", "rings, or squares across the contact"),
-    "trial_angles": (np.int32, "1", "angular points on half a ring"),
-    "trial_steps": (np.int32, "1", "time steps in a period"),
-    "trial_tolerance": (float, "1", "tolerance that was asked for"),
-    "mu_macro": (float, "1", MU_MACRO.description),
-    "error": (float, "1", "distance of mu_macro from the reference"),
-    "seconds": (float, "s", "median CPU time of a run, compiled"),
-    "effort": (float, "1", "iterations of the step solver times unknowns"),
-    "converged": (bool, "", "the run says that it converged"),
-    "reason": (str, "", "why the run did not converge, empty if it did"),
-    "claimed_error": (float, "1", "error that the result claims for itself, where it claims one"),
-    "front_seconds": (bool, "", "no trial of the point is faster and as accurate"),
-    "front_effort": (bool, "", "no trial of the point takes less effort and is as accurate"),
+    "trial_point": ("point that the trial was run at", str),
+    "trial_model": ("contact model, or auto for the choice that follows a tolerance", str),
+    "trial_method": ("method that was run", str),
+    "trial_level": ("level of the ladder of resolutions, or of tolerances", np.int32),
+    "trial_cells": ("rings, or squares across the contact", np.int32),
+    "trial_angles": ("angular points on half a ring", np.int32),
+    "trial_steps": ("time steps in a period", np.int32),
+    "trial_tolerance": ("tolerance that was asked for",),
+    "mu_macro": (MU_MACRO.description,),
+    "error": ("distance of mu_macro from the reference",),
+    "seconds": ("median CPU time of a run, compiled", float, "s"),
+    "effort": ("iterations of the step solver times unknowns",),
+    "converged": ("the run says that it converged", bool),
+    "reason": ("why the run did not converge, empty if it did", str),
+    "trial_machine": ("computer of the time, an index of the group machines", np.int32),
+    "claimed_error": ("error that the result claims for itself, where it claims one",),
+    "front_seconds": ("no trial of the point is faster and as accurate", bool),
+    "front_effort": ("no trial of the point takes less effort and is as accurate", bool),
 }
 
 
 def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Accuracy. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     answers = Answers(answer)
-    points = list(settings.points.values())
-    coords = {"point": variable("point", [p.name for p in points], "name of the point", str)}
-    variables = _points(points, answers)
+    points = study.points(settings)
+    coords = {"point": variable("point", list(points), "name of the point", str)}
+    titles = [given.title or name for name, given in settings.points.items()]
+    variables = _points(list(points.values()), titles, answers)
     trials = _trials(settings, points, answers, variables)
-    rows = TRIAL_VARIABLES.items()
-    variables |= columns(
-        "trial", {n: (trials[n], long_name, kind, units) for n, (kind, units, long_name) in rows}
-    )
-    names = [point.name for point in points]
-    variables |= profiles.variables(trials, names, settings.map_tolerance)
+    tolerances = settings.map.tolerance[::-1]  # from loose to tight
+    rows = {name: (trials[name], *about) for name, about in TRIAL_VARIABLES.items()}
+    variables |= columns("trial", rows)
+    variables |= profiles.variables(trials, list(points), tolerances)
     variables |= _scaling(settings, answers)
     for motion in study.MAP_MOTIONS:
         variables |= _map(settings, motion, answers)
         for name, values in (
-            ("velocity", settings.map_velocity),
-            ("amplitude", settings.map_amplitude[motion]),
+            ("velocity", settings.map.velocity),
+            ("amplitude", settings.map.amplitude[motion]),
         ):
             long_name = f"{name} in the groups of the motion {motion}"
             coords[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
     within = "largest error of mu_macro that the map allows"
-    coords["map_tolerance"] = variable("map_tolerance", settings.map_tolerance, within)
+    coords["map_tolerance"] = variable("map_tolerance", tolerances, within)
     models = list(study.SCALING_SIZES)
     coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
-    measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
-    return finished(variables, coords, title, answers, asdict(settings), **measured)
+    if answers.machines:
+        variables |= columns("machine", _machines(answers.machines))
+    return finished(variables, coords, title, answers, settings, comment=MEASURED)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -108,25 +111,24 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _timed_on(answers: Answers) -> str:
-    """Every computer that a time was measured on, as one text."""
-    named = (
-        f"{machine['cpu']}, host {machine['host']}, threads {machine['threads']}"
-        for machine in answers.machines
-    )
-    return "; ".join(sorted(named))
+def _machines(machines: list[dict]) -> dict[str, tuple]:
+    return {
+        "machine_cpu": ([m["cpu"] for m in machines], "model of the processor", str),
+        "machine_host": ([m["host"] for m in machines], "name of the computer", str),
+        "machine_threads": ([m["threads"] for m in machines], "threads of a run", np.int32),
+    }
 
 
 # Points and trials
 
 
-def _points(points: list[StudyPoint], answers: Answers) -> dict:
+def _points(points: list[Point], titles: list[str], answers: Answers) -> dict:
     found = [_reference(point, answers) for point in points]
     amplitudes = [np.nan if p.amplitude is None else p.amplitude for p in points]
     return columns(
         "point",
         {
-            "point_title": ([p.title for p in points], "title of the point", str),
+            "point_title": (titles, "title of the point", str),
             "point_motion": ([p.motion for p in points], "what moves", str),
             "point_velocity": ([p.velocity for p in points], "forward velocity of the point"),
             "point_amplitude": (amplitudes, "amplitude of the point"),
@@ -138,7 +140,7 @@ def _points(points: list[StudyPoint], answers: Answers) -> dict:
     )
 
 
-def _reference(point: StudyPoint, answers: Answers) -> tuple[float, float, str]:
+def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
     """(mu, error, source) that the trials of a point are compared with."""
     request = study.truth(point)
     if request is None:
@@ -151,18 +153,19 @@ def _reference(point: StudyPoint, answers: Answers) -> tuple[float, float, str]:
 
 
 def _trials(
-    settings: Accuracy, points: list[StudyPoint], answers: Answers, of_points: dict
+    settings: Accuracy, points: dict[str, Point], answers: Answers, of_points: dict
 ) -> dict[str, list]:
     """Columns of TRIAL_VARIABLES, as lists."""
     rows: list[dict] = []
     fronts: dict[str, list] = {"front_seconds": [], "front_effort": []}
-    for i, point in enumerate(points):
+    for i, (name, point) in enumerate(points.items()):
         reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
         found = []
         for level, request in study.trials(settings, point):
             result = answers(request)
             if result.get("applies", True):
-                found.append(_row(point, level, request, result, reference))
+                found.append(_row(name, level, request, result, reference))
+                found[-1]["trial_machine"] = answers.machine_of(result)
         rows += found
         # What the reference does not resolve does not count.
         error = [max(row["error"], floor) if row["converged"] else np.nan for row in found]
@@ -173,14 +176,12 @@ def _trials(
     )
 
 
-def _row(
-    point: StudyPoint, level: int, request: dict, result: dict, reference: float
-) -> dict[str, Any]:
+def _row(point: str, level: int, request: dict, result: dict, reference: float) -> dict[str, Any]:
     chosen = request["kind"] == "choice"
     used = result if chosen else request | result
     mu = value_of(result, "mu_macro")
     return {
-        "trial_point": point.name,
+        "trial_point": point,
         "trial_model": "auto" if chosen else request["model"],
         "trial_method": study.SHIPPED if chosen else request["method"],
         "trial_level": level,
@@ -203,37 +204,32 @@ def _row(
 
 def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
     dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
-    points = study.map_points(settings, motion)
-    best: dict[str, list] = {name: [] for name in ("", "_cells", "_seconds")}
-    found = [_candidates(settings, point, answers) for point in points]
-    for tolerance in settings.map_tolerance:
-        for models, cells, seconds, error in found:
-            i = cheapest(seconds, error, tolerance)
-            best[""].append("" if i is None else models[i])
-            best["_cells"].append(0 if i is None else cells[i])
-            best["_seconds"].append(np.nan if i is None else seconds[i])
-    shape = (
-        len(settings.map_tolerance),
-        len(settings.map_amplitude[motion]),
-        len(settings.map_velocity),
-    )
-    described = {
-        "": (str, "", "cheapest model within the tolerance, empty if there is none"),
-        "_cells": (np.int32, "1", "cells that the cheapest model needs"),
-        "_seconds": (float, "s", "median CPU time of the cheapest model"),
-    }
+    tolerances = settings.map.tolerance[::-1]
+    found = [_candidates(settings, p, answers) for p in study.map_points(settings, motion)]
+    best = np.empty((len(CHEAPEST), len(tolerances), len(found)), object)
+    for t, tolerance in enumerate(tolerances):
+        for p, (trials, error) in enumerate(found):
+            i = cheapest([seconds for *_, seconds in trials], error, tolerance)
+            best[:, t, p] = ("", 0, np.nan) if i is None else trials[i]
+    shape = (len(tolerances), len(settings.map.amplitude[motion]), -1)
     return {
-        f"{motion}_cheapest{name}": variable(
-            dims, np.array(best[name], object).reshape(shape), long_name, kind, units
-        )
-        for name, (kind, units, long_name) in described.items()
+        f"{motion}_cheapest{name}": variable(dims, values.reshape(shape), long_name, kind, units)
+        for (name, kind, units, long_name), values in zip(CHEAPEST, best, strict=True)
     }
+
+
+CHEAPEST = (
+    ("", str, "", "cheapest model within the tolerance, empty if there is none"),
+    ("_cells", np.int32, "1", "cells that the cheapest model needs"),
+    ("_seconds", float, "s", "median CPU time of the cheapest model"),
+)
+"""Variables of a map: end of the name, type, units and long_name."""
 
 
 def _candidates(
-    settings: Accuracy, point: StudyPoint, answers: Answers
-) -> tuple[list[str], list[int], list[float], np.ndarray]:
-    """Models, cells, seconds and errors of all trials at a point of a map, as lists."""
+    settings: Accuracy, point: Point, answers: Answers
+) -> tuple[list[tuple[str, int, float]], np.ndarray]:
+    """Model, cells and seconds of all trials at a point of a map, and their errors."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
     requests = study.map_trials(settings, point)
     results = [answers(request) for request in requests]
@@ -242,13 +238,11 @@ def _candidates(
         for r in results
     ]
     models = [request["model"] for request in requests]
-    exact = exact_model(point.motion, point.poisson)
-    return (
-        models,
-        [request["cells"] for request in requests],
-        [value_of(result, "seconds") for result in results],
-        confirmed(models, error, exact),
-    )
+    trials = [
+        (request["model"], request["cells"], value_of(result, "seconds"))
+        for request, result in zip(requests, results, strict=True)
+    ]
+    return trials, confirmed(models, error, exact_model(point.motion, point.poisson))
 
 
 def _scaling(settings: Accuracy, answers: Answers) -> dict:

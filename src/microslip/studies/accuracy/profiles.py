@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.datasets.variables import variable
 from microslip.solver.method_names import SHIPPED, method_named
-from microslip.studies.tables import variable
 
 MODELS = "models"
 CHOSEN = "auto"
@@ -156,25 +156,25 @@ def variables(columns: dict, points: list[str], tolerances: Sequence[float]) -> 
 
 def _entries(rows: list[dict]) -> dict[str, list[tuple[dict, str]]]:
     """Rows of each contest with the name that each competes under."""
-    others = {row["trial_method"] for row in rows} - {SHIPPED}
-    contests = {method: contest_of(method) for method in sorted(others)}
-    found: dict[str, list[tuple[dict, str]]] = {MODELS: []}
-    for row in rows:
-        model, method = row["trial_model"], row["trial_method"]
-        if method == SHIPPED:
-            found[MODELS].append((row, model))
-        elif contests[method] == MODELS:
-            found[MODELS].append((row, method))
-    for contest in dict.fromkeys(contests.values()):
-        if contest == MODELS:
-            continue
-        mine = {method for method, of in contests.items() if of == contest}
-        # What ships is compared where the others were run.
-        places = {(r["trial_point"], r["trial_model"]) for r in rows if r["trial_method"] in mine}
-        found[contest] = [
-            (row, row["trial_method"])
+    methods = sorted({row["trial_method"] for row in rows} - {SHIPPED})
+    contests = {method: contest_of(method) for method in methods}
+    found = {
+        MODELS: [
+            (row, row["trial_model" if row["trial_method"] == SHIPPED else "trial_method"])
             for row in rows
-            if (row["trial_method"] in mine or row["trial_method"] == SHIPPED)
-            and (row["trial_point"], row["trial_model"]) in places
+            if contests.get(row["trial_method"], MODELS) == MODELS
         ]
+    }
+    for contest in dict.fromkeys(contests.values()):
+        if contest != MODELS:
+            mine = {method for method in methods if contests[method] == contest}
+            own = [row for row in rows if row["trial_method"] in mine]
+            # What ships is compared where the others were run.
+            places = {(row["trial_point"], row["trial_model"]) for row in own}
+            found[contest] = [
+                (row, row["trial_method"])
+                for row in rows
+                if row["trial_method"] in mine | {SHIPPED}
+                and (row["trial_point"], row["trial_model"]) in places
+            ]
     return {contest: entries for contest, entries in found.items() if entries}

@@ -5,8 +5,8 @@ what is asked and what is judged cannot drift apart. Certified points come first
 own numbers or a look inside are wanted there are single runs.
 """
 
-from microslip.config.load import STATIC_AMPLITUDES, StudyPoint
-from microslip.config.records import Claims
+from microslip.config.records import STATIC_AMPLITUDES
+from microslip.config.settings import Claims
 from microslip.foundation.canonical import number
 from microslip.studies import requests
 from microslip.studies.ladders import exact_model
@@ -36,7 +36,7 @@ FEW = 2
 
 
 def velocities(study: Claims) -> list[float]:
-    """Velocities of the study and the paper's smallest one, ascending; study: records.Claims."""
+    """Velocities of the study and the paper's smallest one, ascending."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
@@ -49,7 +49,7 @@ def point(
     cells: int | None = None,
 ) -> dict:
     """A certified point; velocity 0: the static limit; cells: an imposed number of squares."""
-    place = StudyPoint("", motion, velocity, amplitude, 0.0, "")
+    place = requests.Point(motion, velocity, amplitude)
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
@@ -66,7 +66,7 @@ def limit_on_squares(study: Claims, motion: str, amplitude: float) -> dict:
 
 def paper_run(motion: str, amplitude: float) -> dict:
     """The paper's own run at its smallest velocity: 32 x 32 squares, 8,000 plain steps."""
-    place = StudyPoint("", motion, PAPER_VELOCITY, amplitude, 0.0, "")
+    place = requests.Point(motion, PAPER_VELOCITY, amplitude)
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
     how = {"kind": "run", "model": "cartesian", "method": "paper"}
     return requests.of_point(place) | how | sizes | {"tolerance": number(PAPER_TOLERANCE)}
@@ -91,7 +91,7 @@ def field(velocity: float, cells: str) -> dict:
 def period(study: Claims, velocity: float, amplitude: float, coarse: bool = False) -> dict:
     """A period of the oscillating bore from inside, or the same with half as many rings."""
     cells = 2 * (study.cells // 4) if coarse else study.cells
-    place = StudyPoint("", "bore", velocity, amplitude, 0.0, "")
+    place = requests.Point("bore", velocity, amplitude)
     sizes = {"cells": cells, "angles": cells, "steps": PERIOD_STEPS}
     return requests.of_point(place) | {"kind": "patches"} | sizes
 

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
-from microslip.config.records import Claims
-from microslip.studies.claims import checks, checks_static, static_limits, verdicts
+from microslip.config.settings import Claims
+from microslip.datasets.variables import flags, variable
 from microslip.studies.claims import claims as asked
+from microslip.studies.claims import static_limits, verdicts
+from microslip.studies.claims.parts import PARTS
 from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
-from microslip.studies.claims.statements import PARTS, STATEMENTS
+from microslip.studies.claims.statements import STATEMENTS
 from microslip.studies.claims.verdicts import Check
-from microslip.studies.tables import columns, finished, flags, value_of, variable
+from microslip.studies.tables import finished, table, value_of
 from microslip.theory import hertz, paper
 
 ABOUT = (
@@ -49,10 +50,10 @@ BOUNDARY = 181
 def build(settings: Claims, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Claims. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     runs = Runs(answer)
-    found = {part.name: collected(part.name, settings, runs) for part in PARTS}
+    found = {part.name: list(part.checks(settings, runs)) for part in PARTS}
     variables = _claims(found) | _parts(found) | _checks(found)
     variables |= static_limits.variables(settings, runs) | _patches(settings, runs)
     variables |= _runs(runs.found.values())
@@ -61,13 +62,7 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     }
     coords = {name: variables.pop(name) for name in sorted(coordinates)}
     title = "The statements of the paper, judged"
-    return finished(variables, coords, title, runs, asdict(settings), comment=ABOUT)
-
-
-def collected(name: str, settings: Claims, runs: Runs) -> list[Check]:
-    """The checks of a part by its name: list of verdicts.Check."""
-    module = checks if hasattr(checks, name) else checks_static
-    return getattr(module, name)(settings, runs)
+    return finished(variables, coords, title, runs, settings, comment=ABOUT)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -99,102 +94,73 @@ def _claims(checks: dict[str, list[Check]]) -> dict:
     }
 
 
+PART_COLUMNS: dict[str, tuple] = {
+    "part": (lambda part, _: part.name, "part of a statement", str),
+    "part_claim": (lambda part, _: part.claim, "statement that it is part of", np.int32),
+    "part_text": (lambda part, _: part.text, "what is asked, with its criterion", str),
+    "part_counts": (lambda part, _: part.counts, "the verdict depends on it", bool),
+    "part_where": (lambda _, row: verdicts.where(row), "where it holds and where not", str),
+    "part_shown_by": (lambda _, row: _shown_by(row), "name of the result that shows it best", str),
+}
+CHECK_COLUMNS: dict[str, tuple] = {
+    "check_part": (lambda part, _: part.name, "part that it belongs to", str),
+    "check_run": (lambda _, check: check.runs[0], "name of the result that it is about", str),
+    "check_other_run": (
+        lambda _, check: "".join(check.runs[1:2]),
+        "name of a second result behind it",
+        str,
+    ),
+    "check_amplitude": (lambda _, check: _place(check, "amplitude"), "amplitude of the check"),
+    "check_velocity": (lambda _, check: _place(check, "velocity"), "velocity of the check"),
+    "check_value": (lambda _, check: check.value, "computed"),
+    "check_against": (lambda _, check: check.against, "what it is compared with"),
+    "check_margin": (lambda _, check: check.margin, "positive where the part holds"),
+    "check_error": (lambda _, check: check.error, "error of the margin"),
+}
+"""Columns of two groups: function of a part and its checks, or of one of these; long_name, type."""
+
+
 def _parts(checks: dict[str, list[Check]]) -> dict:
     rows = [checks[part.name] for part in PARTS]
-    shows = [_shows(row) for row in rows]
-    found: dict[str, tuple] = {
-        "part": ([part.name for part in PARTS], "part of a statement", str),
-        "part_claim": ([part.claim for part in PARTS], "statement that it is part of", np.int32),
-        "part_text": ([part.text for part in PARTS], "what is asked, with its criterion", str),
-        "part_counts": ([part.counts for part in PARTS], "the verdict depends on it", bool),
-        "part_where": (list(map(verdicts.where, rows)), "where it holds and where not", str),
-        "part_shown_by": (
-            [check.runs[0] if check else "" for check in shows],
-            "name of the result that shows it best",
-            str,
-        ),
-    }
-    for name, outcome in zip(verdicts.OUTCOMES, range(3), strict=True):
+    found = table("part", zip(PARTS, rows, strict=True), PART_COLUMNS)
+    for outcome, name in enumerate(verdicts.OUTCOMES):
         counts = [sum(check.outcome == outcome for check in row) for row in rows]
-        found[f"part_{name}"] = (counts, f"number of checks: {name}", np.int32)
+        found[f"part_{name}"] = variable("part", counts, f"number of checks: {name}", np.int32)
     values = [verdicts.of_part(row) for row in rows]
-    verdict = flags("part", values, "what the checks say", verdicts.VERDICTS)
-    return columns("part", found) | {"part_verdict": verdict}
+    return found | {"part_verdict": flags("part", values, "what the checks say", verdicts.VERDICTS)}
 
 
-def _shows(row: list[Check]) -> Check | None:
+def _shown_by(row: list[Check]) -> str:
     """The check that a part stands or falls with: against it the clearest, for it the closest."""
-    return verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
+    check = verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
+    return check.runs[0] if check else ""
+
+
+def _place(check: Check, name: str) -> float:
+    return dict(check.place).get(name, np.nan)
 
 
 def _checks(checks: dict[str, list[Check]]) -> dict:
-    rows = [(part.name, check) for part in PARTS for check in checks[part.name]]
-    places = [dict(check.place) for _, check in rows]
-    numbers = {
-        "value": "computed",
-        "against": "what it is compared with",
-        "margin": "positive where the part holds",
-        "error": "error of the margin",
-    }
-    found: dict[str, tuple] = {
-        "check_part": ([name for name, _ in rows], "part that it belongs to", str),
-        "check_run": ([c.runs[0] for _, c in rows], "name of the result that it is about", str),
-        "check_other_run": (
-            [c.runs[1] if c.runs[1:] else "" for _, c in rows],
-            "name of a second result behind it",
-            str,
-        ),
-    }
-    for name in ("amplitude", "velocity"):
-        values = [place.get(name, np.nan) for place in places]
-        found[f"check_{name}"] = (values, f"{name} of the check", float)
-    for name, long_name in numbers.items():
-        found[f"check_{name}"] = ([getattr(check, name) for _, check in rows], long_name)
+    rows = [(part, check) for part in PARTS for check in checks[part.name]]
     outcomes = [check.outcome for _, check in rows]
     outcome = flags("check", outcomes, "what it says", verdicts.OUTCOMES)
-    return columns("check", found) | {"check_outcome": outcome}
+    return table("check", rows, CHECK_COLUMNS) | {"check_outcome": outcome}
 
 
 # Runs, and the patches of the oscillating bore
 
 
 def _runs(found: Collection[Run]) -> dict:
-    requests = [run.request for run in found]
-    certified = [friction(run) for run in found]
-    sizes = [resolution(run) for run in found]
+    return table("run", ((run,) for run in found), RUN_COLUMNS)
 
-    def texts(name: str) -> list[str]:
-        return [str(request.get(name) or "") for request in requests]
 
-    def numbers(name: str) -> list[float]:
-        return [float(request.get(name) or np.nan) for request in requests]
+def _number(name: str) -> Callable[[Run], float]:
+    return lambda run: float(run.request.get(name) or np.nan)
 
-    table = {
-        "run": ([run.key for run in found], "name of the result in the store", str),
-        "run_what": (list(map(made_by, requests)), "what was run", str),
-        "run_motion": (texts("motion"), "what moves", str),
-        "run_velocity": ([float(r["velocity"]) for r in requests], "forward velocity", float),
-        "run_amplitude": (numbers("amplitude"), "amplitude", float),
-        "run_poisson": ([float(r.get("poisson", 0)) for r in requests], "Poisson's ratio", float),
-        "run_model": ([_model(run) for run in found], "contact model that was used", str),
-        "run_cells": ([s[0] for s in sizes], "rings, or squares across", np.int32),
-        "run_angles": ([s[1] for s in sizes], "angular points on half a ring", np.int32),
-        "run_steps": ([s[2] for s in sizes], "time steps in a period", np.int32),
-        "run_tolerance": (numbers("tolerance"), "tolerance that was asked for", float),
-        "run_mu_macro": ([_force(run) for run in found], "mu_macro, where it has one", float),
-        "run_error": (
-            [error if np.isfinite(error) else np.nan for _, error in certified],
-            "error of mu_macro that it claims",
-            float,
-        ),
-        "run_converged": (
-            [bool(run.result.get("converged", True)) for run in found],
-            "the run says that it converged",
-            bool,
-        ),
-        "run_command": (list(map(command, requests)), "line that computes it again", str),
-    }
-    return columns("run", table)
+
+def _error(run: Run) -> float:
+    error = friction(run)[1]
+    return error if np.isfinite(error) else np.nan
 
 
 def _model(run: Run) -> str:
@@ -206,6 +172,30 @@ def _force(run: Run) -> float:
     """mu_macro of a run, of a transient the force at its end."""
     forces = run.result.get("force_forward")
     return float(forces[-1]) if forces else value_of(run.result, "mu_macro")
+
+
+RUN_COLUMNS: dict[str, tuple] = {
+    "run": (lambda run: run.key, "name of the result in the store", str),
+    "run_what": (lambda run: made_by(run.request), "what was run", str),
+    "run_motion": (lambda run: run.request.get("motion") or "", "what moves", str),
+    "run_velocity": (lambda run: float(run.request["velocity"]), "forward velocity"),
+    "run_amplitude": (_number("amplitude"), "amplitude"),
+    "run_poisson": (lambda run: float(run.request.get("poisson", 0)), "Poisson's ratio"),
+    "run_model": (_model, "contact model that was used", str),
+    "run_cells": (lambda run: resolution(run)[0], "rings, or squares across", np.int32),
+    "run_angles": (lambda run: resolution(run)[1], "angular points on half a ring", np.int32),
+    "run_steps": (lambda run: resolution(run)[2], "time steps in a period", np.int32),
+    "run_tolerance": (_number("tolerance"), "tolerance that was asked for"),
+    "run_mu_macro": (_force, "mu_macro, where it has one"),
+    "run_error": (_error, "error of mu_macro that it claims"),
+    "run_converged": (
+        lambda run: run.result.get("converged", True),
+        "the run says that it converged",
+        bool,
+    ),
+    "run_command": (lambda run: command(run.request), "line that computes it again", str),
+}
+"""Columns of the runs: function of the run, long_name, type."""
 
 
 def _patches(settings: Claims, runs: Runs) -> dict:

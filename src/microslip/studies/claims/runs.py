@@ -28,9 +28,7 @@ class Runs(Answers):
     def __call__(self, request: dict) -> Run:
         text = canonical_json(request)
         if text not in self.found:
-            record = self.answer(request)
-            self.keys.add(record["key"])
-            self.versions.add(canonical_json(record["versions"]))
+            record = self.record(request)
             self.found[text] = Run(record["key"], request, record["result"])
         return self.found[text]
 

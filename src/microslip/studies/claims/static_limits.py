@@ -9,13 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import j0
 
-from microslip.config.load import STATIC_AMPLITUDES
-from microslip.config.records import Claims
+from microslip.config.records import STATIC_AMPLITUDES
+from microslip.config.settings import Claims
+from microslip.datasets.variables import variable
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Run, Runs, friction
-from microslip.studies.tables import value_of, variable
+from microslip.studies.tables import value_of
 from microslip.theory import hertz
 from microslip.theory import paper as theory
 from microslip.theory.catalogue import FORMS, STATIC
@@ -55,7 +57,7 @@ def limit(study: Claims, runs: Runs, motion: str, amplitude: float) -> Limit:
     return Limit(value, rounding + error + abs(resolved - value), (closed, rings))
 
 
-def asymptote(amplitude: np.ndarray) -> np.ndarray:
+def asymptote(amplitude: ArrayLike) -> np.ndarray:
     """Static limit of the oscillating bore at large amplitudes, where the stick zone is small.
 
     There its radius is c = (4/e) exp(-D(1/2) amplitude), the share of the bound that the rotation

@@ -1,26 +1,54 @@
 """The dataset propulsion: a line for every motion, from stall force to no-load velocity."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
-from microslip.config.records import Propulsion
+from microslip.config.settings import Propulsion
+from microslip.datasets.variables import variable
 from microslip.studies.propulsion import propulsion as study
-from microslip.studies.tables import Answers, columns, finished, value_of, variable
+from microslip.studies.tables import Answers, finished, table, value_of
 
 GROUPS: dict = {}
 """All of it is over lines and their points."""
 
 POWER = "over mu times the mean normal load, u_lim and omega"
-OF_LINE = {
-    "stall_force": "load that stops the motion, over mu times the mean normal load",
-    "stall_force_error": "largest error of stall_force, by estimate",
-    "no_load_velocity": "forward velocity without a load, in the unit of the motion",
-    "no_load_velocity_error": "largest error of no_load_velocity, by estimate",
+
+
+def _number(name: str) -> Callable[[dict], float]:
+    return lambda result: value_of(result, name)
+
+
+LINE_COLUMNS: dict[str, tuple] = {
+    name: (_number(name), text)
+    for name, text in {
+        "stall_force": "load that stops the motion, over mu times the mean normal load",
+        "stall_force_error": "largest error of stall_force, by estimate",
+        "no_load_velocity": "forward velocity without a load, in the unit of the motion",
+        "no_load_velocity_error": "largest error of no_load_velocity, by estimate",
+    }.items()
+} | {
+    "converged": (
+        lambda result: value_of(result, "converged", bool),
+        "whether every force and power is within the tolerance",
+        bool,
+    ),
+    "reason": (
+        lambda result: value_of(result, "reason", str),
+        "why not, or why nothing is driven",
+        str,
+    ),
 }
-"""Numbers of a line; negative where the motion propels the contact backward."""
+"""Columns of a line; numbers are negative where the motion propels the contact backward."""
+COORDINATES: dict[str, tuple] = {
+    "line": (lambda name, _: name, "name of the motion", str),
+    "title": (lambda name, motion: motion.title or name, "title of the line", str),
+    "panel": (lambda _, motion: motion.panel, "heading of its panels", str),
+    "motion": (lambda _, motion: motion.motion, "what moves", str),
+    "amplitude": (lambda _, motion: motion.amplitude, "amplitude of the motion"),
+    "poisson": (lambda _, motion: motion.poisson, "Poisson's ratio"),
+}
 OF_POINT = {
     "velocity": "forward velocity, in equal parts from 0 to no_load_velocity",
     "force": "mean force that the motion pulls with, over mu times the mean normal load",
@@ -38,37 +66,18 @@ OF_POINT = {
 def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Propulsion. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
-    answers, motions = Answers(answer), list(settings.motions.values())
-    results = [answers(study.line(settings, motion)) for motion in motions]
-    lines: dict[str, tuple] = {
-        name: ([value_of(result, name) for result in results], text)
-        for name, text in OF_LINE.items()
-    }
-    lines["converged"] = (
-        [value_of(result, "converged", bool) for result in results],
-        "whether every force and power is within the tolerance",
-        bool,
-    )
-    reasons = [value_of(result, "reason", str) for result in results]
-    lines["reason"] = (reasons, "why not, or why nothing is driven", str)
-    points = {
-        name: ([_padded(result, name, settings.points) for result in results], text)
-        for name, text in OF_POINT.items()
-    }
-    coords = {
-        "line": variable("line", list(settings.motions), "name of the motion", str),
-        "title": variable("line", [m.title for m in motions], "title of the line", str),
-        "panel": variable("line", [m.panel for m in motions], "heading of its panels", str),
-        "motion": variable("line", [m.motion for m in motions], "what moves", str),
-        "amplitude": variable("line", [m.amplitude for m in motions], "amplitude of the motion"),
-        "poisson": variable("line", [m.poisson for m in motions], "Poisson's ratio"),
-    }
-    variables = columns("line", lines) | columns(("line", "point"), points)
+    answers = Answers(answer)
+    results = [answers(study.line(settings, motion)) for motion in settings.motions.values()]
+    variables = table("line", ((result,) for result in results), LINE_COLUMNS)
+    for name, text in OF_POINT.items():
+        rows = [_padded(result, name, settings.points) for result in results]
+        variables[name] = variable(("line", "point"), rows, text)
+    coords = table("line", settings.motions.items(), COORDINATES)
     title = "What motions drive a Hertz contact with, from stall force to no-load velocity"
     more = {"tolerance": settings.tolerance}
-    return finished(variables, coords, title, answers, asdict(settings), **more)
+    return finished(variables, coords, title, answers, settings, **more)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:

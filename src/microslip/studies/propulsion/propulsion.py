@@ -1,6 +1,6 @@
 """Propulsion: the lines of self-propelled motions, from stall to no load."""
 
-from microslip.config.records import Propulsion, SelfPropelledMotion
+from microslip.config.settings import Propulsion, SelfPropelledMotion
 from microslip.foundation.canonical import number
 
 LINES_TOGETHER = 2
@@ -8,10 +8,7 @@ LINES_TOGETHER = 2
 
 
 def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
-    """The request for the line of a motion.
-
-    study: records.Propulsion. motion: records.SelfPropelledMotion.
-    """
+    """The request for the line of a motion."""
     return {
         "kind": "propulsion",
         "motion": motion.motion,

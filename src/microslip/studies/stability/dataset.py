@@ -1,16 +1,16 @@
 """The dataset stability: what became of every method in every case."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.config.records import Stability
+from microslip.config.settings import Stability
+from microslip.datasets.variables import flags, variable
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
-from microslip.studies.tables import Answers, finished, flags, value_of, variable
+from microslip.studies.tables import Answers, finished, value_of
 
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
@@ -58,7 +58,7 @@ def outcome(
 def build(settings: Stability, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Stability. answer(request) -> record, such as batches.answer with a store.
+    answer(request) -> record, such as batches.answer with a store.
     """
     answers = Answers(answer)
     cases = study.cases(settings)
@@ -100,7 +100,7 @@ def build(settings: Stability, answer: Callable) -> xr.Dataset:
     }
     title = "Where methods for the friction of a vibrated Hertz contact fail"
     more = {"tolerance": settings.tolerance}
-    return finished(variables, coords, title, answers, asdict(settings), **more)
+    return finished(variables, coords, title, answers, settings, **more)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:

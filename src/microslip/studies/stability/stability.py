@@ -8,8 +8,7 @@ probes ask for the same tolerance.
 from dataclasses import dataclass
 from itertools import groupby
 
-from microslip.config.load import StudyPoint
-from microslip.config.records import Stability
+from microslip.config.settings import Stability
 from microslip.foundation.canonical import canonical_json, number
 from microslip.solver.method_names import SHIPPED, split
 from microslip.studies import requests
@@ -57,21 +56,15 @@ _BORE = {"motion": "bore", "velocity": 0.1, "amplitude": 1.0}
 
 AXES = (
     Axis(
-        "steps",
-        "steps in a period",
-        "transverse, v 0.1, A 1",
+        *("steps", "steps in a period", "transverse, v 0.1, A 1"),
         _varied("steps", (8, 16, 32, 64, 128, 256, 512), **_BASE),
     ),
     Axis(
-        "slow-transverse",
-        r"velocity $v_0/(\omega{}u_\mathrm{lim})$",
-        "transverse, A 0.5",
+        *("slow-transverse", r"velocity $v_0/(\omega{}u_\mathrm{lim})$", "transverse, A 0.5"),
         _varied("velocity", _SLOW, motion="transverse", amplitude=0.5),
     ),
     Axis(
-        "slow-bore",
-        r"velocity $v_0/(\Omega\varphi_0{}a)$",
-        "bore, A 1",
+        *("slow-bore", r"velocity $v_0/(\Omega\varphi_0{}a)$", "bore, A 1"),
         _varied("velocity", _SLOW_BORE, motion="bore", amplitude=1.0),
     ),
     Axis(
@@ -81,35 +74,21 @@ AXES = (
         _varied("amplitude", _AROUND_ONE, motion="transverse", velocity=0.01),
     ),
     Axis(
-        "tiny-amplitude",
-        r"amplitude $\varphi_0/\varphi_\mathrm{lk}$",
-        "bore, v 0.001",
+        *("tiny-amplitude", r"amplitude $\varphi_0/\varphi_\mathrm{lk}$", "bore, v 0.001"),
         _varied("amplitude", _TINY, motion="bore", velocity=1e-3),
     ),
     Axis(
-        "poisson",
-        r"Poisson's ratio $\nu$",
-        "transverse, v 0.1, A 0.7",
-        _varied(
-            "poisson",
-            (0.0, 0.1, 0.2, 0.3, 0.4, 0.49, 0.5),
-            motion="transverse",
-            velocity=0.1,
-            amplitude=0.7,
-        ),
+        *("poisson", r"Poisson's ratio $\nu$", "transverse, v 0.1, A 0.7"),
+        _varied("poisson", (0.0, 0.1, 0.2, 0.3, 0.4, 0.49, 0.5), **_BASE | {"amplitude": 0.7}),
     ),
     # The outermost cells get ever smaller, and the bound of friction goes to 0 there.
     Axis(
-        "edge",
-        "rings: small at the edge",
-        "transverse, v 0.01, A 0.5",
+        *("edge", "rings: small at the edge", "transverse, v 0.01, A 0.5"),
         _varied("cells", (8, 16, 32, 64, 128), motion="transverse", velocity=0.01, amplitude=0.5),
     ),
     # The innermost cells of a polar grid get ever more slender.
     Axis(
-        "centre",
-        "rings: slender cells at the centre",
-        "bore, v 0.1, A 1",
+        *("centre", "rings: slender cells at the centre", "bore, v 0.1, A 1"),
         _varied("cells", (4, 8, 12, 16, 24), **_BORE),
     ),
     # Up to 1 the instantaneous centre lies inside the contact: the slip has no direction there.
@@ -120,29 +99,21 @@ AXES = (
         _varied("velocity", (0.05, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0), motion="bore", amplitude=5.0),
     ),
     Axis(
-        "reversal",
-        "amplitude of a zigzag",
-        "lateral speed constant but for its sign, v 0.1",
+        *("reversal", "amplitude of a zigzag", "lateral speed constant but for its sign, v 0.1"),
         _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), motion="zigzag", velocity=0.1),
     ),
     Axis(
-        "penalty",
-        "penalty",
-        "transverse, v 0.1, A 1",
+        *("penalty", "penalty", "transverse, v 0.1, A 1"),
         _varied(None, (0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0), **_BASE),
         parameters=(("admm", "penalty"),),
     ),
     Axis(
-        "relaxation",
-        "relaxation",
-        "transverse, v 0.1, A 1",
+        *("relaxation", "relaxation", "transverse, v 0.1, A 1"),
         _varied(None, (0.5, 1.0, 1.5, 1.7, 1.9, 2.0, 2.1), **_BASE),
         parameters=(("admm", "relaxation"), ("gauss-seidel", "relaxation")),
     ),
     Axis(
-        "step-length",
-        "step length",
-        "transverse, v 0.1, A 1",
+        *("step-length", "step length", "transverse, v 0.1, A 1"),
         _varied(None, (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0), **_BASE),
         parameters=(("projected-gradient", "step"),),
     ),
@@ -155,7 +126,7 @@ BLOCKS_TOGETHER = 5
 
 
 def axes(study: Stability) -> list[Axis]:
-    """The blocks that a records.Stability asks for, in the order of AXES."""
+    """The blocks that the settings ask for, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
@@ -199,10 +170,8 @@ def pieces(study: Stability) -> tuple[list, list]:
     return [piece for piece in long if piece], [piece for piece in short if piece]
 
 
-def _point(overrides: dict) -> StudyPoint:
-    place = ("motion", "velocity", "amplitude", "poisson")
-    given = {"poisson": 0.0} | {key: overrides[key] for key in place if key in overrides}
-    return StudyPoint(name="", title="", **given)
+def _point(overrides: dict) -> requests.Point:
+    return requests.Point(**{k: v for k, v in overrides.items() if k in requests.Point._fields})
 
 
 def _with_number(method: str, parameter: str, value: float) -> str:

@@ -1,0 +1,659 @@
+"""Keys of a configuration: types, defaults, ranges and descriptions.
+
+Validation, the JSON schema and the tables in config/README.md follow from these models. An axis
+stays as it was written, so that the filled-in settings can be handed on and read again.
+"""
+
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+    model_serializer,
+    model_validator,
+    with_config,
+)
+from pydantic_core import core_schema
+from typing_extensions import TypedDict
+
+from microslip.config.axes import MOST_MAP_POINTS, coordinates, refuse_crowd
+from microslip.config.records import LOOSEST_POINTS, STATIC_AMPLITUDES, Refusal
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.solver import method_names
+
+CONFIG = ConfigDict(
+    extra="forbid",
+    strict=True,
+    frozen=True,
+    allow_inf_nan=False,
+    regex_engine="python-re",  # patterns look ahead
+    use_attribute_docstrings=True,
+    validate_default=True,
+    defer_build=True,  # builds the validator of Root alone
+)
+PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
+"""For typed dicts, whose docstrings take long to extract."""
+MOST_LINES, MOST_PANELS = 8, 4
+"""Lines of a panel of the propulsion figure, and its panels."""
+
+
+class Settings(BaseModel):
+    """Settings by key. Unknown keys are refused."""
+
+    model_config = CONFIG
+
+    @model_serializer(mode="wrap")
+    def _without_unset(self, handler: Callable) -> dict[str, Any]:
+        """Leave out optional keys that were not given, so that the result can be read again."""
+        values = handler(self).items()
+        return {k: v for k, v in values if v is not None or k in self.model_fields_set}
+
+
+# Values
+
+
+def _whole(value: Any) -> Any:
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def _kind(value: object) -> str | None:
+    """Alternative of a union that a value is checked by, as an element of an error's location."""
+    if isinstance(value, list | dict):
+        return "(list)" if isinstance(value, list) else "(spacing)"
+    return "(number)" if isinstance(value, int | float) else None
+
+
+def _no_default(rule: dict[str, Any]) -> None:
+    del rule["default"]
+
+
+def _optional() -> Any:
+    """A key that may be left out but is not null."""
+    return Field(default=None, validate_default=False, json_schema_extra=_no_default)
+
+
+def _raw(value: Any) -> Any:
+    """A default as it would be written; it is validated like a given value."""
+    return Field(default=value)
+
+
+WHOLE = BeforeValidator(_whole)
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST["velocity"])]
+Positive = Annotated[float, Field(gt=0, le=LARGEST["velocity"])]
+Ratio = Annotated[float, Field(ge=0, le=0.5)]
+Tolerance = Annotated[float, Field(ge=1e-6, le=0.1)]
+Count = Annotated[int, Field(ge=2, le=100_000), WHOLE]
+Cells = Annotated[int, Field(ge=4, le=LARGEST["cells"], multiple_of=2), WHOLE]
+Steps = Annotated[int, Field(ge=8, le=LARGEST["steps"], multiple_of=2), WHOLE]
+Points = Annotated[int, Field(ge=1, le=100_000), WHOLE]
+
+# A character that is no space; no control characters, line breaks and halves of pairs.
+WRITABLE = r"^(?=.*\S)[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]+$(?!\n)"
+# Also no pattern, and no place that other programs take for another one.
+FOLDER = (
+    r"^(?!~)(?!.*://)(?!.*\$[A-Za-z_])(?=.*\S)"
+    r"[^{}*?\x00-\x1f\x7f\x85\u2028\u2029\ud800-\udfff]+$(?!\n)"
+)
+ONE_LINE = "text on one line, of up to 100 characters that can be written"
+Text = Annotated[str, Field(min_length=1)]
+Title = Annotated[str, Field(max_length=100, pattern=WRITABLE, title=ONE_LINE)]
+PointName = Annotated[
+    Title, BeforeValidator(lambda name: str(name) if type(name) in (int, float) else name)
+]
+PlainName = Annotated[
+    str,
+    Field(
+        max_length=100,
+        pattern=r"^[a-z][a-z0-9_]*$(?!\n)",
+        title="a name of up to 100 small letters, digits and _ that begins with a letter",
+    ),
+]
+Model = Literal["auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"]
+
+
+# Axes
+
+
+@with_config(PLAIN)
+class Range(TypedDict):
+    """Coordinates from start to stop, both included, rounded to six significant digits."""
+
+    start: Annotated[NonNegative, Field(description="First; above 0 for equal ratios.")]
+    stop: Annotated[NonNegative, Field(description="Last, above start.")]
+    count: Annotated[Count, Field(description="Number of coordinates.")]
+
+
+@with_config(PLAIN | ConfigDict(title="linear or log spacing"))
+class Spacing(TypedDict, total=False):
+    """One of the two spacings."""
+
+    linear: Annotated[Range, Field(description="Equal distances.")]
+    log: Annotated[Range, Field(description="Equal ratios.")]
+
+
+def _one(spacing: Spacing) -> Spacing:
+    if len(spacing) != 1:
+        raise ValueError("allowed: linear or log")
+    return spacing
+
+
+_Number = Annotated[NonNegative, Tag("(number)")]
+_List = Annotated[list[NonNegative], Field(min_length=1), Tag("(list)")]
+_Spacing = Annotated[Spacing, AfterValidator(_one), Tag("(spacing)")]
+_Ratios = Annotated[list[Ratio], Field(min_length=1), Tag("(list)")]
+
+
+class Axis(tuple[float, ...]):
+    """Coordinates in ascending order.
+
+    Attributes
+    ----------
+    raw : list, dict or number
+        The axis as it was written.
+    """
+
+    raw: Any
+    form: ClassVar[Any] = Annotated[_List | _Spacing, Discriminator(_kind)]
+
+    @classmethod
+    def of(cls, raw: Any) -> Self:
+        """The axis that is written so; raises Refusal."""
+        axis = cls(coordinates(raw))
+        axis.raw = raw
+        return axis
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        as_written = core_schema.plain_serializer_function_ser_schema(
+            lambda axis: axis and axis.raw
+        )
+        form = handler.generate_schema(cls.form)
+        return core_schema.no_info_after_validator_function(cls.of, form, serialization=as_written)
+
+
+class NumberOrAxis(Axis):
+    """A number, or an axis that becomes a dimension of the dataset."""
+
+    form = Annotated[_Number | _List | _Spacing, Discriminator(_kind)]
+
+
+class Poisson(Axis):
+    """A Poisson's ratio, or a list of them."""
+
+    form = Annotated[Annotated[Ratio, Tag("(number)")] | _Ratios, Discriminator(_kind)]
+
+
+class Tolerances(Axis):
+    """A list of tolerances."""
+
+    form = Annotated[list[Tolerance], Field(min_length=1)]
+
+
+def _above_zero(axis: Axis) -> Axis:
+    if axis[0] <= 0:
+        raise Refusal(f"{axis[0]:g} is not allowed; allowed: numbers > 0")
+    return axis
+
+
+def _two(axis: Axis) -> Axis:
+    if len(axis) < 2:
+        raise Refusal(f"{list(axis)} is not allowed; allowed: two numbers or more")
+    return axis
+
+
+PositiveAxis = Annotated[Axis, AfterValidator(_above_zero)]
+MapAxis = Annotated[PositiveAxis, AfterValidator(_two)]
+
+
+# Sweeps
+
+
+class Adaptive(Settings):
+    """A further map over the same ranges, certified_NAME.nc, for `snakemake certified`."""
+
+    error: Annotated[float, Field(ge=1e-5, le=0.1)]
+    """Largest error of mu_macro anywhere in the ranges, absolute. Under a force: of the velocity v,
+    divided by sqrt(1 + v^2)."""
+    tolerance: Annotated[float, Field(ge=1e-6, le=LOOSEST_POINTS)] | None = None
+    """Largest error of mu_macro at the points, below `error`. null: three tenths of it, at most
+    0.01."""
+
+    @model_validator(mode="after")
+    def _refuse_loose_points(self) -> Self:
+        if self.tolerance is not None and self.tolerance >= self.error:
+            given, least = f"{self.tolerance:g} is not allowed", f"which is {self.error:g}"
+            raise Refusal(f"{given}; allowed: less than the error, {least}", "tolerance")
+        return self
+
+
+class SteadySweep(Settings):
+    """Keys of `continuous_bore`, and of every other sweep."""
+
+    velocity: Axis
+    """Forward velocity: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq 28) or v0/(omega a) (Eq 13),
+    as the motion has it. 0: static limit."""
+    poisson: Poisson = _raw(0.0)
+    """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
+    model: Model = "auto"
+    """Contact model. auto takes the cheapest one that is exact for the motion."""
+    tolerance: Tolerance | None = 1e-3
+    """Largest accepted error of mu_macro, absolute. null, with cells and steps imposed: a point
+    counts as converged once its runs have reached their periodic state."""
+    cells: Cells | None = None
+    """Rings, or squares across the contact, even. null: chosen by the tolerance."""
+    steps: Steps | None = None
+    """Time steps of a period, even. null: chosen by the tolerance."""
+    points_per_job: Points | None = None
+    """Points that one job of this sweep computes. null: the value of the top level."""
+
+    @model_validator(mode="after")
+    def _refuse_no_tolerance(self) -> Self:
+        steady = getattr(self, "amplitude", None) is None  # takes no steps
+        free = [name for name in ("cells", "steps") if getattr(self, name) is None]
+        free = [name for name in free if not (steady and name == "steps")]
+        if self.tolerance is None and free:
+            imposed = f"{' and '.join(free)} imposed"
+            raise Refusal(f"null is not allowed; allowed: a number, or {imposed}", "tolerance")
+        return self
+
+
+class Sweep(SteadySweep):
+    """Keys of an oscillation across the motion (Eq 1) and of an oscillating rotation (Eq 23)."""
+
+    amplitude: Axis
+    """Amplitude: y0/u_lim (Eq 2), or phi0/phi_lk(a/2) (Eq 27)."""
+    adaptive: Adaptive | None = None
+    """A certified map over the same ranges, see below. null: none."""
+
+
+class _NamedSweep(SteadySweep):
+    motion: Text
+    """Motion; numbers may follow as in "elliptic:forward=0.5,phase=30"."""
+    pressure: Text = "hertz"
+    """Normal pressure; numbers may follow as in "power:exponent=1"; or file:FILE."""
+    title: Title | None = None
+    """Title in figures and of the dataset, drawn as it stands: $ and \\ begin no formula. null: the
+    name."""
+    amplitude: Axis = _optional()
+    """Amplitude, in the unit of the motion. Required unless the motion is steady."""
+    tolerance: Tolerance = 1e-3
+    """Largest accepted error of mu_macro, absolute."""
+    adaptive: Adaptive | None = None
+    """A certified map over the same ranges, see below. null: none."""
+
+
+class ExtendedSweep(_NamedSweep):
+    """A sweep of any motion under any pressure. Its group is drawn as maps if it has two amplitudes
+    and two velocities above 0 at least, else as lines: at most 12 maps, or 8 lines."""
+
+    group: PlainName
+    """Figure that shows the sweep, extended_GROUP, with the others of its group: all of them maps,
+    or all of them lines."""
+
+
+class DriveSweep(_NamedSweep):
+    """A sweep of a contact that a force or a spring drives. What is an axis is a dimension."""
+
+    velocity: Axis = _optional()
+    """Velocity of the far end of the spring, in the unit of the motion. Not with a force."""
+    contacts: Text | None = None
+    """Contacts that carry the body, such as "phase=0;phase=180": load, phase in degrees and
+    amplitude of each. null: one."""
+    force: NumberOrAxis = _optional()
+    """Force in place of a velocity: P over mu times the mean normal load. Number or axis."""
+    stiffness: NumberOrAxis = _optional()
+    """Stiffness of the spring, over mu F_z / u_lim. Number or axis, above 0."""
+    mass: NumberOrAxis = _optional()
+    """Mass of the body, over mu F_z / (u_lim omega^2). Number or axis."""
+    damping: NumberOrAxis = _optional()
+    """Damping beside the spring, over mu F_z / (u_lim omega). Number or axis."""
+
+
+@with_config(PLAIN)
+class Sweeps(TypedDict, total=False):
+    """Sweeps of the paper. One that is left out is not run."""
+
+    transverse: Annotated[Sweep, Field(description="Oscillation across the motion (Eq 1).")]
+    bore: Annotated[Sweep, Field(description="Oscillating rotation (Eq 23).")]
+    continuous_bore: Annotated[SteadySweep, Field(description="Steady rotation (Eq 12).")]
+
+
+# Single runs
+
+
+class ForceHistory(Settings):
+    """Forces over the first periods of a transverse oscillation (Figure 1)."""
+
+    velocity: Positive = 0.1
+    """Forward velocity v0/(omega u_lim)."""
+    amplitude: NonNegative = 1.0
+    """Amplitude of the oscillation y0/u_lim."""
+    periods: Annotated[int, Field(ge=1, le=1000), WHOLE] = 4
+    """Periods from the start at zero traction."""
+    cells: Cells | None = None
+    """Rings, even. null: the default of microslip.history."""
+    steps: Steps | None = None
+    """Time steps of a period, even. null: the default of microslip.history."""
+
+
+class TractionField(Settings):
+    """Traction field of the steady continuous bore (Figure 3)."""
+
+    velocity: Positive = 0.5
+    """Forward velocity v0/(a omega). The centre of rotation lies at -velocity."""
+    cells: Cells | None = None
+    """Rings, even. null: the default of microslip.history."""
+
+
+class Transients(Settings):
+    """Continuous bore from three initial states to its steady state (Figure 5)."""
+
+    velocity: Positive = 0.8
+    """Forward velocity v0/(a omega)."""
+    travel: Positive = 5.0
+    """Forward displacement of each run, in units of u_lim."""
+    cells: Cells | None = None
+    """Rings, even. null: the default of microslip.history."""
+    steps: Steps | None = None
+    """Time steps of a run, even. null: the default of microslip.history."""
+
+
+class Histories(Settings):
+    """Single runs that Figures 1, 3 and 5 show, stored in the dataset of their motion."""
+
+    transverse: ForceHistory = _raw({})
+    """Forces over the first periods of a transverse oscillation (Figure 1)."""
+    field: TractionField = _raw({})
+    """Traction field of the steady continuous bore (Figure 3)."""
+    transients: Transients = _raw({})
+    """Continuous bore from three initial states to its steady state (Figure 5)."""
+
+
+# Studies
+
+
+def _refuse_repeats(values: list[str] | None) -> list[str] | None:
+    names = values or []
+    twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
+    if twice is not None:
+        raise Refusal(f"{twice} occurs twice; allowed: different values")
+    return values
+
+
+def _refuse_unknown(methods: list[str]) -> list[str]:
+    for i, text in enumerate(methods):
+        try:
+            method_names.check(text)
+        except InputError as error:
+            raise Refusal(f"{error.value!r}: {error.allowed}", f"[{i}]") from None
+    return methods
+
+
+def _all_methods(methods: Any) -> Any:
+    return list(method_names.names()) if methods is None else methods
+
+
+_Names = Annotated[list[str], Field(min_length=1)]
+Methods = Annotated[
+    _Names,
+    BeforeValidator(_all_methods, json_schema_input_type=_Names | None),
+    AfterValidator(_refuse_repeats),
+    AfterValidator(_refuse_unknown),
+]
+Block = Literal[
+    "steps",
+    "slow-transverse",
+    "slow-bore",
+    "critical-amplitude",
+    "tiny-amplitude",
+    "poisson",
+    "edge",
+    "centre",
+    "rotation-centre",
+    "reversal",
+    "penalty",
+    "relaxation",
+    "step-length",
+]
+
+
+class StudyPoint(Settings):
+    """A point at which methods are compared."""
+
+    motion: Literal["transverse", "longitudinal", "bore", "continuous-bore", "zigzag"]
+    """Motion."""
+    velocity: Positive
+    """Forward velocity, in the unit of the motion, above 0."""
+    amplitude: Positive | None = None
+    """Amplitude, in the unit of the motion, above 0. continuous-bore has none."""
+    poisson: Ratio = 0.0
+    """Poisson's ratio of the half-space."""
+    title: Title | None = None
+    """Title of the panel, drawn as it stands. null: the name of the point."""
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        steady, amplitude = self.motion == "continuous-bore", self.amplitude
+        if steady and amplitude is not None:
+            said = f"{amplitude:g} is not allowed; {self.motion} has no amplitude"
+            raise Refusal(said, "amplitude")
+        if not steady and amplitude is None:
+            raise Refusal(f"missing; required for {self.motion}", "amplitude")
+        return self
+
+
+def _points(*rows: tuple) -> dict[str, dict]:
+    keys = ("motion", "velocity", "amplitude", "title", "poisson")
+    return {name: dict(zip(keys, row, strict=False)) for name, *row in rows}
+
+
+POINTS = _points(
+    ("large-amplitude", "transverse", 0.5, 3.0, "large amplitude"),
+    ("mid", "transverse", 0.1, 0.5, "mid-range"),
+    ("near-static", "transverse", 0.002, 0.5, "near the static limit"),
+    ("critical-amplitude", "transverse", 0.02, 1.0, "critical amplitude"),
+    ("tiny-amplitude", "transverse", 0.05, 0.05, "tiny amplitude"),
+    ("incompressible", "transverse", 0.1, 0.7, "incompressible", 0.5),
+    ("steady-bore", "continuous-bore", 0.8, None, "steady bore"),
+    ("slow-bore", "bore", 0.005, 1.0, "slow bore"),
+    ("bore", "bore", 0.2, 1.0, "bore"),
+    ("large-bore", "bore", 0.5, 5.0, "bore, centre of rotation inside"),
+    ("tiny-bore", "bore", 0.05, 0.1, "tiny bore"),
+)
+"""Points of the shipped study of accuracy."""
+
+
+class _Grid(Settings):
+    velocity: Axis
+    amplitude_transverse: Axis
+    amplitude_bore: Axis
+
+    @property
+    def amplitude(self) -> dict[str, Axis]:
+        """Amplitudes by motion."""
+        return {"transverse": self.amplitude_transverse, "bore": self.amplitude_bore}
+
+    @model_validator(mode="after")
+    def _refuse_crowd(self) -> Self:
+        for motion, amplitudes in self.amplitude.items():
+            points = len(self.velocity) * len(amplitudes)
+            refuse_crowd(points, MOST_MAP_POINTS, f"velocity x amplitude_{motion}")
+        return self
+
+
+class ModelMap(_Grid):
+    """Grid of the maps that show the cheapest model within a tolerance, at Poisson's ratio 0."""
+
+    velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
+    """Forward velocities of both motions, above 0."""
+    amplitude_transverse: MapAxis = _raw({"log": {"start": 0.1, "stop": 3, "count": 9}})
+    """Amplitudes of the oscillation y0/u_lim, above 0."""
+    amplitude_bore: MapAxis = _raw({"log": {"start": 0.1, "stop": 5, "count": 9}})
+    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0."""
+    tolerance: Tolerances = _raw([0.01, 0.001])
+    """Errors of mu_macro, absolute; a map for each."""
+
+
+class Accuracy(Settings):
+    """Cost of accuracy: `snakemake accuracy` makes accuracy_cost.nc and its figures."""
+
+    methods: Methods = _raw(None)
+    """Methods to compare: files of src/microslip/solver/methods with hyphens, and shipped, which is
+    microslip.solve. Numbers may follow: "admm:penalty=0.1". null: all."""
+    points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
+    """Points at which all methods and models run, by name; a panel each."""
+    levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6
+    """Levels of the resolution ladders, from the coarsest on."""
+    repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
+    """Readings of a time, of which the median counts."""
+    map: ModelMap = _raw({})
+    """Grid of the maps that show the cheapest model within a tolerance."""
+
+
+class Stability(Settings):
+    """Failures of methods: `snakemake stability` makes stability.nc and its figure."""
+
+    methods: Methods = _raw(None)
+    """Methods, as for accuracy."""
+    tolerance: Tolerance = 1e-3
+    """Largest accepted error of mu_macro, absolute."""
+    axes: Annotated[
+        Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_refuse_repeats)
+    ] = None
+    """Blocks of the atlas; each varies one quantity. null: all."""
+
+
+class SelfPropelledMotion(Settings):
+    """A motion that may propel the contact."""
+
+    motion: Text
+    """Motion, elliptic or normal with the numbers of its name."""
+    amplitude: Positive
+    """Amplitude, in the unit of the motion, above 0."""
+    poisson: Ratio = 0.0
+    """Poisson's ratio of the half-space."""
+    panel: Title
+    """Heading of the panels that show it, together with others of the same heading."""
+    title: Title | None = None
+    """Title of the line, drawn as it stands. null: the name."""
+
+
+def _motions() -> dict[str, dict]:
+    eight = "elliptic:forward_cycles=2,phase"
+    flat = "elliptic:forward=0.5,forward_cycles=2,phase=0"
+    rows: dict[str, tuple[str, float, str, str]] = {
+        "eight": (f"{eight}=0", 1.0, "loops", "eight"),
+        "eight-flat": (flat, 1.0, "loops", "eight, half as long"),
+        "eight-ahead": (f"{eight}=45", 1.0, "loops", "phase 45 degrees"),
+        "eight-behind": (f"{eight}=-45", 1.0, "loops", "phase -45 degrees"),
+        "eight-large": (f"{eight}=0", 3.0, "loops", "eight, three times as large"),
+    }
+    for name, motion, amplitude, panel in (
+        ("pressed", "normal:forward=1,phase", 0.9, "forward to and fro, A 0.9"),
+        ("sliding", "normal:forward=1,load=0.2,phase", 4.0, "the same, sliding, A 4"),
+    ):
+        for phase in range(60, 211, 30):
+            title = f"phase {phase} degrees"
+            rows[f"{name}-{phase}"] = f"{motion}={phase}", amplitude, panel, title
+    keys = ("motion", "amplitude", "panel", "title")
+    return {name: dict(zip(keys, row, strict=True)) for name, row in rows.items()}
+
+
+MOTIONS = _motions()
+"""Motions of the shipped study of propulsion."""
+
+
+class Propulsion(Settings):
+    """Self-propelled motions: `snakemake propulsion` makes propulsion.nc and its figure."""
+
+    tolerance: Tolerance = 1e-3
+    """Largest accepted error of a force, over mu times the mean normal load."""
+    points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
+    """Points of a line from stall to no load, its ends included."""
+    motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
+    """Motions by name, a line each."""
+
+    @model_validator(mode="after")
+    def _refuse_crowd(self) -> Self:
+        panels: dict[str, int] = {}
+        for name, motion in self.motions.items():
+            panel, key = motion.panel, f"motions.{name}.panel"
+            panels[panel] = panels.get(panel, 0) + 1
+            if panels[panel] > MOST_LINES:
+                allowed = f"has more than {MOST_LINES} lines; allowed: another panel"
+                raise Refusal(f"{panel} {allowed}", key)
+            if len(panels) > MOST_PANELS:
+                allowed = f"allowed: {', '.join(list(panels)[:-1])}"
+                raise Refusal(f"{panel} is one of more than {MOST_PANELS}; {allowed}", key)
+        return self
+
+
+class Claims(_Grid):
+    """The statements of the paper, judged: `snakemake claims` makes claims.nc and its figures."""
+
+    tolerance: Tolerance = 5e-4
+    """Largest accepted error of mu_macro, absolute."""
+    velocity: PositiveAxis = _raw([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
+    """Forward velocities of both motions, above 0. The smallest one of the paper, 0.005, is added
+    where a statement needs it."""
+    amplitude_transverse: PositiveAxis = _raw([0.25, 0.5, 0.75, 1, 2, 3])
+    """Amplitudes of the oscillation y0/u_lim, above 0; at least one up to 1."""
+    amplitude_bore: PositiveAxis = _raw([0.5, 1, 2, 3, 5, 10])
+    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0; at least one up to 5."""
+    cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
+    """Rings, and angular points on half the disc, of the periods seen from inside, even. Half as
+    many give the error."""
+
+    @model_validator(mode="after")
+    def _refuse_mismatch(self) -> Self:
+        for motion, values in self.amplitude.items():
+            largest = STATIC_AMPLITUDES[motion]
+            if values[0] > largest:
+                allowed = f"at least one number up to {largest:g}, where there is static friction"
+                said = f"{list(values)} is not allowed; allowed: {allowed}"
+                raise Refusal(said, f"amplitude_{motion}")
+        return self
+
+
+class Root(Settings):
+    """Points to compute, their accuracy, and the folder of results. All quantities are
+    dimensionless."""
+
+    results: Annotated[
+        str,
+        Field(
+            pattern=FOLDER,
+            title="text for a folder, without braces, *, ?, line breaks, ~ in front, $NAME and ://",
+        ),
+    ] = "results"
+    """Folder for all results, relative to the folder that the workflow runs in."""
+    points_per_job: Points = 50
+    """New points that one job computes one after another. A job takes about a second to start;
+    large jobs leave cores idle at the end. A sweep may have a value of its own."""
+    sweeps: Annotated[Sweeps, Field(min_length=1)]
+    """Sweeps of the paper, one at least."""
+    extended: dict[PlainName, ExtendedSweep] = {}
+    """Sweeps of other motions and pressures, by name: `snakemake extended` makes a dataset of each
+    and a figure of each group."""
+    drives: dict[PlainName, DriveSweep] = {}
+    """Sweeps of contacts that a force or a spring drives, by name: `snakemake drives`."""
+    histories: Histories = _raw({})
+    """Single runs that Figures 1, 3 and 5 show."""
+    accuracy: Accuracy = _raw({})
+    """Cost of accuracy: `snakemake accuracy`."""
+    stability: Stability = _raw({})
+    """Failures of methods: `snakemake stability`."""
+    propulsion: Propulsion = _raw({})
+    """Self-propelled motions: `snakemake propulsion`."""
+    claims: Claims = _raw({})
+    """The statements of the paper, judged: `snakemake claims`."""

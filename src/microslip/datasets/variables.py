@@ -1,0 +1,60 @@
+"""Variables of datasets with their attributes, after the CF conventions."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+ANCILLARY = "ancillary_variables"
+"""Attribute of a value that names the variable with its error."""
+
+
+def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
+    """Attributes of a variable with values of type `kind`; flags: meanings of False and True."""
+    if kind is str:
+        return {"long_name": long_name}
+    if kind is bool:
+        # Stored as bytes with these meanings; xarray gives them back as bool.
+        values = np.array([0, 1], np.int8)
+        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
+    return {"long_name": long_name, "units": units}
+
+
+def variable(
+    dims: str | Sequence[Hashable],
+    values: ArrayLike,
+    long_name: str,
+    kind: type = float,
+    units: str = "1",
+    **more: str,
+) -> tuple:
+    """A variable as xarray.Dataset takes it; kind: type of its values; more: attributes."""
+    values = np.array(values).astype(object if kind is str else kind)
+    return dims, values, attributes(kind, long_name, units) | more
+
+
+def flags(
+    dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
+) -> tuple:
+    """A variable of codes, indices of `meanings`."""
+    numbers = np.arange(len(meanings), dtype=np.int8)
+    words = " ".join(name.replace(" ", "_") for name in meanings)
+    about = {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
+    return dims, np.asarray(codes).astype(np.int8), about
+
+
+def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
+    """The attribute that links a variable to its error, if that is among the names."""
+    error = f"{name}_error"
+    return {ANCILLARY: error} if error in names else {}
+
+
+def link_errors(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with every variable link_errors to its error."""
+    found = dataset.copy()
+    for name in found.variables:
+        found[name].attrs |= error_of(name, found.variables)
+    return found

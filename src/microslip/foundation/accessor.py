@@ -1,0 +1,50 @@
+"""The accessors `microslip` and `friction` of xarray datasets.
+
+`import microslip` registers them, so that `xarray.open_dataset(...)` is enough to ask a map.
+Importing xarray takes a third of a second, which a process that uses no dataset does not pay: the
+accessors are registered as soon as xarray is there.
+"""
+
+import sys
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any
+
+
+def register() -> None:
+    """Register the accessors now, or when xarray is imported."""
+    if "xarray" in sys.modules:
+        _register(sys.modules["xarray"])
+    else:
+        sys.meta_path.insert(0, _AfterXarray())
+
+
+class _AfterXarray:
+    """Finder that registers the accessors at the end of the import of xarray."""
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
+        if name != "xarray":
+            return None
+        sys.meta_path.remove(self)
+        spec = find_spec(name)
+        if spec is not None and spec.loader is not None:
+            execute = spec.loader.exec_module
+
+            def exec_module(module: ModuleType) -> None:
+                execute(module)
+                _register(module)
+
+            spec.loader.exec_module = exec_module  # type: ignore[method-assign]
+        return spec
+
+
+def _register(xarray: Any) -> None:
+    for name, function in (("microslip", "accessor"), ("friction", "Friction")):
+
+        def of_dataset(dataset: Any, function: str = function) -> Any:
+            return getattr(import_module("microslip.datasets.query.accessor"), function)(dataset)
+
+        if not hasattr(xarray.Dataset, name):  # the package may be imported anew
+            xarray.register_dataset_accessor(name)(of_dataset)
