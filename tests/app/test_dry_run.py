@@ -5,7 +5,7 @@ import pytest
 from microslip.app import dry_run
 from microslip.config import load
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 AXES = {"velocity": [0.1, 1], "amplitude": [1, 2, 3]}
 

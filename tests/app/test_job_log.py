@@ -13,7 +13,7 @@ import pytest
 
 from microslip.app.job_log import job_log, plain_words
 from microslip.foundation.errors import SolverError
-from microslip.sweeps.sealed_files import CacheError
+from microslip.foundation.files import CacheError
 
 FULL = Path("/dev/full")
 needs_full = pytest.mark.skipif(not FULL.exists(), reason="no device that is always full")

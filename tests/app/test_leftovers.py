@@ -10,7 +10,7 @@ from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.foundation import source_digest
-from microslip.sweeps import batch_files, batch_plans, batches, cache, sealed_files
+from microslip.sweeps import batch_files, batch_plans, batches, cache
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 
@@ -34,7 +34,7 @@ def results(tmp_path, monkeypatch):
             records, _ = batches.run_batch(requests, cache.Store(folder))
             batch_files.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
     for file in ("bore.nc", "summaries/bore.html", "figures/fig6_bore_map.png", "pendulum.nc"):
-        with sealed_files.writing_beside(folder / file, sealed=True) as beside:
+        with files.writing_beside(folder / file, sealed=True) as beside:
             beside.write_bytes(b"content")
     (folder / "notes.txt").write_text("mine")
     (folder / "mine.nc").write_bytes(b"not sealed")
@@ -130,7 +130,7 @@ def only_one_dataset(results, tmp_path):
     """A configuration, of another sweep, and a folder of results with a sealed dataset alone."""
     path = tmp_path / "one.yaml"
     path.write_text(yaml.safe_dump({"results": str(results), "sweeps": {"bore": AXES}}))
-    with sealed_files.writing_beside(results / "pendulum.nc", sealed=True) as beside:
+    with files.writing_beside(results / "pendulum.nc", sealed=True) as beside:
         beside.write_bytes(b"content")
     return path
 
@@ -157,7 +157,7 @@ def test_nothing_behind_a_link_is_removed(tmp_path, linked):
         "batches": "bore/0123456789abcdef.json",
         "rounds": "certified_bore/0123/0.json",
     }
-    with sealed_files.writing_beside(elsewhere / inside[linked], sealed=True) as beside:
+    with files.writing_beside(elsewhere / inside[linked], sealed=True) as beside:
         beside.write_bytes(b"content")
     (results / linked).parent.mkdir(exist_ok=True)
     (results / linked).symlink_to(elsewhere)
@@ -185,7 +185,7 @@ def test_a_damaged_round_keeps_the_points_of_its_motion(results, tmp_path, capsy
     configuration.write_text(yaml.safe_dump(given))
     plan = Plan(load.load(configuration))
     file = results / plan.rounds_folder("certified_bore") / "0.json"
-    sealed_files.write_atomically(file, b'{"nodes": [')
+    files.write_atomically(file, b'{"nodes": [')
     points = names(results / "points")
     assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
     assert f"{file} is damaged" in capsys.readouterr().err

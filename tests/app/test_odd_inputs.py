@@ -10,10 +10,10 @@ from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTIT
 import microslip
 from microslip.app import cli
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import CacheError
 from microslip.si.materials import Material
 from microslip.si.predict import predict
 from microslip.si.quantities import si_value
-from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
 LAST_DIGITS = 1e-15

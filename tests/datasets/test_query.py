@@ -15,9 +15,9 @@ import microslip
 from microslip.datasets.query import beyond
 from microslip.datasets.query.interpolation import Axis, Table
 from microslip.datasets.query.open_map import SOURCES, open_map
+from microslip.foundation import files
 from microslip.foundation.errors import InputError
-from microslip.sweeps import sealed_files
-from microslip.sweeps.sealed_files import CacheError
+from microslip.foundation.files import CacheError
 from microslip.theory import paper
 
 VELOCITY = np.geomspace(1e-3, 10, 13)
@@ -512,14 +512,14 @@ def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
 
 def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypatch):
     found = open_map("transverse", results)
-    refused = sealed_files.check_room
+    refused = files.check_room
 
     def read_only(folder, *rest):
         if Path(folder).is_relative_to(results):
             raise OSError(errno.EROFS, "Read-only file system", str(folder))
         refused(folder, *rest)
 
-    monkeypatch.setattr(sealed_files, "check_room", read_only)
+    monkeypatch.setattr(files, "check_room", read_only)
     before = sorted(results.rglob("*"))
     assert np.isfinite(found.microslip.at(0.0123, 0.777).mu_macro)
     with pytest.warns(UserWarning, match="answers are not kept: .*Read-only file system"):

@@ -37,7 +37,7 @@ from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -191,7 +191,7 @@ def computed(tmp_path_factory):
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
     found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))
+    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, found))
     # made up, so that it takes nothing
     certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder

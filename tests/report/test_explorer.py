@@ -12,7 +12,7 @@ from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 from microslip.config import load
 from microslip.report.explorer import explorer, page, payload, requests
 from microslip.sweeps import period_codec
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 from microslip.theory.catalogue import FORMS
 
 

@@ -16,8 +16,8 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from PIL import Image
 
+from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing, poisson
-from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
 pytestmark = pytest.mark.slow  # for drawing takes a second or two

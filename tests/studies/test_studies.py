@@ -18,6 +18,7 @@ import microslip
 from microslip.adaptive import single_run
 from microslip.adaptive.choice import choose_model
 from microslip.config import load, schema
+from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import SolverError
 from microslip.models.contact import StepFailure
 from microslip.models.registry import MODELS
@@ -28,8 +29,8 @@ from microslip.studies import ladders, registry
 from microslip.studies import requests as study_requests
 from microslip.studies.accuracy import accuracy_cost, fronts
 from microslip.studies.stability import stability
-from microslip.sweeps import batches, evaluate, keys
-from microslip.sweeps.cache import Store
+from microslip.sweeps import batches, evaluate
+from microslip.sweeps.store import Store
 
 # Ladders: what is run where
 
@@ -123,8 +124,8 @@ def test_without_the_shipped_method_there_is_no_choice_of_it():
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     found = [json.loads(text) for text in asked(study, configured())]
-    names = {keys.result_key(request, "d") for request in found}
-    assert len(names) == len({keys.canonical_json(request) for request in found})
+    names = {batches.result_key(request, "d") for request in found}
+    assert len(names) == len({canonical_json(request) for request in found})
     for request in found:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
         assert batches.label(request)
@@ -137,7 +138,7 @@ def test_another_method_adds_jobs_and_changes_none(study):
     def cuts(methods):
         changed = {"methods": methods}
         long, short = registry.pieces(study, configured(changed, changed))
-        return {keys.canonical_json(piece) for piece in long + short}
+        return {canonical_json(piece) for piece in long + short}
 
     before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
     assert before < after
@@ -149,7 +150,7 @@ def test_another_point_adds_requests_and_changes_none():
     longer = configured({"points": ACCURACY["points"] | more})
     asked = [
         {
-            keys.canonical_json(request)
+            canonical_json(request)
             for part in registry.pieces("accuracy", one)
             for piece in part
             for request in piece

@@ -6,7 +6,7 @@ from stubs.workflow_project import Project
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.datasets import netcdf
-from microslip.sweeps import sealed_files
+from microslip.foundation import files
 
 pytestmark = pytest.mark.long
 
@@ -58,7 +58,7 @@ def test_one_command_makes_the_dataset_the_page_and_a_figure(finished):
         page = (results / "summaries/claims.html").read_text(encoding="utf-8")
         for key in data["run"].values:
             assert str(key) in page
-    assert sealed_files.seal_of(results / "summaries/claims.html").exists()
+    assert files.seal_of(results / "summaries/claims.html").exists()
     for form in ("png", "pdf"):
         assert (results / f"figures/claims_static.{form}").stat().st_size > 0
     assert "claim 9: " in finished.said

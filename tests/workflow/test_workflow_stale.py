@@ -11,7 +11,7 @@ import xarray as xr
 import yaml
 from stubs.workflow_project import AXES, ENVIRONMENT, RUN, SNAKEMAKE, TINY, jobs_in
 
-from microslip.sweeps import sealed_files
+from microslip.foundation import files
 
 pytestmark = pytest.mark.slow
 OTHER = {**TINY, "sweeps": {**TINY["sweeps"], "transverse": {**AXES, "velocity": [0.5, 3]}}}
@@ -105,10 +105,10 @@ def test_what_has_no_seal_of_its_own_is_made_again(project):
     results = project.folder / "results"
     bore, continuous = results / "bore.nc", results / "continuous_bore.nc"
     expected = [path.read_bytes() for path in (bore, continuous)]
-    sealed_files.seal_of(bore).unlink()
+    files.seal_of(bore).unlink()
     transverse = results / "transverse.nc"
     shutil.copy(transverse, continuous)
-    shutil.copy(sealed_files.seal_of(transverse), sealed_files.seal_of(continuous))
+    shutil.copy(files.seal_of(transverse), files.seal_of(continuous))
     figures = results / "figures"
     shutil.copy(figures / "fig2_transverse_map.png", figures / "fig1_force_history.png")
     forget(project)

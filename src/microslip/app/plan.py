@@ -1,7 +1,12 @@
-"""Plan of a configuration: batches of requests, datasets, figures, and the inputs of each.
+"""Plan of a configuration: batches of requests, products, and what each product is made of.
 
-The workflow's rules use it; nothing here depends on Snakemake. Importing it is cheap, since the
-workflow is parsed by every job.
+The workflow's rules use it; nothing here depends on Snakemake.  Importing it is cheap, since the
+workflow is parsed by every process that Snakemake starts.
+
+A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
+explorer ("pages/explorer").  A group of batches is named like the sweep, the study or the certified
+map that it answers, or "bore_histories" for the single runs in a dataset, "bore_periods" for the
+explorer, and "claims_first" for the slow part of a study.
 """
 
 from __future__ import annotations
@@ -9,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, cached_property
-from pathlib import PurePosixPath
 
 from microslip.config.records import Configuration
 from microslip.foundation import source_digest
@@ -17,254 +21,205 @@ from microslip.foundation.canonical import canonical_json, fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
-from microslip.sweeps import batch_plans
-from microslip.sweeps import batches as sweep
+from microslip.sweeps import batches
+from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make the dataset of a sweep, besides what these import."""
+"""Modules that make the dataset of a sweep and its page, besides those that they import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
-ROUND_CODE = ("sweeps/map_rounds.py",)
-"""Modules that choose the next points of a certified map."""
+REFINEMENT_CODE = ("sweeps/map_refinement.py",)
+"""Modules that choose the points of a certified map."""
+TARGETS = {
+    "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
+    "extended": "the same of other motions and pressures, its key extended",
+    "drives": "datasets of contacts that a force or a spring pulls, its key drives",
+    "certified": "maps with an error that holds everywhere, of the sweeps that say adaptive",
+    "accuracy": "what accuracy costs, for all models and methods",
+    "stability": "where methods fail",
+    "claims": "what the paper says, judged",
+    "propulsion": "what self-propelled motions pull with, from stall to no load",
+    "explorer": "one page that shows what is behind every point of the maps",
+    "explorer_all": "the same page with every other sweep of the configuration",
+}
+"""Targets of the workflow that users need, and what each makes."""
 
 
 class Plan:
-    """The plan of a checked configuration. Paths are inside the folder of results.
+    """The plan of a checked configuration.  Paths are inside the folder of results.
 
     Attributes
     ----------
     configuration : Configuration
     studies : dict of str to str
         Studies by the names of their datasets.
-    explored : list of str
-        Names of the maps whose points have periods in the explorer.
     figures : dict of str to tuple of str
         Figures that there is data for, and the datasets of each.
-    earlier : sweeps.batch_plans.Folder, or what does the same elsewhere; None
-        What was planned before.  Batches stay as they are there, and new requests get new ones.
+    explored : list of str
+        Names of the maps whose points have periods in the explorer.
     """
 
-    def __init__(self, configuration: Configuration, earlier: batch_plans.Folder | None = None):
-        self.configuration, self.earlier = configuration, earlier
+    def __init__(self, configuration: Configuration):
+        self.configuration = configuration
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
-        self.explored = explorer.maps_of(configuration)
         self.figures = dict(_figures(configuration, self.studies))
-        self._new_plans: dict[str, dict] = {}
-        # each plan remembers its own answers
-        self.batches_in = cache(self.batches_in)  # type: ignore[method-assign]
-        self.points_of = cache(self.points_of)  # type: ignore[method-assign]
-        self.fingerprint_of = cache(self.fingerprint_of)  # type: ignore[method-assign]
+        self.explored = explorer.maps_of(configuration)
+        self.batches_in = cache(self._batches_in)
+        self.made_of = cache(self._made_of)
 
     # Batches
 
     @cached_property
-    def early_groups(self) -> list[str]:
-        """Groups of what takes long, so that it does not start when all else is done."""
-        return [f"{study}_first" for study in self.studies.values()]
-
-    @cached_property
     def groups(self) -> list[str]:
-        """Names of all groups of batches: a sweep, or what is computed beside it."""
-        sweeps = self.configuration.sweeps
-        found = [group for name in sweeps for group in (name, f"{name}_histories")]
-        found += [group for s in self.studies.values() for group in (f"{s}_first", s)]
+        """Names of all groups of batches except certified maps."""
+        studies = self.studies.values()
         return [
-            *found,
+            *self.configuration.grids,
+            *(f"{name}_histories" for name in self.configuration.sweeps),
             *(f"{name}_periods" for name in self.explored),
-            *self.configuration.extended,
-            *self.configuration.drives,
+            *(group for study in studies for group in (f"{study}_first", study)),
         ]
 
-    def batches_in(self, group: str) -> dict[str, Sequence[dict]]:
-        """Requests of the batches of a group by name.
-
-        Those of `extended` are made when they are asked for: names of motions with numbers are read
-        by the solver, which jobs for other sweeps do without.
-        """
-        growing = self._growing(group)
-        if growing is not None:
-            return self._kept(group, *growing)
-        name, _, beside = group.rpartition("_")
-        if beside == "histories":
-            requests = sweep.history_requests(self.configuration, name)
-            return sweep.batches(requests, self.configuration.points_per_job[name])
-        study = name if beside == "first" else group
-        first, rest = registry.pieces(study, self.configuration)
-        cuts = (sweep.batches(cut, len(cut)) for cut in (first if beside == "first" else rest))
-        return {name: cut for batch in cuts for name, cut in batch.items()}
-
-    def _growing(self, group: str) -> tuple[Sequence[dict], int] | None:
-        """Requests of a group to which others may be added, and how many go into a batch; None for
-        groups whose batches follow from what they are for."""
+    def _batches_in(self, group: str) -> dict[str, Batch]:
+        """Batches of a group by name, in the order of its requests; none for a certified map."""
         configuration = self.configuration
-        if group in configuration.grids:
-            requests = sweep.PointRequests(configuration.grids[group])
-            return requests, configuration.points_per_job[group]
         name, _, beside = group.rpartition("_")
-        if beside == "periods":
-            return explorer.period_requests(configuration, name), explorer.PERIODS_PER_JOB
-        return None
+        if group in configuration.grids:
+            points = batches.PointRequests(configuration.grids[group])
+            found = batches.batches_of_points(points, configuration.points_per_job[group])
+        elif beside == "histories":
+            found = [
+                Batch(runs) for runs in [batches.history_requests(configuration, name)] if runs
+            ]
+        elif beside == "periods":
+            periods = explorer.period_requests(configuration, name)
+            found = batches.batches_of_requests(periods, explorer.PERIODS_PER_JOB)
+        elif group in configuration.certified:
+            found = []
+        else:
+            study = name if beside == "first" else group
+            slow, fast = registry.pieces(study, configuration)
+            found = [Batch(piece) for piece in (slow if beside == "first" else fast)]
+        return {batch.name: batch for batch in found}
 
-    def _kept(self, group: str, requests: Sequence[dict], size: int) -> dict[str, Sequence[dict]]:
-        """Batches that were planned before, and new ones for what is in none of them."""
-        if self.earlier is None or not len(requests):
-            return batch_plans.cut(requests, size, {})
-        file = batch_plans.file_of(group, requests)
-        planned = {
-            name: cut
-            for name, cut in batch_plans.batches_in(self.earlier.read(file)).items()
-            if self.earlier.counts(f"batches/{group}/{name}.json")
-        }
-        found = batch_plans.cut(requests, size, planned)
-        if not found.keys() <= planned.keys():
-            self._new_plans[file] = planned | found
-        return found
+    def map_batch(self, name: str) -> str:
+        """Name of the batch that holds all points of a certified map."""
+        map_ = self.configuration.certified[name]
+        solver = source_digest.of_request(batches.PointRequests(map_.sweep)[0])
+        code = source_digest.of_modules(*REFINEMENT_CODE)
+        return fingerprint(map_.settings, code, solver)[:20]
 
-    def requests_of(self, group: str, batch: str) -> Sequence[dict] | None:
-        """Requests of one batch, from what was planned before if it is there; None if it is not.
-
-        A job asks this, and plans nothing that is not its own.
-        """
-        growing = None if self.earlier is None else self._growing(group)
-        if self.earlier is not None and growing is not None and len(growing[0]):
-            content = self.earlier.read(batch_plans.file_of(group, growing[0]))
-            requests = batch_plans.requests_of(content, batch)
-            if requests is not None:
-                return requests
-        return self.batches_in(group).get(batch)
-
-    def keep_planned(self) -> None:
-        """Note the new batches of all groups that were asked for, so that they stay as they are."""
-        if self.earlier is None:
-            return  # and nothing is new
-        for file, planned in self._new_plans.items():
-            self.earlier.write(file, batch_plans.text_of(planned))
-
-    def plan_files(self) -> list[str]:
-        """Files that say what was planned, of all groups."""
-        growing = ((group, self._growing(group)) for group in self.groups)
+    def batch_files(self, *groups: str) -> list[str]:
+        """Files of all batches of these groups, in their order."""
+        certified = self.configuration.certified
         return [
-            batch_plans.file_of(group, found[0]) for group, found in growing if found and found[0]
+            f"batches/{group}/{name}.jsonl"
+            for group in groups
+            for name in ([self.map_batch(group)] if group in certified else self.batches_in(group))
         ]
 
-    def requests_in(self, group: str) -> list[dict]:
-        """All requests of a group."""
-        growing = self._growing(group)
-        if growing:
-            return list(growing[0])
-        return [request for cut in self.batches_in(group).values() for request in cut]
+    def groups_of(self, product: str) -> list[str]:
+        """Groups whose batches a product is made of; single runs in a dataset come after points."""
+        if product.startswith("figures/"):
+            return []
+        if product.startswith("pages/"):
+            return [f"{name}_periods" for name in self.explored]
+        if product in self.studies:
+            return [f"{self.studies[product]}_first", self.studies[product]]
+        histories = [f"{product}_histories"] * (product in self.configuration.sweeps)
+        return [product, *histories]
 
-    def points_of(self, group: str) -> str:
-        """Fingerprint of the requests of a group, independent of the cut into batches."""
-        growing = self._growing(group)
-        requests = self.requests_in(group)
-        if growing is None or not requests:
-            return fingerprint(self.batch_files(group))
-        return fingerprint(batch_plans.packed(requests), source_digest.of_request(requests[0]))
-
-    def rounds_folder(self, name: str) -> str:
-        """Folder of the rounds of a certified map and of what answers them.
-
-        It is named by all that decides which points they have, so that they are never stale.
-        """
-        map_ = self.configuration.certified[name]
-        code = source_digest.of_modules(*ROUND_CODE)
-        solver = source_digest.of_request(sweep.PointRequests(map_.sweep)[0])
-        return f"rounds/{name}/{fingerprint(map_.settings, code, solver)[:16]}"
-
-    def groups_of(self, dataset: str) -> list[str]:
-        """Groups whose batches a dataset is made of."""
-        if dataset in self.studies:
-            study = self.studies[dataset]
-            return [f"{study}_first", study]
-        return [dataset]
-
-    def groups_beside(self, dataset: str) -> list[str]:
-        """Groups whose batches hold the single runs in the dataset of a sweep."""
-        group = f"{dataset}_histories"
-        return [group] if group in self.groups else []
-
-    # Files
+    # Products
 
     @property
     def datasets(self) -> list[str]:
         """Names of all datasets."""
-        return [*self.configuration.grids, *self.studies]
+        return [*self.configuration.grids, *self.configuration.certified, *self.studies]
 
-    def batch_files(self, *groups: str) -> list[str]:
-        """Files of all batches of these groups, those planned first before others."""
-        return [
-            f"batches/{group}/{name}.json" for group in groups for name in self.batches_in(group)
-        ]
+    def datasets_of(self, product: str) -> Sequence[str]:
+        """Names of the datasets that a figure or a page is made of."""
+        kind, _, name = product.rpartition("/")
+        if kind == "figures":
+            return self.figures[name]
+        return explorer.datasets_of(self.configuration, f"{name}.html") if kind else ()
 
-    def dataset_files(self, names: Iterable[str]) -> list[str]:
-        """Files of datasets and of the pages about them."""
-        return [file for name in names for file in (f"{name}.nc", f"summaries/{name}.html")]
+    def files(self, product: str) -> list[str]:
+        """Files of a product."""
+        kind, _, name = product.rpartition("/")
+        if kind == "figures":
+            return [f"figures/{name}.png", f"figures/{name}.pdf"]
+        return [f"{name}.html"] if kind else [f"{name}.nc", f"summaries/{name}.html"]
 
-    def figure_files(self, datasets: Iterable[str]) -> list[str]:
-        """Files of all figures drawn from these datasets, perhaps with a map of the paper."""
-        own = {
-            figure: set(names) - set(self.configuration.sweeps) or set(names)
+    @property
+    def products(self) -> list[str]:
+        """All products."""
+        pages = [f"pages/{page.removesuffix('.html')}" for page in explorer.PAGES]
+        return [*self.datasets, *(f"figures/{name}" for name in self.figures), *pages]
+
+    def with_figures(self, datasets: Iterable[str]) -> list[str]:
+        """Datasets, and the figures drawn from them alone, or from them and maps of the paper."""
+        datasets, paper = [*datasets], set(self.configuration.sweeps)
+        drawn = [
+            f"figures/{figure}"
             for figure, names in self.figures.items()
-        }
-        return [
-            f"figures/{figure}.{form}"
-            for figure, names in own.items()
-            if names <= set(datasets)
-            for form in ("png", "pdf")
+            if (set(names) - paper or set(names)) <= set(datasets)
         ]
+        return [*datasets, *drawn]
 
-    def made_files(self) -> list[str]:
-        """All files that are made to be kept: datasets, pages, figures."""
-        names = [*self.datasets, *self.configuration.certified]
-        return [*self.dataset_files(names), *self.figure_files(names), *explorer.PAGES]
+    def products_of(self, target: str) -> list[str]:
+        """Products that a key of TARGETS asks for."""
+        configuration = self.configuration
+        drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
+        datasets = {
+            "all": [*configuration.sweeps],
+            "extended": [*configuration.extended],
+            "drives": [*configuration.drives, *drift],
+            "certified": [name for name in configuration.certified if name not in drift],
+        } | {study: [dataset] for dataset, study in self.studies.items()}
+        if target in datasets:
+            return self.with_figures(datasets[target])
+        return [f"pages/{target}"]
 
-    # What things are made of
+    # What products are made of
 
-    def code_of(self, file: str) -> str:
-        """Digest of the code that makes a file, of those in `made_files`."""
-        path = PurePosixPath(file)
-        if file in explorer.PAGES:
+    def code_of(self, product: str) -> str:
+        """Digest of the code that makes a product from its batches or datasets."""
+        kind, _, name = product.rpartition("/")
+        if kind == "pages":
             return explorer.digest()
-        if path.parts[0] == "figures":
-            return source_digest.of_modules(*drawing.modules_of(path.stem))
-        if path.stem in self.configuration.certified:
+        if kind == "figures":
+            return source_digest.of_modules(*drawing.modules_of(name))
+        if product in self.configuration.certified:
             return source_digest.of_modules(*CERTIFIED_CODE)
-        return source_digest.of_modules(
-            *(STUDY_CODE if path.stem in self.studies else DATASET_CODE)
-        )
+        return source_digest.of_modules(*(STUDY_CODE if name in self.studies else DATASET_CODE))
 
-    def refuse_edited(self, file: str, code: str) -> None:
-        """Raise SourcesEdited if the code that makes a file is not, or no longer, the planned one.
+    def _made_of(self, product: str) -> str:
+        """Fingerprint of the code, settings and points of a product.
 
-        code: what `code_of` said when the file was planned.
+        It does not depend on how the points of a sweep are cut into batches.
         """
-        if code != self.code_of(file):
-            raise sweep.SourcesEdited("the code that makes it")
+        settings = ""
+        if product in self.studies:
+            settings = canonical_json(registry.settings(self.studies[product], self.configuration))
+        elif product in self.configuration.grids:
+            settings = canonical_json(self.configuration.of_sweep(product))
+        datasets = [self.made_of(name) for name in self.datasets_of(product)]
+        points = [self._points_in(group) for group in self.groups_of(product)]
+        return fingerprint(product, self.code_of(product), settings, datasets, points)
 
-    def settings_of(self, dataset: str) -> str:
-        """All settings that a dataset depends on, as JSON."""
-        if dataset in self.studies:
-            return canonical_json(registry.settings(self.studies[dataset], self.configuration))
-        return canonical_json(self.configuration.of_sweep(dataset))
+    def _points_in(self, group: str) -> object:
+        if group not in self.configuration.grids:
+            return self.batch_files(group)
+        requests = batches.PointRequests(self.configuration.grids[group])
+        return [requests.rows, requests.last, source_digest.of_request(requests[0])]
 
-    def fingerprint_of(self, file: str) -> str:
-        """Fingerprint of the settings, code and points of a file in `made_files`."""
-        path, code = PurePosixPath(file), self.code_of(file)
-        names: Sequence[str]
-        groups: Sequence[str]
-        if file in explorer.PAGES:
-            names = explorer.datasets_of(self.configuration, file)
-            groups = [f"{name}_periods" for name in self.explored]
-        elif path.parts[0] == "figures":
-            names, groups = self.figures[path.stem], ()
-        elif path.stem in self.configuration.certified:
-            return fingerprint(code, self.rounds_folder(path.stem))
-        else:
-            groups = [*self.groups_of(path.stem), *self.groups_beside(path.stem)]
-            return fingerprint(code, self.settings_of(path.stem), [*map(self.points_of, groups)])
-        datasets = [self.fingerprint_of(f"{name}.nc") for name in names]
-        return fingerprint(code, path.stem, datasets, [*map(self.points_of, groups)])
+    def refuse_edited(self, product: str, made_of: str) -> None:
+        """Raise SourcesEdited if a product was to be made by other code when it was planned.
+
+        made_of: what `made_of` gave then.
+        """
+        if made_of != self.made_of(product):
+            raise SourcesEdited("the code that makes it")
 
 
 def _figures(
@@ -306,3 +261,25 @@ def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
     if axis is None or wanted is None:
         return False
     return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)
+
+
+def figure_targets(plan: Plan) -> dict[str, str]:
+    """Figures by the names of their targets: their own names, and fig1 to fig6.
+
+    Figures that the configuration has no data for are among them, see `why_no_figure`.
+    """
+    names = {name: name for name in (*drawing.FIGURES, *plan.figures)} | drawing.SHORT_NAMES
+    return {name: figure for name, figure in names.items() if name not in TARGETS}
+
+
+def why_no_figure(plan: Plan, figure: str) -> str:
+    """Why a configuration leads to no such figure, a key of drawing.FIGURES, in one line."""
+    configuration, names = plan.configuration, drawing.FIGURES[figure]
+    known = {*configuration.sweeps, *configuration.drives, *plan.studies}
+    missing = [name for name in names if name not in known]
+    if missing:
+        return f"{figure} needs the sweep {missing[0]}, which the configuration has not"
+    return (
+        f"{figure} cannot be drawn from {' and '.join(names)}: a map needs several velocities and "
+        "amplitudes, and some figures need equal or several values of other axes"
+    )

@@ -171,8 +171,8 @@ def refuse_output(path: str | None, table: str) -> None:
 
 def write(path: str, answered: Answered) -> None:
     """All fields of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
+    from microslip.foundation.files import writing_beside
     from microslip.si.table import as_dataset
-    from microslip.sweeps.sealed_files import writing_beside
 
     dataset = as_dataset(answered.motion, answered.cases, answered.found)
     problems = [one["error"] or "" for one in answered.to_dicts()]

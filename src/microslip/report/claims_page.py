@@ -14,9 +14,9 @@ import numpy as np
 import xarray as xr
 import yaml
 
+from microslip.foundation.files import writing_beside
 from microslip.studies.claims.static_limits import FORMULAS, SPLIT
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
-from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 
 STYLE = """
@@ -36,9 +36,9 @@ MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page of the xarray.Dataset; lines: list of what its report says.
 
-    Raises CacheError as `sealed_files.writing_beside` does.
+    Raises CacheError as `files.writing_beside` does.
     """
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
 
 

@@ -24,8 +24,9 @@ from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.drift import Drift
-from microslip.foundation.errors import InputError
-from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
+from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.files import refuse_no_folder
+from microslip.sweeps.stamps import is_damaged
 
 __all__ = ["SOURCES", "Drift", "Friction", "open_map"]
 

@@ -1,10 +1,5 @@
-"""Files that are whole or not there: written beside their place, flushed to disk and renamed.
+"""Files that are whole or not there: written beside their place, flushed to disk and renamed."""
 
-What others read carries a seal, a file beside it with its checksum and what it is made of.
-"""
-
-import hashlib
-import logging
 import os
 import time
 import uuid
@@ -14,16 +9,10 @@ from pathlib import Path
 
 from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
-log = logging.getLogger(__name__)
-
-# Bytes that a disk must still have room for before anything is computed.
 LEAST_ROOM = 65536
-
-# What files that others read begin with; one without a seal that does not is no such file.
-BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-
-# Half a file that nobody has written to for that long (s) is left of a process that was killed.
+"""Bytes that a disk must still have room for before anything is computed."""
 ABANDONED = 3600.0
+"""Seconds after which half a file counts as left by a process that was killed."""
 
 
 def refuse_no_folder(folder: object) -> None:
@@ -65,13 +54,11 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 @contextmanager
-def writing_beside(path: str | os.PathLike[str], sealed: bool = False) -> Iterator[Path]:
+def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Context that yields a Path beside `path` to write to, and puts it in place at its end.
 
-    The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.
-    What is in its place and was not made like this, a file of the user's own perhaps, is renamed.
-    After an error or an interrupt `path` is what it was. Raises CacheError, one line that says
-    what to do, where the system refuses.
+    The file is flushed to disk before it is renamed.  After an error or an interrupt `path` is what
+    it was.  Raises CacheError, one line that says what to do, where the system refuses.
     """
     path = Path(path)
     beside = _unique_beside(path)
@@ -80,9 +67,6 @@ def writing_beside(path: str | os.PathLike[str], sealed: bool = False) -> Iterat
         yield beside
         with open(beside, "rb") as file:
             os.fsync(file.fileno())
-            if sealed:
-                _set_aside(path)
-                _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
         os.replace(beside, path)
     except OSError as error:
         raise CacheError(advice("write", path, _cause(error, beside))) from error
@@ -159,72 +143,6 @@ def _may_run(path: Path) -> bool:
     except OSError:
         return True
     return True
-
-
-# Seals: a checksum beside a file, and what the file is made of
-
-
-def seal_of(path: Path) -> Path:
-    """Path of the seal that stands beside a file."""
-    path = Path(path)
-    return path.with_name(f".{path.name}.sha256")
-
-
-def _write_seal(path: Path, *words: str) -> None:
-    # Before the file itself: between the two a run that is killed leaves a seal that does not fit,
-    # and the file is made again. The other way round it would leave an old seal on a good file.
-    write_atomically(seal_of(path), f"{' '.join(words)}\n".encode())
-
-
-def _seal(path: Path) -> list[str]:
-    """The words of a seal, the checksum first; empty where there is none."""
-    try:
-        return seal_of(path).read_bytes().decode("ascii", errors="replace").split()
-    except FileNotFoundError:
-        return []
-
-
-def _set_aside(path: Path) -> None:
-    """Rename a file that is damaged, or that the workflow did not make: it may be of use to
-    someone."""
-    if path.is_file() and (not _seal(path) or is_damaged(path)):
-        aside = path.with_name(f"{path.name}.damaged")
-        os.replace(path, aside)
-        log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
-
-
-def mark(paths: Iterable[Path], fingerprint: str) -> None:
-    """Add to the seals of files what they are made of; fingerprint: see keys.fingerprint.
-
-    Raises CacheError as `writing_beside` does.
-    """
-    for path in paths:
-        _write_seal(path, *_seal(path)[:1], fingerprint)
-
-
-def is_made_of(path: Path, fingerprint: str) -> bool:
-    """Whether a file is whole, and of these inputs by this code; False where there is no file."""
-    try:
-        return _seal(path)[1:] == [fingerprint] and Path(path).exists() and not is_damaged(path)
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
-
-
-def is_damaged(path: Path) -> bool:
-    """Whether a file is not what was sealed, or without a seal not what its name says.
-
-    False where there is no file.
-    """
-    begins = BEGINNINGS.get(Path(path).suffix, b"")
-    try:
-        with open(path, "rb") as file:
-            if not seal_of(path).exists():
-                return file.read(len(begins)) != begins
-            return [hashlib.file_digest(file, "sha256").hexdigest()] != _seal(path)[:1]
-    except FileNotFoundError:
-        return False
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:
