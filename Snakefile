@@ -159,7 +159,7 @@ rule collect:
             category="Datasets",
             labels={"dataset": "{dataset}.nc"},
         ),
-        stamp=f"{RESULTS}/{stamps.stamp_of('{dataset}')}",
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
     log:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
@@ -187,7 +187,7 @@ rule draw:
             labels={"figure": "{figure}"},
         ),
         kept(f"{RESULTS}/figures/{{figure}}.pdf"),
-        stamp=f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}",
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
     log:
         f"{RESULTS}/logs/draw/{{figure}}.log",
     conda:
@@ -219,7 +219,7 @@ rule explore:
             category="Explorer",
             labels={"page": "{page}.html"},
         ),
-        stamp=f"{RESULTS}/{stamps.stamp_of('pages/{page}')}",
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
     log:
         f"{RESULTS}/logs/explore/{{page}}.log",
     conda:

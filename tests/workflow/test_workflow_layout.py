@@ -9,7 +9,6 @@ import pytest
 import yaml
 
 from microslip.config import load, schema
-from microslip.foundation import source_digest
 from microslip.report import dataset_page
 from microslip.report.figures import drawing
 
@@ -33,8 +32,9 @@ def test_every_figure_has_a_caption_of_its_own(figure):
 @pytest.mark.parametrize(
     "wildcards",
     [
-        {"sweep": "bore"},
-        {"sweep": "circle"},
+        {"dataset": "bore"},
+        {"dataset": "circle"},
+        {"dataset": "certified_bore"},
         {"dataset": "stability"},
         {"dataset": "claims"},
         {"dataset": "propulsion"},
@@ -101,11 +101,3 @@ def keys_of(rule):
     deeper = [*rule.get("properties", {}).values(), rule.get("additionalProperties")]
     found = [keys_of(part) for part in deeper if isinstance(part, dict)]
     return set(rule.get("properties", {})).union(*found)
-
-
-def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):
-    names = ("adaptive/point.py", "bundle/workflow/scripts/collect.py", "app/sweep_command.py")
-    for name in names:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("A = 1\n")
-    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"adaptive/point.py"}

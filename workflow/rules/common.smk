@@ -52,6 +52,8 @@ MAIN = Path(workflow.basedir).absolute() in (ROOT, ROOT / "workflow")
 if not (config and workflow.configfiles):
     DEFAULT = "config/config.yaml"
     if not (MAIN and os.path.exists(DEFAULT)):
+        DEFAULT = str(ROOT / DEFAULT)
+    if not ROOT.is_dir():  # a workflow that Snakemake reads from elsewhere
         DEFAULT = workflow.source_path("../../config/config.yaml")
     with refused_in_one_line():
         load.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is

@@ -17,8 +17,9 @@ import io
 import os
 import re
 import shutil
+import sys
 import tempfile
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 from microslip.app.plan import TARGETS
@@ -68,16 +69,20 @@ def main(arguments: list[str]) -> int:
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
+    with redirect_stdout(sys.__stdout__):  # where Snakemake's jobs write, too
+        return _run(arguments)
+
+
+def _run(arguments: list[str]) -> int:
     try:
         os.getcwd()
-        given = [*arguments]
+        given = ["--snakefile", str(snakefile()), *arguments]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
-            given = ["--cores", "all", *arguments]
-        given = ["--snakefile", str(snakefile()), *given]
+            given = ["--cores", "all", *given]
         _check(given)
     except (InputError, load.ConfigError, FileNotFoundError) as error:
-        named = "the current folder: " if isinstance(error, OSError) and error.errno else ""
-        complain(f"microslip sweep: {named}{getattr(error, 'strerror', None) or error}")
+        place = "the current folder: " if getattr(error, "strerror", None) else ""
+        complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
         return 2
     _spare_cache()
     from snakemake.cli import main as snakemake
