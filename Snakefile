@@ -28,8 +28,7 @@ onstart:
 
 
 wildcard_constraints:
-    group="|".join(group for group in PLAN.groups if not group.endswith("_first")),
-    early="|".join(group for group in PLAN.groups if group.endswith("_first")),
+    group="|".join(PLAN.groups),
     certified="|".join(CONFIGURATION.certified) or "(?!)",
     batch="[0-9a-f]+",
     dataset="|".join(PLAN.datasets),
@@ -44,7 +43,7 @@ rule all:
 
 
 # snakemake certified, and all other targets that `microslip sweep --help` lists.
-for target in plan.TARGETS.keys() - {"all"}:
+for target in figure_targets.TARGETS.keys() - {"all"}:
 
     rule:
         name:
@@ -54,7 +53,7 @@ for target in plan.TARGETS.keys() - {"all"}:
 
 
 # snakemake fig2, or the name of any other figure.
-for target, figure in plan.figure_targets(PLAN).items():
+for target, figure in figure_targets.targets_of(CONFIGURATION).items():
 
     rule:
         name:
@@ -103,23 +102,6 @@ rule solve:
         store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
     script:
         "workflow/scripts/solve.py"
-
-
-# The same for what takes long, so that it does not start when all else is done.
-use rule solve as solve_early with:
-    input:
-        ancient(lambda wildcards: kernels_for(wildcards.early)),
-        again=lambda wildcards: made_again(
-            is_whole(f"batches/{wildcards.early}/{wildcards.batch}.jsonl")
-        ),
-    output:
-        f"{RESULTS}/batches/{{early}}/{{batch}}.jsonl",
-    log:
-        f"{RESULTS}/logs/solve/{{early}}/{{batch}}.log",
-    priority: 10
-    params:
-        batch=lambda wildcards: batch_of(wildcards.early, wildcards.batch),
-        store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
 
 
 # All points of a certified map, by several processes.

@@ -3,7 +3,8 @@
 import pytest
 from stubs.workflow_project import AXES, TINY
 
-from microslip.app.plan import TARGETS, Plan, figure_targets, why_no_figure
+from microslip.app.figure_targets import TARGETS, targets_of, why_no_figure
+from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
@@ -20,7 +21,7 @@ def test_a_sweep_too_small_for_a_map_has_no_map():
 
 
 def test_each_figure_is_a_target_and_those_of_the_paper_by_their_numbers():
-    targets = figure_targets(plan())
+    targets = targets_of(plan().configuration)
     paper = {f"fig{n}" for n in range(1, 7)}
     assert paper <= set(targets)
     assert all(targets[name].startswith(f"{name}_") for name in paper)
@@ -29,7 +30,7 @@ def test_each_figure_is_a_target_and_those_of_the_paper_by_their_numbers():
 
 
 def test_a_figure_without_data_says_what_it_lacks():
-    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
+    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}}).configuration
     assert "needs the sweep bore" in why_no_figure(small, "fig6_bore_map")
     assert "several velocities and amplitudes" in why_no_figure(small, "fig2_transverse_map")
 

@@ -1,16 +1,10 @@
-"""Progress of one calculation."""
+"""The elapsed time of a calculation."""
 
 import io
 import sys
 import time
 
 from microslip.app import progress
-
-
-def test_items_are_counted_with_their_rate(capsys):
-    assert list(progress.bar(iter("abc"), 3, "certified_bore")) == ["a", "b", "c"]
-    said = capsys.readouterr().err
-    assert "certified_bore: 100%" in said and "3/3" in said and "point/s" in said
 
 
 class Terminal(io.StringIO):

@@ -26,7 +26,8 @@ for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
     signal.signal(signal.SIGHUP, lambda *_: signal.raise_signal(signal.SIGTERM))
 
-from microslip.app import dry_run, plan
+from microslip.app import dry_run, figure_targets
+from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.foundation import files, source_digest
 from microslip.foundation.canonical import canonical_json
@@ -48,7 +49,7 @@ def refused_in_one_line():
 
 # A file given with --configfile takes the place of the default, they are not mixed.  Without one,
 # that of the working directory comes first.  A module is configured by the workflow that uses it.
-MAIN = Path(workflow.basedir).absolute() in (ROOT, ROOT / "workflow")
+MAIN = os.path.abspath(workflow.basedir) in (str(ROOT), str(ROOT / "workflow"))
 if not (config and workflow.configfiles):
     DEFAULT = "config/config.yaml"
     if not (MAIN and os.path.exists(DEFAULT)):
@@ -73,7 +74,7 @@ with refused_in_one_line():
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
     # Captions name the defaults too, and jobs find the files that were found here.
     config = load.with_files_found(config, source=ORIGIN, folders=FOLDERS)
-PLAN = plan.Plan(CONFIGURATION)
+PLAN = Plan(CONFIGURATION)
 RESULTS = os.path.normpath(CONFIGURATION.results)
 
 HERE = exists(os.devnull)  # False where results are in a storage: no stamp can be read there
@@ -177,7 +178,7 @@ def files_of_figure(name):
 
     def files(wildcards):
         if name not in PLAN.figures:
-            sys.exit(f"Error in {ORIGIN}: {plan.why_no_figure(PLAN, name)}")
+            sys.exit(f"Error in {ORIGIN}: {figure_targets.why_no_figure(CONFIGURATION, name)}")
         return files_of([f"figures/{name}"])
 
     return files

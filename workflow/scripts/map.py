@@ -4,9 +4,10 @@ Output: the records of all its points, as JSON lines.  All numbers in them are d
 is kept in the store as well, as soon as it is computed.
 """
 
+from tqdm import tqdm
+
 from microslip.app.job_log import job_log
 from microslip.app.plan import Plan
-from microslip.app.progress import bar
 from microslip.config import load
 from microslip.sweeps import batches, map_refinement, store
 
@@ -21,7 +22,7 @@ if __name__ == "__main__":  # not in the processes that solve
             configuration.certified[name],
             store.Store(snakemake.params.store),
             snakemake.threads,
-            lambda items, count: bar(items, count, name),
+            lambda items, count: tqdm(items, name, count, unit="point", mininterval=1.0),
         )
         done = batches.statistics(records, seconds)
         store.write(snakemake.output[0], records, done["final"])

@@ -1,28 +1,16 @@
-"""Progress of one calculation on standard error."""
+"""The elapsed time of a calculation on standard error."""
 
 from __future__ import annotations
 
 import sys
 import threading
 import time
-from collections.abc import Iterable
-
-from tqdm import tqdm
 
 FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
 """Seconds until a terminal first shows the elapsed time, and between updates; most calculations end
 sooner."""
 BETWEEN_LINES_OF_A_FILE = 15.0
 """Seconds between two lines about progress where standard error is not a terminal."""
-
-
-def bar(items: Iterable, total: int, title: str) -> Iterable:
-    """The items, with their number, rate and time left on standard error.
-
-    A terminal gets one line that is updated, a file a line every BETWEEN_LINES_OF_A_FILE seconds.
-    """
-    pause = BETWEEN_LINES if sys.stderr.isatty() else BETWEEN_LINES_OF_A_FILE
-    return tqdm(items, desc=title, total=total, unit="point", mininterval=pause)
 
 
 class Elapsed:

@@ -22,7 +22,7 @@ import tempfile
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from microslip.app.plan import TARGETS
+from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
 from microslip.config import load, schema
 from microslip.foundation import files

@@ -127,9 +127,9 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     drifts = is_of_drift(dataset)
     values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
     failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
+    converged = f"{failed} not converged" if failed else "all converged"
     yield (
-        f"{name}: {dataset.points} points, {failed or 'none'} not converged; within "
-        f"{errors.max():.1e}{scale} everywhere"
+        f"{name}: {dataset.points} points, {converged}; within {errors.max():.1e}{scale} everywhere"
     )
     over = int((errors > dataset.error).sum())
     if over:

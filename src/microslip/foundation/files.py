@@ -82,12 +82,8 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _unique_beside(path: Path) -> Path:
-    """A name beside a path that no other thread, process or container writes to.
-
-    Process numbers are the same in many containers, so it takes a random part; the number is there
-    for `clear_abandoned`.
-    """
-    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}.{os.getpid()}.part")
+    """A name beside a path that no other thread, process or container writes to."""
+    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
@@ -120,29 +116,16 @@ def check_room(folder: Path) -> None:
 def clear_abandoned(folder: Path) -> list[Path]:
     """Remove what processes that were killed have left half written; return the paths.
 
-    A file that has been written to within the last hour is left alone, and so is one whose process
-    may still be there: it may be about to be put in place.
+    A file that has been written to within the last hour is left alone: it may be about to be put in
+    place.
     """
     found = []
     for path in Path(folder).rglob(".*.part"):
         with suppress(OSError):
-            if time.time() - path.stat().st_mtime > ABANDONED and not _may_run(path):
+            if time.time() - path.stat().st_mtime > ABANDONED:
                 path.unlink()
                 found.append(path)
     return found
-
-
-def _may_run(path: Path) -> bool:
-    """Whether there is a process with the number in the name of a half written file."""
-    if os.name != "posix":
-        return False  # there the question itself would end it
-    try:
-        os.kill(int(path.name.split(".")[-2]), 0)
-    except (ValueError, OverflowError, ProcessLookupError):
-        return False
-    except OSError:
-        return True
-    return True
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple, overload
+from typing import NamedTuple
 
 from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
@@ -51,7 +51,7 @@ FOLDERS = {
 }
 
 
-class PointRequests(Sequence):
+class PointRequests:
     """Requests for all points of a records.Sweep, each made when it is asked for.
 
     The order is that of the dataset: what pulls, Poisson's ratio, amplitude, velocity, the last one
@@ -99,20 +99,9 @@ class PointRequests(Sequence):
         values = product(*(self._axes[name] for name in names))
         return [self._common | dict(zip(names, place, strict=True)) for place in values]
 
-    @overload
-    def __getitem__(self, index: int) -> dict: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[dict]: ...
-
-    def __getitem__(self, index: int | slice) -> dict | list[dict]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        rest, at = range(len(self))[index], {}
-        for name, values in reversed(self._axes.items()):
-            rest, place = divmod(rest, len(values))
-            at[name] = values[place]
-        return self._common | {name: at[name] for name in self._axes}
+    def __iter__(self) -> Iterator[dict]:
+        axis, values = self.last
+        return (row | {axis: value} for row in self.rows for value in values)
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:

@@ -65,7 +65,8 @@ def _request(
     if "force" in place:
         point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
     point |= {name: (value,) for name, value in place.items()}
-    return PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))[0]
+    (request,) = PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))
+    return request
 
 
 def _answer(request: dict, result: dict) -> tuple[float, float]:
