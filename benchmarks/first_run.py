@@ -22,8 +22,7 @@ from microslip.foundation import machine
 
 ROOT = Path(__file__).parents[1]
 STEPS = {
-    "compile the solver": ["warm_up", "warm_up_angles"],
-    "solve all points, collect and draw": ["all"],
+    "compile the solver, solve all points, collect and draw": ["all"],
     "the same again: nothing to do": ["all"],
 }
 

@@ -121,12 +121,12 @@ def test_points_are_solved_once_and_datasets_are_those_of_a_local_run(
     assert grown[DATASET] != first[DATASET]
     assert 2 <= computed(grown) - computed(first) <= 4
     # a velocity more: the rows are solved again
-    (other / "tiny.yaml").write_text(with_transverse(velocity=[0.5, 2, 3]))
-    shutil.rmtree(other / "results", ignore_errors=True)
-    run(other, server, DATASET)
+    third = empty_copy(finished, tmp_path / "third")
+    (third / "tiny.yaml").write_text(with_transverse(velocity=[0.5, 2, 3]))
+    run(third, server, DATASET)
     assert computed(stored(server)) - computed(grown) == 6
-    # and a third machine, with the first configuration
-    run(empty_copy(finished, tmp_path / "third"), server, DATASET)
+    # and a fourth machine, with the first configuration
+    run(empty_copy(finished, tmp_path / "fourth"), server, DATASET)
     assert stored(server)[DATASET] == first[DATASET]
     assert computed(stored(server)) - computed(grown) == 6
 
