@@ -61,6 +61,10 @@ if not (config and workflow.configfiles):
 
     configfile: DEFAULT
 
+elif MAIN:
+    with refused_in_one_line():
+        for file in workflow.configfiles:
+            load.read_yaml(os.path.relpath(file))  # refuses a key that occurs twice
 
 # In a module the files are those of the other workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -69,8 +73,6 @@ ORIGIN = ", ".join(FILES) or "configuration"
 FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfiles]
 
 with refused_in_one_line():
-    for file in FILES:
-        load.read_yaml(file)  # refuses a key that occurs twice
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
     # Captions name the defaults too, and jobs find the files that were found here.
     config = load.with_files_found(config, source=ORIGIN, folders=FOLDERS)
