@@ -165,7 +165,9 @@ rule draw:
         report(
             kept(f"{RESULTS}/figures/{{figure}}.png"),
             caption="workflow/report/figure.rst",
-            category=lambda wildcards: category_of(wildcards.figure),
+            category=lambda wildcards: figure_targets.heading_of(
+                CONFIGURATION, PLAN.figures[wildcards.figure][0]
+            ),
             labels={"figure": "{figure}"},
         ),
         kept(f"{RESULTS}/figures/{{figure}}.pdf"),

@@ -157,9 +157,9 @@ def kernels_for(group):
     return compiled("rings", "angles", *["pulled"] * (group in pulled))
 
 
-def compiled(*kernels):
+def compiled(*kernels, place=RESULTS):
     """Marks that kernels are compiled."""
-    return [f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_{name}.txt" for name in kernels]
+    return [f"{place}/warm_up/{source_digest.of_solver()[:16]}_{name}.txt" for name in kernels]
 
 
 def files_of_target(target):
@@ -186,31 +186,16 @@ def files_of_figure(name):
     return files
 
 
-def category_of(figure):
-    """Heading of a figure in the report."""
-    first = PLAN.figures[figure][0]
-    headings = {
-        "The paper's figures": CONFIGURATION.sweeps,
-        "Other motions and pressures": CONFIGURATION.extended,
-        "Drives": CONFIGURATION.drives,
-        "Certified maps": CONFIGURATION.certified,
-        "The paper's claims": ["claims"],
-        "Self-propelled motions": ["propulsion"],
-    }
-    return next((text for text, names in headings.items() if first in names), "Methods")
-
-
 def report_work():
     """Write to standard error how many points there are to solve, and about how long it takes."""
     try:
         cores = min(workflow.cores, max(len(TO_SOLVE), 1))
     except WorkflowError:  # jobs run elsewhere
         cores = max(len(TO_SOLVE), 1)
-    groups = [file.split("/")[1:] for file in TO_SOLVE]
-    work = [(group, PLAN.batches_in(group).get(Path(name).stem)) for group, name in groups]
-    marks = [f"{PLACE}/{mark.removeprefix(RESULTS)}" for mark in compiled("rings", "angles")]
+    names = [file.split("/")[1:] for file in TO_SOLVE]
+    work = [(group, PLAN.batches_in(group).get(Path(name).stem)) for group, name in names]
     if work:
-        missing = not all(map(os.path.exists, marks))
+        missing = not all(map(os.path.exists, compiled("rings", "angles", place=PLACE)))
         print(*dry_run.summary(work, PLACE, cores, compiles=missing), sep="\n", file=sys.stderr)
     TO_SOLVE.clear()
 

@@ -88,3 +88,16 @@ def why_no_figure(configuration: Configuration, figure: str) -> str:
         f"{figure} cannot be drawn from {' and '.join(names)}: a map needs several velocities and "
         "amplitudes, and some figures need equal or several values of other axes"
     )
+
+
+def heading_of(configuration: Configuration, dataset: str) -> str:
+    """Heading, in the report of a run, of the figures that are drawn from a dataset first."""
+    headings = {
+        "The paper's figures": configuration.sweeps,
+        "Other motions and pressures": configuration.extended,
+        "Drives": configuration.drives,
+        "Certified maps": configuration.certified,
+        "The paper's claims": ["claims"],
+        "Self-propelled motions": ["propulsion"],
+    }
+    return next((text for text, names in headings.items() if dataset in names), "Methods")

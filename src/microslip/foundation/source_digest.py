@@ -45,7 +45,7 @@ class Sources:
     """
 
     def __init__(self, package: str | Path = PACKAGE):
-        self.package = Path(package)
+        self.package, self._is_written = Path(package), True
         files = dict(_modules(self.package))
         self._dates = {name: os.stat(path).st_mtime_ns for name, path in files.items()}
         self.contents = {name: Path(path).read_bytes() for name, path in files.items()}
@@ -74,19 +74,15 @@ class Sources:
     def of_request(self, request: dict) -> frozenset[str]:
         """Paths of the modules that the result of a request depends on."""
         named = {folder: request.get(key) or "" for folder, key in FAMILIES.items()}
-        files = {
-            f"{folder}/{text.partition(':')[0].replace('-', '_')}.py"
-            for folder, text in named.items()
-            if text
-        }
-        if "pressures/file.py" in files:
-            files = files - {"pressures/file.py"} | {"pressures/from_file.py"}
-        if not named["motions"]:  # the code that answers may choose any
+        bare = {folder: text.partition(":")[0].replace("-", "_") for folder, text in named.items()}
+        if bare["pressures"] == "file":
+            bare["pressures"] = "from_file"
+        files = {f"{folder}/{name}.py" for folder, name in bare.items() if name}
+        if not bare["motions"]:  # the code that answers may choose any
             files |= {name for name in self.contents if name.startswith("motions/")}
         files = {name for name in files if name in self.contents or _in_a_users_folder(name)}
-        physics = {name for name in self.contents if is_physics(name)}
-        roots = {name for name in physics if os.path.dirname(name) not in FAMILIES}
-        return self.closure(roots | files, inside=is_physics)
+        files |= {n for n in self.contents if is_physics(n) and os.path.dirname(n) not in FAMILIES}
+        return self.closure(files, inside=is_physics)
 
     def edited(self) -> str | None:
         """A physics file whose code on disk is another one than when it was read; None if all are
@@ -94,9 +90,8 @@ class Sources:
         for name in filter(is_physics, self._dates):
             path, then = self.package / name, self.contents[name]
             try:
-                if os.stat(path).st_mtime_ns == self._dates[name]:
-                    continue
-                now = path.read_bytes()
+                same_date = os.stat(path).st_mtime_ns == self._dates[name]
+                now = then if same_date else path.read_bytes()
             except OSError:
                 return name
             if now != then and _parse(now)[0] != _parse(then)[0]:
@@ -126,25 +121,20 @@ class Sources:
 
     @cached_property
     def _known(self) -> dict[str, tuple[str, list[str]]]:
-        self._is_written = True
-        try:
+        with contextlib.suppress(OSError, ValueError):
             reader, known = json.loads(self._file.read_bytes())
-        except (OSError, ValueError):
-            return {}
-        return known if reader == _READER else {}
+            return known if reader == _READER else {}
+        return {}
 
     def _write_parsed(self) -> None:
         """Write what was parsed; where that is refused, the next process parses again."""
-        if self._is_written:
-            return
-        self._is_written = True
-        present = {_sha256(content) for content in self.contents.values()}
-        known = {key: parsed for key, parsed in self._known.items() if key in present}
-        beside = self._file.with_name(f"{self._file.name}.{os.urandom(8).hex()}")
-        with contextlib.suppress(OSError):
-            self._file.parent.mkdir(exist_ok=True)
-            beside.write_text(json.dumps([_READER, known]))
-            os.replace(beside, self._file)
+        if not self._is_written:
+            self._is_written = True
+            beside = self._file.with_name(f"{self._file.name}.{os.urandom(8).hex()}")
+            with contextlib.suppress(OSError):
+                self._file.parent.mkdir(exist_ok=True)
+                beside.write_text(json.dumps([_READER, self._known]))
+                os.replace(beside, self._file)
 
     @property
     def _file(self) -> Path:

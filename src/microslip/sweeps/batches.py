@@ -31,11 +31,8 @@ log = logging.getLogger(__name__)
 RECORD_FORMAT = 1
 """Raised when the content of a record changes without any change in the solver."""
 
-# The initial states of Figure 5.
 STARTS = ("stress-free", "full-rotation", "full-slip")
-
-# Folders of the store by kind of request. Those in trials and scaling hold times that were
-# measured: computed again they differ in these, and in nothing else.
+"""Initial states of Figure 5."""
 FOLDERS = {
     "point": "points",
     "history": "histories",
@@ -49,6 +46,7 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
+"""Folders of the store by kind of request.  Those of trials and scaling hold measured times."""
 
 
 class PointRequests:
@@ -107,23 +105,18 @@ class PointRequests:
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
     """List the requests for the single runs that go into the dataset of the sweep `name`; none for
     one of `extended`."""
-    given = configuration.histories
-    requests = {
-        "transverse": lambda settings: [
-            _single("history", "transverse", settings, start="stress-free")
-        ],
-        "field": lambda settings: [_single("field", "continuous-bore", settings)],
-        "transients": lambda settings: [
-            _single("history", "continuous-bore", settings, start=start) for start in STARTS
-        ],
+    steady = {"motion": "continuous-bore"}
+    kinds: dict[str, list[dict]] = {
+        "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
+        "field": [{"kind": "field"} | steady],
+        "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
     }
-    return [r for run in HISTORIES_OF_SWEEP.get(name, ()) for r in requests[run](given[run])]
-
-
-def _single(kind: str, motion: str, settings: dict, **more: object) -> dict:
-    counts = ("cells", "steps", "periods")
-    numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-    return {"kind": kind, "motion": motion} | settings | numbers | more
+    counts, found = ("cells", "steps", "periods"), []
+    for run in HISTORIES_OF_SWEEP.get(name, ()):
+        settings = configuration.histories[run]
+        numbers = {k: number(v) for k, v in settings.items() if k not in counts}
+        found += [kind | settings | numbers for kind in kinds[run]]
+    return found
 
 
 def key_of(request: dict) -> str:
@@ -281,14 +274,9 @@ def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
     if records and all(result.get("crashed") for result in results):
         first = f"{label(records[0]['request'])}: {results[0]['reason']}"
         raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
-    computed = sum(took > 0 for took in seconds)
+    counts = {"points": len(records), "computed": sum(took > 0 for took in seconds)}
     final = all(map(evaluate.is_final, results))
-    return {
-        "points": len(records),
-        "computed": computed,
-        "solver_seconds": sum(seconds),
-        "final": final,
-    }
+    return counts | {"solver_seconds": sum(seconds), "final": final}
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
