@@ -129,9 +129,7 @@ rule map:
 
 rule collect:
     input:
-        batches=lambda wildcards: batches_for(
-            wildcards.dataset, PLAN.groups_of(wildcards.dataset)
-        ),
+        batches=lambda wildcards: batches_for(wildcards.dataset, PLAN.groups_of(wildcards.dataset)),
         again=lambda wildcards: made_again(is_right(wildcards.dataset)),
     output:
         kept(f"{RESULTS}/{{dataset}}.nc"),
