@@ -1,4 +1,4 @@
-"""Certified maps, other motions, the studies and the explorer, run by Snakemake in a copy."""
+"""Certified maps, other motions and the studies, run by Snakemake in a copy."""
 
 import re
 import shutil
@@ -140,23 +140,6 @@ def test_other_motions_have_datasets_and_a_figure_of_each_group(tmp_path):
     assert len(project.points()) == 12
     assert "Nothing to be done" in project.run("extended")
     assert project.planned()["collect"] == 1  # a plain run makes none of it
-
-
-# The explorer
-
-
-def test_the_explorer_is_one_page_and_says_what_it_cannot_show(tmp_path):
-    rigid = {"velocity": [0.5, 1], "amplitude": [0.5, 1], "model": "rigid", "tolerance": 0.01}
-    project = made(tmp_path, {"sweeps": {"transverse": rigid}}, "explorer")
-    assert (
-        "explorer: transverse: 4 periods"
-        in next((project.folder / "results/logs/explore").glob("*.log")).read_text()
-    )
-    assert (project.folder / "results/explorer.html").read_text().startswith("<!DOCTYPE html>")
-    assert "Nothing to be done" in project.run("explorer")
-    project.configure({"sweeps": PAPER})
-    done = project.snakemake("explorer", "-n", "--configfile", "tiny.yaml")
-    assert "the explorer has nothing to show" in done.stderr
 
 
 # Studies
