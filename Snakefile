@@ -129,7 +129,7 @@ rule map:
 
 rule collect:
     input:
-        batches=lambda wildcards: batches_for(wildcards.dataset, PLAN.groups_of(wildcards.dataset)),
+        batches=lambda wildcards: batches_for(wildcards.dataset),
         again=lambda wildcards: made_again(is_right(wildcards.dataset)),
     output:
         kept(f"{RESULTS}/{{dataset}}.nc"),
@@ -155,9 +155,7 @@ rule collect:
 
 rule draw:
     input:
-        datasets=lambda wildcards: datasets_for(
-            f"figures/{wildcards.figure}", PLAN.figures[wildcards.figure]
-        ),
+        datasets=lambda wildcards: datasets_for(f"figures/{wildcards.figure}"),
         again=lambda wildcards: made_again(is_right(f"figures/{wildcards.figure}")),
     output:
         report(
@@ -187,12 +185,8 @@ rule draw:
 # One page to look behind every point of the maps; explorer_all.html has every other sweep, too.
 rule explore:
     input:
-        datasets=lambda wildcards: datasets_for(
-            f"pages/{wildcards.page}", PLAN.datasets_of(f"pages/{wildcards.page}")
-        ),
-        batches=lambda wildcards: batches_for(
-            f"pages/{wildcards.page}", PLAN.groups_of(f"pages/{wildcards.page}")
-        ),
+        datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
+        batches=lambda wildcards: batches_for(f"pages/{wildcards.page}"),
         again=lambda wildcards: made_again(is_right(f"pages/{wildcards.page}")),
     output:
         report(
@@ -210,7 +204,7 @@ rule explore:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        names=lambda wildcards: PLAN.datasets_of(f"pages/{wildcards.page}"),
+        names=lambda wildcards: PLAN.products[f"pages/{wildcards.page}"].datasets,
         made_of=lambda wildcards: PLAN.made_of(f"pages/{wildcards.page}"),
     script:
         "workflow/scripts/explore.py"
@@ -222,6 +216,6 @@ PLACE = os.path.dirname(str(rules.collect.output[0]))
 with refused_in_one_line():
     if HERE:
         groups = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
-        made = [file for product in PLAN.products for file in PLAN.files(product)]
+        made = [file for product in PLAN.products.values() for file in product.files]
         files.refuse_unusable(*([f"{PLACE}/{name}" for name in names] for names in (groups, made)))
     stamps.write_again(f"{PLACE}/{stamps.AGAIN}" if HERE else AGAIN, dated=HERE)

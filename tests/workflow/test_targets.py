@@ -178,7 +178,7 @@ def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
     before, after = (
         Plan(load.from_mapping({"sweeps": PAPER, "claims": given})) for given in (CLAIMS, more)
     )
-    groups = before.groups_of("claims")
+    groups = before.products["claims"].groups
     new = {*after.batch_files(*groups)} - {*before.batch_files(*groups)}
     assert len([name for name in new if name.startswith("batches/claims/")]) == 1
 

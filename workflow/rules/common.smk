@@ -93,7 +93,7 @@ def in_results(files):
 
 def files_of(products):
     """Files of products."""
-    return in_results(file for product in products for file in PLAN.files(product))
+    return in_results(file for product in products for file in PLAN.products[product].files)
 
 
 def made_again(right):
@@ -120,23 +120,24 @@ def is_right(product):
     if not HERE:
         return False  # made again, from batches or datasets
     stamp = f"{PLACE}/{stamps.stamp_of(product)}"
-    paths = [f"{PLACE}/{file}" for file in PLAN.files(product)]
+    paths = [f"{PLACE}/{file}" for file in PLAN.products[product].files]
     right = stamps.fits(stamp, PLAN.made_of(product), paths)
     stamps.date([*paths, stamp], right)
     return right
 
 
-def batches_for(product, groups):
+def batches_for(product):
     """Batches of a product, ancient where they are whole: then they are no reason to collect."""
-    found = PLAN.batch_files(*groups)
+    found = PLAN.batch_files(*PLAN.products[product].groups)
     if HERE and not is_right(product):
         missing = [f for f in found if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
         TO_SOLVE.update(dict.fromkeys(missing))
     return [(ancient if is_whole(file) else str)(f"{RESULTS}/{file}") for file in found]
 
 
-def datasets_for(product, names):
+def datasets_for(product):
     """Datasets of a product, ancient where they are right."""
+    names = PLAN.products[product].datasets
     return [(ancient if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
 
 

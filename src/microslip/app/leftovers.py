@@ -36,7 +36,7 @@ def asked_for(plan: Plan, folder: Path) -> set[str]:
     points of the motion count as requested.
     """
     certified = plan.configuration.certified
-    found = {file for product in plan.products for file in plan.files(product)}
+    found = {file for product in plan.products.values() for file in product.files}
     found |= {stamps.stamp_of(product) for product in plan.products}
     found |= {*plan.batch_files(*plan.groups, *certified)}
     requests = (

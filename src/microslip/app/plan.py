@@ -11,13 +11,14 @@ explorer.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, cached_property
+from typing import NamedTuple
 
 from microslip.app import figure_targets
 from microslip.config.records import Configuration
 from microslip.foundation import source_digest
-from microslip.foundation.canonical import canonical_json, fingerprint
+from microslip.foundation.canonical import fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
@@ -32,6 +33,28 @@ REFINEMENT_CODE = ("sweeps/map_refinement.py",)
 """Modules that choose the points of a certified map."""
 
 
+class Product(NamedTuple):
+    """What a job makes from batches or datasets.
+
+    Attributes
+    ----------
+    files : list of str
+        Its files in the folder of results.
+    code : tuple of str
+        Modules that make it, besides those that they import.
+    datasets, groups : sequence of str
+        Names of the datasets and of the groups of batches that it is made of.
+    settings : dict
+        Settings that it depends on, for JSON.
+    """
+
+    files: list[str]
+    code: tuple[str, ...]
+    datasets: Sequence[str] = ()
+    groups: Sequence[str] = ()
+    settings: dict | None = None
+
+
 class Plan:
     """The plan of a checked configuration.  Paths are inside the folder of results.
 
@@ -42,15 +65,15 @@ class Plan:
         Studies by the names of their datasets.
     figures : dict of str to tuple of str
         Figures that there is data for, and the datasets of each.
-    explored : list of str
-        Names of the maps whose points have periods in the explorer.
+    products : dict of str to Product
+        All products by name.
     """
 
     def __init__(self, configuration: Configuration):
         self.configuration = configuration
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
         self.figures = figure_targets.drawable(configuration)
-        self.explored = explorer.maps_of(configuration)
+        self.products = dict(self._products())
         self.batches_in = cache(self._batches_in)
         self.made_of = cache(self._made_of)
 
@@ -62,7 +85,7 @@ class Plan:
         return [
             *self.configuration.grids,
             *(f"{name}_histories" for name in self.configuration.sweeps),
-            *(f"{name}_periods" for name in self.explored),
+            *(f"{name}_periods" for name in explorer.maps_of(self.configuration)),
             *self.studies.values(),
         ]
 
@@ -103,43 +126,32 @@ class Plan:
             for name in ([self.map_batch(group)] if group in certified else self.batches_in(group))
         ]
 
-    def groups_of(self, product: str) -> list[str]:
-        """Groups whose batches a product is made of; single runs in a dataset come after points."""
-        if product.startswith("figures/"):
-            return []
-        if product.startswith("pages/"):
-            return [f"{name}_periods" for name in self.explored]
-        if product in self.studies:
-            return [self.studies[product]]
-        histories = [f"{product}_histories"] * (product in self.configuration.sweeps)
-        return [product, *histories]
-
     # Products
+
+    def _products(self) -> Iterator[tuple[str, Product]]:
+        given = self.configuration
+        for name in self.datasets:
+            files, groups = [f"{name}.nc", f"summaries/{name}.html"], [name]
+            if name in given.certified:
+                yield name, Product(files, CERTIFIED_CODE, (), groups)
+            elif name in self.studies:
+                settings = registry.settings(self.studies[name], given)
+                yield name, Product(files, STUDY_CODE, (), [self.studies[name]], settings)
+            else:  # batches of single runs come after those of points
+                groups += [f"{name}_histories"] * (name in given.sweeps)
+                yield name, Product(files, DATASET_CODE, (), groups, given.of_sweep(name))
+        for name, datasets in self.figures.items():
+            files = [f"figures/{name}.{form}" for form in ("png", "pdf")]
+            yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
+        periods = [f"{name}_periods" for name in explorer.maps_of(given)]
+        for page in explorer.PAGES:
+            datasets = tuple(explorer.datasets_of(given, page))
+            yield f"pages/{page.removesuffix('.html')}", Product([page], (), datasets, periods)
 
     @property
     def datasets(self) -> list[str]:
         """Names of all datasets."""
         return [*self.configuration.grids, *self.configuration.certified, *self.studies]
-
-    def datasets_of(self, product: str) -> Sequence[str]:
-        """Names of the datasets that a figure or a page is made of."""
-        kind, _, name = product.rpartition("/")
-        if kind == "figures":
-            return self.figures[name]
-        return explorer.datasets_of(self.configuration, f"{name}.html") if kind else ()
-
-    def files(self, product: str) -> list[str]:
-        """Files of a product."""
-        kind, _, name = product.rpartition("/")
-        if kind == "figures":
-            return [f"figures/{name}.png", f"figures/{name}.pdf"]
-        return [f"{name}.html"] if kind else [f"{name}.nc", f"summaries/{name}.html"]
-
-    @property
-    def products(self) -> list[str]:
-        """All products."""
-        pages = [f"pages/{page.removesuffix('.html')}" for page in explorer.PAGES]
-        return [*self.datasets, *(f"figures/{name}" for name in self.figures), *pages]
 
     def with_figures(self, datasets: Iterable[str]) -> list[str]:
         """Datasets, and the figures drawn from them alone, or from them and maps of the paper."""
@@ -167,30 +179,15 @@ class Plan:
 
     # What products are made of
 
-    def code_of(self, product: str) -> str:
-        """Digest of the code that makes a product from its batches or datasets."""
-        kind, _, name = product.rpartition("/")
-        if kind == "pages":
-            return explorer.digest()
-        if kind == "figures":
-            return source_digest.of_modules(*drawing.modules_of(name))
-        if product in self.configuration.certified:
-            return source_digest.of_modules(*CERTIFIED_CODE)
-        return source_digest.of_modules(*(STUDY_CODE if name in self.studies else DATASET_CODE))
-
     def _made_of(self, product: str) -> str:
         """Fingerprint of the code, settings and points of a product.
 
         It does not depend on how the points of a sweep are cut into batches.
         """
-        settings = ""
-        if product in self.studies:
-            settings = canonical_json(registry.settings(self.studies[product], self.configuration))
-        elif product in self.configuration.grids:
-            settings = canonical_json(self.configuration.of_sweep(product))
-        datasets = [self.made_of(name) for name in self.datasets_of(product)]
-        points = [self._points_in(group) for group in self.groups_of(product)]
-        return fingerprint(product, self.code_of(product), settings, datasets, points)
+        of = self.products[product]
+        code = source_digest.of_modules(*of.code) if of.code else explorer.digest()
+        datasets, points = map(self.made_of, of.datasets), map(self._points_in, of.groups)
+        return fingerprint(product, code, of.settings, [*datasets], [*points])
 
     def _points_in(self, group: str) -> object:
         if group not in self.configuration.grids:
