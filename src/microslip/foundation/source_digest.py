@@ -84,6 +84,15 @@ class Sources:
         files |= {n for n in self.contents if is_physics(n) and os.path.dirname(n) not in FAMILIES}
         return self.closure(files, inside=is_physics)
 
+    def of_kernels(self) -> str:
+        """Digest of the modules with compiled functions and of all that they import.
+
+        Layout counts here, since Numba finds the code of a function by its line.
+        """
+        compiled = {n for n, c in self.contents.items() if b"microslip.foundation.compiled" in c}
+        content = [(n, _sha256(self.contents[n])) for n in sorted(self.closure(compiled))]
+        return _sha256(json.dumps(content).encode())
+
     def edited(self) -> str | None:
         """A physics file whose code on disk is another one than when it was read; None if all are
         the same."""
@@ -252,10 +261,5 @@ def of_modules(*names: str) -> str:
 
 @cache
 def of_kernels() -> str:
-    """Digest of the modules with compiled functions and of all that they import.
-
-    Layout counts here, since Numba finds the code of a function by its line.
-    """
-    compiled = {n for n, c in LOADED.contents.items() if b"microslip.foundation.compiled" in c}
-    content = [(n, _sha256(LOADED.contents[n])) for n in sorted(LOADED.closure(compiled))]
-    return _sha256(json.dumps(content).encode())
+    """Digest of the compiled functions and of all that they import."""
+    return LOADED.of_kernels()
