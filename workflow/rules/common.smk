@@ -21,10 +21,20 @@ if (ROOT / "src").is_dir():
 for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
-# A terminal that is closed ends Snakemake as SIGTERM does: no new jobs, and no lock stays behind.
-# Jobs do not inherit this, and end at once.
+
+def hang_up(*_):
+    """End jobs at once and Snakemake as SIGTERM does, so that no lock stays: the terminal closed.
+
+    A terminal sends the signal to its first process only, a shell to the whole group.
+    """
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    if os.getpgrp() == os.getpid():
+        os.killpg(0, signal.SIGHUP)
+    signal.raise_signal(signal.SIGTERM)
+
+
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
-    signal.signal(signal.SIGHUP, lambda *_: signal.raise_signal(signal.SIGTERM))
+    signal.signal(signal.SIGHUP, hang_up)  # not so under nohup
 
 from microslip.app import dry_run, figure_targets
 from microslip.app.plan import Plan
