@@ -1,43 +1,16 @@
-# The paper's sweeps, from the configuration to the figures:
+# From the configuration to the figures:
 #
-#   config.yaml --> points, cut into batches --> solve_batch --+--> results/batches/*/*.json
-#                                 warm_up -->----^             +--> results/points (one file a point)
-#   batches of a sweep --> collect --> results/{transverse,bore,continuous_bore}.nc
-#   datasets --> draw_figure --> results/figures/fig{1..6}_*.{png,pdf}
+#   config.yaml --> batches of points --> solve --> results/batches --> collect --> results/NAME.nc
+#                       results/points (the store) <--'    ^             draw --> results/figures
+#                       certified maps --> map ------------'          explore --> results/*.html
 #
-# snakemake, or snakemake all, makes the above; snakemake fig2 makes one figure with its dataset.
-# snakemake --report report.zip makes one page of
-# figures, captions and what made them.
+# A batch is named by its requests and by the digest of the code that answers them, so a batch that
+# is there is right.  Datasets, figures and pages have plain names, so that each has a stamp,
+# results/.made/NAME.json, written last: what it was made of, and the checksums of its files.
 #
-# Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the
-# paper says: snakemake claims. A fourth one shows what motions drive: snakemake propulsion.
-#
-#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims,propulsion}*/
-#                                                +--> results/{points,trials,probes,scaling,...}
-#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims,propulsion}.nc
-#   datasets --> draw_figure
-#
-# Sweeps of other motions and pressures, those under `extended`, come the same way: snakemake extended
-# makes results/NAME.nc of each, and a figure extended_GROUP of each of their groups. So do those of
-# contacts that are pulled, under `drives`: snakemake drives makes results/NAME.nc of each.
-#
-# Maps with an error that holds everywhere, of those sweeps that say `adaptive`: snakemake certified.
-#
-#   answers so far --> next_round --> solve_round --> results/rounds --> ... --> collect_certified
-#                                                              --> results/certified_{transverse,bore}.nc
-#
-# snakemake explorer makes one page to look behind every point of the maps.
-#
-#   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
-#   datasets, periods, certified maps --> explorer --> results/explorer.html
-#
-# snakemake explorer_all makes the same of every sweep: results/explorer_all.html.
-#
-# Batches are named by the hashes of their points, points by what they depend on: the physics, the
-# tolerance and the solver's sources. So what is there is never stale, and never computed twice.
-# A batch stays as it was planned: results/batches/*/*.plan lists them, and new points get new ones.
-
-import os
+# Snakemake decides by dates, and only by one: results/.again is an input of every rule.  A product
+# without the right stamp and a damaged batch are dated back behind it; for all others it is
+# `ancient`, and so are all right inputs.  Neither other dates nor .snakemake count.
 
 from snakemake.utils import min_version
 
@@ -47,87 +20,202 @@ min_version("9.4")
 report: "workflow/report/workflow.rst"
 
 
-include: "workflow/rules/package.smk"
-
-
-# A file given with --configfile takes the place of the default, they are not mixed. Without one, that
-# of the working directory comes first. A module is configured by the workflow that uses it.
-MAIN = workflow.modifier.base_snakefile is None
-if not (workflow.overwrite_configfiles if MAIN else config):
-    DEFAULT = "config/config.yaml"
-    if not (MAIN and os.path.exists(DEFAULT)):
-        DEFAULT = str(workflow.current_basedir.join(DEFAULT))
-    if "://" not in DEFAULT:
-        with refused_in_one_line(DEFAULT):
-            load.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is
-
-    configfile: DEFAULT
-
-
 include: "workflow/rules/common.smk"
-include: "workflow/rules/stale.smk"
-include: "workflow/rules/points.smk"
-include: "workflow/rules/datasets.smk"
-include: "workflow/rules/certified.smk"
-include: "workflow/rules/figures.smk"
-include: "workflow/rules/explorer.smk"
 
 
 onstart:
     make_ready()
 
 
-onsuccess:
-    show_the_end()
-
-
-onerror:
-    show_the_end()
+wildcard_constraints:
+    group="|".join(PLAN.groups),
+    certified="|".join(CONFIGURATION.certified) or "(?!)",
+    batch="[0-9a-f]+",
+    dataset="|".join(PLAN.datasets),
+    figure="|".join(PLAN.figures),
+    page="explorer|explorer_all",
+    kernels="rings|angles|pulled",
 
 
 rule all:
     input:
-        datasets_of(CONFIGURATION.sweeps),
-        figures_of(CONFIGURATION.sweeps),
+        files_of_target("all"),
 
 
-rule certified:
+# snakemake certified, and all other targets that `microslip sweep --help` lists.
+for target in figure_targets.TARGETS.keys() - {"all"}:
+
+    rule:
+        name:
+            target
+        input:
+            files_of_target(target),
+
+
+# snakemake fig2, or the name of any other figure.
+for target, figure in figure_targets.targets_of(CONFIGURATION).items():
+
+    rule:
+        name:
+            target
+        input:
+            files_of_figure(figure),
+
+
+# Compiles the solver once, before jobs that would all do it at the same time.
+rule warm_up:
     input:
-        datasets_of(CERTIFIED_AT_VELOCITIES),
-        figures_of(CERTIFIED_AT_VELOCITIES),
+        lambda wildcards: ancient(
+            compiled("rings", "angles") if wildcards.kernels == "pulled" else []
+        ),
+    output:
+        f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_{{kernels}}.txt",
+    log:
+        f"{RESULTS}/logs/warm_up/{{kernels}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    # What a job takes where a scheduler starts it, with Snakemake: see docs/how-to/cluster.md.
+    resources:
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
+    script:
+        "workflow/scripts/warm_up.py"
 
 
-rule extended:
+rule solve:
     input:
-        datasets_of(CONFIGURATION.extended),
-        figures_of(CONFIGURATION.extended),
+        ancient(lambda wildcards: kernels_for(wildcards.group)),
+        again=lambda wildcards: made_again(
+            is_whole(f"batches/{wildcards.group}/{wildcards.batch}.jsonl")
+        ),
+    output:
+        f"{RESULTS}/batches/{{group}}/{{batch}}.jsonl",
+    log:
+        f"{RESULTS}/logs/solve/{{group}}/{{batch}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    resources:
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 60 * attempt,
+    params:
+        batch=lambda wildcards: batch_of(wildcards.group, wildcards.batch),
+        store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
+    script:
+        "workflow/scripts/solve.py"
 
 
-rule drives:
+# All points of a certified map, by several processes.
+rule map:
     input:
-        datasets_of(DRIVEN),
-        figures_of(DRIVEN),
+        ancient(lambda wildcards: kernels_for(wildcards.certified)),
+        again=lambda wildcards: made_again(
+            is_whole(f"batches/{wildcards.certified}/{wildcards.batch}.jsonl")
+        ),
+    output:
+        f"{RESULTS}/batches/{{certified}}/{{batch}}.jsonl",
+    log:
+        f"{RESULTS}/logs/map/{{certified}}/{{batch}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    threads: 8
+    resources:
+        mem_mb=lambda wildcards, attempt, threads: 500 * attempt * (threads + 1),
+        runtime=lambda wildcards, attempt: 120 * attempt,
+    params:
+        store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
+    script:
+        "workflow/scripts/map.py"
 
 
-rule accuracy:
+rule collect:
     input:
-        datasets_of(["accuracy_cost"]),
-        figures_of(["accuracy_cost"]),
+        batches=lambda wildcards: batches_for(wildcards.dataset),
+        again=lambda wildcards: made_again(is_right(wildcards.dataset)),
+    output:
+        kept(f"{RESULTS}/{{dataset}}.nc"),
+        summary=report(
+            kept(f"{RESULTS}/summaries/{{dataset}}.html"),
+            caption="workflow/report/dataset.rst",
+            category="Datasets",
+            labels={"dataset": "{dataset}.nc"},
+        ),
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
+    log:
+        f"{RESULTS}/logs/collect/{{dataset}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    resources:
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
+    params:
+        made_of=lambda wildcards: PLAN.made_of(wildcards.dataset),
+    script:
+        "workflow/scripts/collect.py"
 
 
-rule stability:
+rule draw:
     input:
-        datasets_of(["stability"]),
-        figures_of(["stability"]),
+        datasets=lambda wildcards: datasets_for(f"figures/{wildcards.figure}"),
+        again=lambda wildcards: made_again(is_right(f"figures/{wildcards.figure}")),
+    output:
+        report(
+            kept(f"{RESULTS}/figures/{{figure}}.png"),
+            caption="workflow/report/figure.rst",
+            category=lambda wildcards: figure_targets.heading_of(
+                CONFIGURATION, PLAN.figures[wildcards.figure][0]
+            ),
+            labels={"figure": "{figure}"},
+        ),
+        kept(f"{RESULTS}/figures/{{figure}}.pdf"),
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
+    log:
+        f"{RESULTS}/logs/draw/{{figure}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    resources:
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
+    params:
+        names=lambda wildcards: PLAN.figures[wildcards.figure],
+        made_of=lambda wildcards: PLAN.made_of(f"figures/{wildcards.figure}"),
+    script:
+        "workflow/scripts/draw.py"
 
 
-rule propulsion:
+# One page to look behind every point of the maps; explorer_all.html has every other sweep, too.
+rule explore:
     input:
-        datasets_of(["propulsion"]),
-        figures_of(["propulsion"]),
+        datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
+        batches=lambda wildcards: batches_for(f"pages/{wildcards.page}"),
+        again=lambda wildcards: made_again(is_right(f"pages/{wildcards.page}")),
+    output:
+        report(
+            kept(f"{RESULTS}/{{page}}.html"),
+            caption="workflow/report/explorer.rst",
+            category="Explorer",
+            labels={"page": "{page}.html"},
+        ),
+        stamp=kept(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
+    log:
+        f"{RESULTS}/logs/explore/{{page}}.log",
+    conda:
+        "workflow/envs/microslip.yaml"
+    resources:
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
+    params:
+        names=lambda wildcards: PLAN.products[f"pages/{wildcards.page}"].datasets,
+        made_of=lambda wildcards: PLAN.made_of(f"pages/{wildcards.page}"),
+    script:
+        "workflow/scripts/explore.py"
 
 
-rule claims:
-    input:
-        datasets_of(["claims"]),
-        figures_of(["claims"]),
+# Where the results of the rules are, with the prefix that a module may have.
+PLACE = os.path.dirname(str(rules.collect.output[0]))
+
+with refused_in_one_line():
+    if HERE:
+        groups = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
+        made = [file for product in PLAN.products.values() for file in product.files]
+        files.refuse_unusable(*([f"{PLACE}/{name}" for name in names] for names in (groups, made)))
+    stamps.write_again(f"{PLACE}/{stamps.AGAIN}" if HERE else AGAIN, dated=HERE)

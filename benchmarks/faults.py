@@ -83,6 +83,7 @@ class Project:
             path.relative_to(self.results).as_posix(): path
             for path in sorted(self.results.rglob("*"))
             if path.is_file() and path.suffix not in (".damaged", ".part")
+            if path.name != ".again"  # which is another one after each run
             if path.relative_to(self.results).parts[0] not in UNREAD
         }
 

@@ -18,11 +18,14 @@ from pathlib import Path
 
 import tables
 
-from microslip.foundation import machine
+from microslip.foundation import machine, source_digest
 
 ROOT = Path(__file__).parents[1]
 STEPS = {
-    "compile the solver": ["warm_up", "warm_up_angles"],
+    "compile the solver": [
+        f"results/warm_up/{source_digest.of_solver()[:16]}_{kernels}.txt"
+        for kernels in ("rings", "angles")
+    ],
     "solve all points, collect and draw": ["all"],
     "the same again: nothing to do": ["all"],
 }

@@ -60,7 +60,7 @@ class Project:
 
     def computed(self):
         """Points computed by all jobs of the last run, as their logs tell."""
-        logs = self.folder.glob("results/logs/solve_batch/continuous_bore/*.log")
+        logs = self.folder.glob("results/logs/solve/continuous_bore/*.log")
         return sum(int(n) for log in logs for n in re.findall(r"(\d+) computed", log.read_text()))
 
 
@@ -86,7 +86,7 @@ def measure(points, per_job):
         assert "Nothing to be done" in said
         rows.append(("the same again, nothing to do, s", f"{seconds:.1f}"))
         write(yaml.safe_dump(configuration(points, per_job, more=1)))
-        for log in Path(folder).glob("results/logs/solve_batch/continuous_bore/*.log"):
+        for log in Path(folder).glob("results/logs/solve/continuous_bore/*.log"):
             log.unlink()
         _, seconds, _ = project.snakemake()
         rows.append(("one more Poisson's ratio: new points computed", f"{project.computed():,}"))

@@ -29,9 +29,9 @@ from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.drift import Drift
-from microslip.sweeps import evaluate, map_rounds
+from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import PointRequests, answer
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "config.yaml"
 NAMES = (
@@ -60,13 +60,16 @@ def map_of(name, error):
 
 
 def made(map_, store):
-    """Its rounds, and the records that answer them."""
-    rounds, records = [], []
-    while not rounds or rounds[-1]["nodes"]:
-        rounds.append(map_rounds.next_round(map_, map_rounds.answers_in(rounds, records), 1))
-        asked = tqdm(rounds[-1]["requests"], desc=f"{map_.name}, round {len(rounds)}", leave=False)
-        records += [answer(request, store)[0] for request in asked]
-    return rounds, records
+    """The records of all its points."""
+    records = []
+
+    def ask(requests):
+        for request in tqdm(requests, desc=map_.name, leave=False):
+            records.append(answer(request, store)[0])
+            yield records[-1]
+
+    map_refinement.refine(map_, ask)
+    return records
 
 
 def places_of(map_, number, seed):
@@ -92,8 +95,8 @@ def _digits(low, high, share):
 def judged(name, error, options, store):
     """A line of the table."""
     map_ = map_of(name, error)
-    rounds, records = made(map_, store)
-    data = certified_map.build(map_, rounds, records)
+    records = made(map_, store)
+    data = certified_map.build(map_, records)
     drifts = map_.force is not None
     question = Drift(data) if drifts else Friction(data)
     value, across = ("velocity", "force") if drifts else ("mu_macro", "velocity")

@@ -13,11 +13,12 @@ import xarray as xr
 
 import microslip
 from microslip.app import cli, job_log
+from microslip.foundation import files
+from microslip.foundation.errors import CacheError
 from microslip.report.figures import drawing
 from microslip.report.figures.data import loaded
-from microslip.sweeps import batches, evaluate, sealed_files
-from microslip.sweeps.cache import Store
-from microslip.sweeps.sealed_files import CacheError
+from microslip.sweeps import batches, evaluate
+from microslip.sweeps.store import Store
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
@@ -64,7 +65,7 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     (tmp_path / "half").mkdir()
     (tmp_path / "half" / "points").write_text("kept")
     if name == "new":
-        monkeypatch.setattr(sealed_files.os, "fsync", full)
+        monkeypatch.setattr(files.os, "fsync", full)
     monkeypatch.setattr(evaluate, "computed", lambda _: pytest.fail("work has started"))
     with pytest.raises(CacheError) as caught:
         batches.run_batch([REQUEST], Store(tmp_path / name))
@@ -76,15 +77,15 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
         place = tmp_path / name.removesuffix("/new")
         message = f"{place} is not a folder; allowed: a folder, or a new name"
     assert out == "" and line == f"microslip point continuous-bore: --results: {message}\n"
-    files = [p.name for p in tmp_path.rglob("*") if p.is_file()]
-    assert sorted(files) == ["file", "points"]
+    names = [p.name for p in tmp_path.rglob("*") if p.is_file()]
+    assert sorted(names) == ["file", "points"]
 
 
 def test_a_place_to_write_is_tried_once(tmp_path, monkeypatch):
     store = Store(tmp_path / "new")
     store.try_writing()
     assert list(tmp_path.rglob("*")) == [store.folder]
-    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     store.try_writing()
     with pytest.raises(CacheError, match="No space left"):
         Store(tmp_path / "new").try_writing()
@@ -93,7 +94,7 @@ def test_a_place_to_write_is_tried_once(tmp_path, monkeypatch):
 def test_an_answer_that_is_there_needs_no_place_to_write(tmp_path, monkeypatch, capsys):
     command = [*POINT, "--json", "--results", str(tmp_path)]
     assert cli.main(command) == 0
-    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     assert cli.main(command) == 0
     first, second = capsys.readouterr().out.splitlines()
     assert first.partition('"solve_time_s"')[0] == second.partition('"solve_time_s"')[0]
@@ -113,18 +114,18 @@ def test_files_and_folders_that_have_changed_places_are_refused(make, part, tmp_
     make(there)
     before = sorted(tmp_path.rglob("*"))
     with pytest.raises(CacheError, match="allowed") as caught:
-        sealed_files.refuse_unusable([there / "points", there / "figures"], [there / "bore.nc"])
+        files.refuse_unusable([there / "points", there / "figures"], [there / "bore.nc"])
     assert part in one_line(caught)
     assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_what_is_not_there_yet_or_as_it_should_be_is_not_refused(tmp_path):
-    folders, files = [tmp_path / "results" / "points"], [tmp_path / "results" / "bore.nc"]
-    sealed_files.refuse_unusable(folders, files)
+    folders, datasets = [tmp_path / "results" / "points"], [tmp_path / "results" / "bore.nc"]
+    files.refuse_unusable(folders, datasets)
     assert not list(tmp_path.iterdir())
     folders[0].mkdir(parents=True)
-    files[0].touch()
-    sealed_files.refuse_unusable(folders, files)
+    datasets[0].touch()
+    files.refuse_unusable(folders, datasets)
 
 
 def test_a_log_that_cannot_be_written_is_one_line(tmp_path):
@@ -161,42 +162,11 @@ def data():
 
 
 @pytest.fixture
-def sealed(tmp_path):
+def dataset(tmp_path):
     """A dataset as the workflow leaves it."""
     path = tmp_path / "bore.nc"
-    with sealed_files.writing_beside(path, sealed=True) as beside:
-        data().to_netcdf(beside)
+    data().to_netcdf(path)
     return path
-
-
-DAMAGES = {
-    "cut off": lambda path: os.truncate(path, path.stat().st_size // 2),
-    "emptied": lambda path: os.truncate(path, 0),
-    "longer": lambda path: path.write_bytes(path.read_bytes() + b"\0"),
-    "a bit flipped": lambda path: path.write_bytes(
-        path.read_bytes()[:-50] + bytes([path.read_bytes()[-50] ^ 1]) + path.read_bytes()[-49:]
-    ),
-    "replaced": lambda path: path.write_text("velocity,mu_macro\n"),
-    "replaced, not sealed": lambda path: (
-        path.write_text("velocity,mu_macro\n"),
-        sealed_files.seal_of(path).unlink(),
-    ),
-    "a seal that is none": lambda path: sealed_files.seal_of(path).write_bytes(b"\xff\xfe"),
-    "a seal cut off": lambda path: os.truncate(sealed_files.seal_of(path), 10),
-}
-
-
-@pytest.mark.parametrize("case", DAMAGES)
-def test_damage_to_a_dataset_is_noticed(case, sealed):
-    assert not sealed_files.is_damaged(sealed)
-    DAMAGES[case](sealed)
-    assert sealed_files.is_damaged(sealed)
-
-
-def test_what_is_whole_or_absent_is_not_damaged(sealed):
-    sealed_files.seal_of(sealed).unlink()  # written by other means
-    assert not sealed_files.is_damaged(sealed)
-    assert not sealed_files.is_damaged(sealed.with_name("transverse.nc"))
 
 
 @pytest.mark.parametrize(
@@ -209,43 +179,43 @@ def test_what_is_whole_or_absent_is_not_damaged(sealed):
         lambda path: (path.unlink(), path.mkdir()),
     ],
 )
-def test_a_dataset_that_cannot_be_read_is_one_line(spoil, sealed):
-    assert loaded(sealed).identical(data())
-    spoil(sealed)
+def test_a_dataset_that_cannot_be_read_is_one_line(spoil, dataset):
+    assert loaded(dataset).identical(data())
+    spoil(dataset)
     with pytest.raises(CacheError, match="allowed: a netCDF file") as caught:
-        loaded(sealed)
-    assert f"cannot read the dataset {sealed}: " in one_line(caught)
+        loaded(dataset)
+    assert f"cannot read the dataset {dataset}: " in one_line(caught)
 
 
 FULL_DISK = """
 import resource, sys
 import numpy, xarray
 from microslip.datasets import sweep_dataset
-from microslip.sweeps import sealed_files
+from microslip.foundation.errors import CacheError
 data = xarray.Dataset({"a": ("x", numpy.random.default_rng(1).random(99999))})
 resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 try:
     sweep_dataset.write(data, sys.argv[1])
-except sealed_files.CacheError as error:
+except CacheError as error:
     print(error)
 """
 
 
 @pytest.mark.slow
-def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(sealed):
+def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     """A limit on the size of files stands for the disk: both end a write half-way."""
-    before = sealed.read_bytes()
+    before = dataset.read_bytes()
     done = subprocess.run(
-        [sys.executable, "-c", FULL_DISK, sealed],
+        [sys.executable, "-c", FULL_DISK, dataset],
         env={**os.environ, "PYTHONPATH": SOURCE},
         capture_output=True,
         text=True,
         timeout=60,
     )
     assert (done.stdout.count("\n"), done.returncode) == (1, 0)
-    assert f"cannot write {sealed}: " in done.stdout and "make room" in done.stdout
-    assert sealed.read_bytes() == before
-    assert {p.name for p in sealed.parent.iterdir()} == {"bore.nc", ".bore.nc.sha256"}
+    assert f"cannot write {dataset}: " in done.stdout and "make room" in done.stdout
+    assert dataset.read_bytes() == before
+    assert {p.name for p in dataset.parent.iterdir()} == {"bore.nc"}
 
 
 # Datasets that a figure cannot be drawn from

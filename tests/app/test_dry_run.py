@@ -5,14 +5,19 @@ import pytest
 from microslip.app import dry_run
 from microslip.config import load
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.batches import Batch
+from microslip.sweeps.store import Store
 
 AXES = {"velocity": [0.1, 1], "amplitude": [1, 2, 3]}
 
 
+def summary(jobs, folder, cores, compiles=False):
+    return dry_run.summary(jobs, folder, cores, compiles=compiles)
+
+
 def jobs(group="bore", **changed):
     grid = load.from_mapping({"sweeps": {group: AXES | changed}}).sweeps[group]
-    return [(group, list(batches.PointRequests(grid)))]
+    return [(group, Batch(list(batches.PointRequests(grid))))]
 
 
 def seconds_in(lines):
@@ -22,51 +27,52 @@ def seconds_in(lines):
 
 
 def log(folder, name, text):
-    path = folder / "logs" / "solve_batch" / "bore" / name
+    path = folder / "logs" / "solve" / "bore" / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
 
 
 def test_points_that_are_stored_are_not_counted(tmp_path):
-    (group, requests), *_ = jobs()
-    lines = dry_run.summary([(group, requests)], tmp_path, 2)
+    ((_, batch),) = jobs()
+    lines = summary(jobs(), tmp_path, 2)
     assert lines[0].startswith("To solve: 6 points, about ")
-    for request in requests[:5]:
+    for request in batch.requests[:5]:
         key = batches.key_of(request)
         Store(tmp_path).write(batches.group(request), key, {"request": request, "result": {}})
-    lines = dry_run.summary([(group, requests)], tmp_path, 2)
+    lines = summary(jobs(), tmp_path, 2)
     assert lines[0].startswith("To solve: 1 point, about ")
-    assert dry_run.summary([], tmp_path, 2) == ["To solve: no points."]
+    assert summary([], tmp_path, 2) == ["To solve: no points."]
 
 
 def test_the_time_comes_from_earlier_batches_if_there_are_any(tmp_path):
-    typical = dry_run.summary(jobs(), tmp_path, 1)
+    typical = summary(jobs(), tmp_path, 1)
     assert typical[1] == (
         "The time is derived from typical values at a tolerance of 1e-3 (benchmarks/sweep_cost.py)."
     )
     log(tmp_path, "a.log", "10 points, 10 computed in 3000.00 s of CPU time\n")
     log(tmp_path, "b.log", "not converged: bore\n40 points, 20 computed in 6000.00 s of CPU time\n")
     log(tmp_path, "c.log", "40 points, 0 computed in 0.00 s of CPU time\n")
-    lines = dry_run.summary(jobs(), tmp_path, 1)
+    lines = summary(jobs(), tmp_path, 1)
     assert lines[1] == "The time is derived from earlier batches in this folder."
     assert seconds_in(lines) == pytest.approx(6 * 300.0, rel=0.05)  # 9000 s for 30 points
 
 
 def test_jobs_share_the_cores_and_none_is_shorter_than_its_batch(tmp_path):
     log(tmp_path, "a.log", "1 points, 1 computed in 100.00 s of CPU time\n")
-    (group, requests), *_ = jobs()
-    parts = [(group, [request]) for request in requests]
-    assert seconds_in(dry_run.summary(parts, tmp_path, 1)) == pytest.approx(600, rel=0.1)
-    assert seconds_in(dry_run.summary(parts, tmp_path, 3)) == pytest.approx(200, rel=0.25)
-    assert seconds_in(dry_run.summary(jobs(), tmp_path, 3)) == pytest.approx(600, rel=0.1)
+    ((group, batch),) = jobs()
+    parts = [(group, Batch([request])) for request in batch.requests]
+    assert seconds_in(summary(parts, tmp_path, 1)) == pytest.approx(600, rel=0.1)
+    assert seconds_in(summary(parts, tmp_path, 3)) == pytest.approx(200, rel=0.25)
+    assert seconds_in(summary(jobs(), tmp_path, 3)) == pytest.approx(600, rel=0.1)
 
 
 def test_what_is_not_known_is_said(tmp_path):
-    unknown = ("accuracy", [{"kind": "trial", "motion": "bore", "velocity": "1"}] * 3)
-    lines = dry_run.summary([unknown], tmp_path, 2, compiles=True, rounds=True)
+    trials = Batch([{"kind": "trial", "motion": "bore", "velocity": "1"}] * 3)
+    map_ = ("certified_bore", None)
+    lines = summary([("accuracy", trials), map_], tmp_path, 2, compiles=True)
     assert lines[0] == "To solve: 3 other runs."
     assert lines[1] == "There is no time yet for some other runs: 3 of accuracy."
     assert "number is known at the end" in lines[2]
     assert lines[3].startswith("Compiling the solver comes first: about ")
-    (rounds,) = dry_run.summary([], tmp_path, 2, rounds=True)
-    assert rounds.startswith("To solve: the points of certified maps, ")
+    (line,) = summary([map_], tmp_path, 2)
+    assert line.startswith("To solve: the points of certified maps, ")

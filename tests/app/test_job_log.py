@@ -2,18 +2,12 @@
 
 import errno
 import logging
-import os
-import subprocess
-import sys
-import textwrap
-import traceback
 from pathlib import Path
 
 import pytest
 
-from microslip.app.job_log import job_log, plain_words
-from microslip.foundation.errors import SolverError
-from microslip.sweeps.sealed_files import CacheError
+from microslip.app.job_log import job_log
+from microslip.foundation.errors import CacheError, SolverError
 
 FULL = Path("/dev/full")
 needs_full = pytest.mark.skipif(not FULL.exists(), reason="no device that is always full")
@@ -74,47 +68,3 @@ def test_any_other_error_goes_to_the_log_in_full(tmp_path):
     with pytest.raises(SystemExit), job_log(tmp_path / "log"):
         raise FileNotFoundError(errno.ENOENT, "missing")
     assert "Traceback" in (tmp_path / "log").read_text()
-
-
-def logged(message):
-    record = logging.LogRecord("snakemake", logging.ERROR, "", 0, message, None, None)
-    assert plain_words("results")(record)
-    return record.getMessage()
-
-
-@pytest.mark.parametrize("path", [["results/logs/x.log"], []])
-def test_snakemakes_own_trouble_with_a_disk_is_said_plainly(path):
-    try:
-        raise OSError(errno.EROFS, "Read-only file system", *path)
-    except OSError as error:
-        said = "\n".join(traceback.format_exception(error))
-    where = path[0] if path else "results"
-    assert logged(said).startswith(f"Error: cannot write {where}: Read-only file system; make room")
-
-
-@pytest.mark.parametrize(
-    "message",
-    [
-        "4 of 9 steps (100%) done",
-        "OSError: [Errno 28] No space left on device: 'x'",  # says it itself
-        "Traceback\nFileNotFoundError: [Errno 2] No such file or directory: 'x'\n",
-    ],
-)
-def test_what_else_snakemake_says_is_left_alone(message):
-    assert logged(message) == message
-
-
-def test_the_line_of_progress_ends_with_the_process(tmp_path):
-    program = f"""
-        from microslip.app.progress import Watch
-        Watch({str(tmp_path / "counter")!r}).start(3)
-        raise SystemExit("no more")
-    """
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(program)],
-        env={"PYTHONPATH": os.pathsep.join(sys.path)},
-        capture_output=True,
-        text=True,
-    )
-    assert "0/3" in done.stderr
-    assert done.stderr.endswith("\n")

@@ -9,8 +9,8 @@ from stubs.sweep_stub import Solver
 from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
-from microslip.foundation import source_digest
-from microslip.sweeps import batch_files, batch_plans, batches, cache, sealed_files
+from microslip.foundation.files import write_atomically
+from microslip.sweeps import batches, stamps, store
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 
@@ -23,6 +23,17 @@ def configured(folder, name, **bore):
     return path
 
 
+def made(folder, *products):
+    """Write the files of products, and their stamps."""
+    for product in products:
+        kind, _, name = product.rpartition("/")
+        files = ["figures/{}.png"] if kind else ["{}.nc", "summaries/{}.html"]
+        paths = [folder / file.format(name) for file in files]
+        for path in paths:
+            write_atomically(path, b"content")
+        stamps.write(folder / stamps.stamp_of(product), "f00d", paths)
+
+
 @pytest.fixture
 def results(tmp_path, monkeypatch):
     """A folder with the points, the batches and a dataset of two configurations."""
@@ -30,43 +41,20 @@ def results(tmp_path, monkeypatch):
     folder = tmp_path / "results"
     for name, more in (("first", {}), ("second", {"velocity": [0.5, 3]})):
         plan = Plan(load.load(configured(tmp_path, name, **more)))
-        for batch, requests in plan.batches_in("bore").items():
-            records, _ = batches.run_batch(requests, cache.Store(folder))
-            batch_files.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
-    for file in ("bore.nc", "summaries/bore.html", "figures/fig6_bore_map.png", "pendulum.nc"):
-        with sealed_files.writing_beside(folder / file, sealed=True) as beside:
-            beside.write_bytes(b"content")
+        for file, batch in zip(
+            plan.batch_files("bore"), plan.batches_in("bore").values(), strict=True
+        ):
+            records, _ = batches.run_batch(batch.requests, store.Store(folder))
+            store.write(folder / file, records)
+    made(folder, "bore", "figures/fig6_bore_map", "pendulum")
     (folder / "notes.txt").write_text("mine")
-    (folder / "mine.nc").write_bytes(b"not sealed")
+    (folder / "mine.nc").write_bytes(b"without a stamp")
     (folder / "points" / "mine.json").write_text("{}")
     return folder
 
 
 def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-
-
-@pytest.mark.slow
-def test_what_was_planned_counts_and_a_plan_of_other_sources_is_left_over(
-    results, tmp_path, monkeypatch
-):
-    """A configuration that has grown still needs the batch of its old points."""
-    folder = batch_plans.Folder(results)
-    first = Plan(load.load(tmp_path / "first.yaml"), folder)
-    first.batches_in("bore")
-    with monkeypatch.context() as patch:
-        patch.setattr(source_digest, "of_request", lambda request: "0123" * 16)
-        before = Plan(load.load(tmp_path / "first.yaml"), folder)
-        before.batches_in("bore")
-        before.keep_planned()
-    (stale,) = results.rglob("*.plan")
-    first.keep_planned()
-    grown = configured(tmp_path, "grown", velocity=[0.5, 1, 2])
-    left = leftovers.left_over(results, [Plan(load.load(grown), folder)])
-    assert stale in left["batches"]
-    (batch,) = first.batch_files("bore")
-    assert results / batch not in left["batches"]
-    assert len(left["batches"]) == 2  # and the batch of the other configuration
 
 
 @pytest.mark.slow
@@ -77,7 +65,7 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "2 points and single runs that nothing asks for" in said
     assert "1 batches that nothing asks for" in said
-    assert "1 datasets, pages and figures" in said and "pendulum.nc" in said
+    assert "3 datasets, pages and figures" in said and "pendulum.nc" in said
     assert "nothing is removed without --delete" in said
     assert "mine" not in said
 
@@ -87,17 +75,13 @@ def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
     gone = before - names(results)
-    assert {Path(name).parts[0] for name in gone} == {
-        "points",
-        "batches",
-        "pendulum.nc",
-        ".pendulum.nc.sha256",
-    }
-    assert len(gone) == 2 + 1 + 2
-    store, plan = cache.Store(results), Plan(load.load(tmp_path / "first.yaml"))
-    for requests in plan.batches_in("bore").values():
-        for request in requests:
-            assert store.read(batches.group(request), batches.key_of(request)) is not None
+    pendulum = {"pendulum.nc", "summaries/pendulum.html", ".made/pendulum.json"}
+    assert {Path(name).parts[0] for name in gone - pendulum} == {"points", "batches"}
+    assert gone >= pendulum and len(gone) == 2 + 1 + 3
+    stored, plan = store.Store(results), Plan(load.load(tmp_path / "first.yaml"))
+    for batch in plan.batches_in("bore").values():
+        for request in batch.requests:
+            assert stored.read(batches.group(request), batches.key_of(request)) is not None
 
 
 @pytest.mark.long
@@ -127,11 +111,10 @@ def test_a_configuration_that_cannot_be_read_removes_nothing(results, tmp_path, 
 
 
 def only_one_dataset(results, tmp_path):
-    """A configuration, of another sweep, and a folder of results with a sealed dataset alone."""
+    """A configuration, of another sweep, and a folder of results with a dataset alone."""
     path = tmp_path / "one.yaml"
     path.write_text(yaml.safe_dump({"results": str(results), "sweeps": {"bore": AXES}}))
-    with sealed_files.writing_beside(results / "pendulum.nc", sealed=True) as beside:
-        beside.write_bytes(b"content")
+    made(results, "pendulum")
     return path
 
 
@@ -145,20 +128,22 @@ def test_no_folder_above_the_results_is_removed(tmp_path):
     assert results.is_dir() and not any(results.iterdir())
 
 
-@pytest.mark.parametrize("linked", ["figures", "points", "points/bore", "batches", "rounds"])
+@pytest.mark.parametrize("linked", ["figures", "points", "points/bore", "batches", ".made/figures"])
 def test_nothing_behind_a_link_is_removed(tmp_path, linked):
     results, elsewhere = tmp_path / "results", tmp_path / "elsewhere"
     configuration = only_one_dataset(results, tmp_path)
     key = "0" * 64
     inside = {
         "figures": "map.png",
+        ".made/figures": "map.json",
         "points": f"bore/00/{key}.json",
         "points/bore": f"00/{key}.json",
-        "batches": "bore/0123456789abcdef.json",
-        "rounds": "certified_bore/0123/0.json",
+        "batches": "bore/0123456789abcdef0123.jsonl",
     }
-    with sealed_files.writing_beside(elsewhere / inside[linked], sealed=True) as beside:
-        beside.write_bytes(b"content")
+    write_atomically(elsewhere / inside[linked], b"content")
+    if linked == "figures":
+        stamp = results / stamps.stamp_of("figures/map")
+        stamps.write(stamp, "f00d", [elsewhere / "map.png"])
     (results / linked).parent.mkdir(exist_ok=True)
     (results / linked).symlink_to(elsewhere)
     before = names(elsewhere)
@@ -178,15 +163,23 @@ def test_a_folder_of_results_may_be_a_link(tmp_path):
     assert elsewhere.is_dir() and not any(elsewhere.iterdir())
 
 
-def test_a_damaged_round_keeps_the_points_of_its_motion(results, tmp_path, capsys):
+@pytest.mark.parametrize("damaged", [True, False])
+def test_without_the_batch_of_a_map_the_points_of_its_motion_stay(
+    results, tmp_path, capsys, damaged
+):
     map_ = AXES | {"velocity": [0.1, 2], "adaptive": {"error": 0.1}}
     configuration = tmp_path / "map.yaml"
     given = {"results": str(results), "sweeps": {"bore": map_}}
     configuration.write_text(yaml.safe_dump(given))
-    plan = Plan(load.load(configuration))
-    file = results / plan.rounds_folder("certified_bore") / "0.json"
-    sealed_files.write_atomically(file, b'{"nodes": [')
+    (file,) = Plan(load.load(configuration)).batch_files("certified_bore")
+    if damaged:
+        write_atomically(results / file, b'{"key": ')
     points = names(results / "points")
     assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
-    assert f"{file} is damaged" in capsys.readouterr().err
-    assert names(results / "points") == points and file.exists()
+    assert f"{file} is missing or damaged" in capsys.readouterr().err
+    assert names(results / "points") == points
+    if not damaged:
+        record = {"key": "0" * 64, "request": {"kind": "point", "motion": "bore"}, "result": {}}
+        store.write(results / file, [record])
+        assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+        assert len(names(results / "points")) == 1 + 2  # which the sweep itself asks for

@@ -17,8 +17,8 @@ from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import CacheError
 from microslip.pressures.by_name import pressure_named
-from microslip.sweeps.sealed_files import CacheError
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 

@@ -7,9 +7,9 @@ from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, SAME
 
 import microslip
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import CacheError
 from microslip.si.materials import Material
 from microslip.si.predict import predict
-from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
 LAST_DIGITS = 1e-15

@@ -3,9 +3,8 @@
 import pytest
 from stubs.workflow_project import AXES, TINY
 
-from microslip.app import figure_targets
+from microslip.app.figure_targets import TARGETS, targets_of, why_no_figure
 from microslip.app.plan import Plan
-from microslip.app.sweep_command import TARGETS
 from microslip.config import load
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
@@ -17,15 +16,12 @@ def plan(**changed):
 
 def test_a_sweep_too_small_for_a_map_has_no_map():
     small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
-    assert small.figure_files(["transverse"]) == [
-        "figures/fig1_force_history.png",
-        "figures/fig1_force_history.pdf",
-    ]
-    assert "figures/fig2_transverse_map.png" in plan().figure_files(["transverse"])
+    assert small.products_of("all") == ["transverse", "figures/fig1_force_history"]
+    assert "figures/fig2_transverse_map" in plan().products_of("all")
 
 
 def test_each_figure_is_a_target_and_those_of_the_paper_by_their_numbers():
-    targets = figure_targets.targets_of(plan())
+    targets = targets_of(plan().configuration)
     paper = {f"fig{n}" for n in range(1, 7)}
     assert paper <= set(targets)
     assert all(targets[name].startswith(f"{name}_") for name in paper)
@@ -34,30 +30,56 @@ def test_each_figure_is_a_target_and_those_of_the_paper_by_their_numbers():
 
 
 def test_a_figure_without_data_says_what_it_lacks():
-    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
-    assert "needs the sweep bore" in figure_targets.why_no_figure(small, "fig6_bore_map")
-    assert "several velocities and amplitudes" in figure_targets.why_no_figure(
-        small, "fig2_transverse_map"
-    )
+    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}}).configuration
+    assert "needs the sweep bore" in why_no_figure(small, "fig6_bore_map")
+    assert "several velocities and amplitudes" in why_no_figure(small, "fig2_transverse_map")
 
 
 def test_a_job_may_be_a_point():
     alone = plan(points_per_job=1)
-    assert [len(batch) for batch in alone.batches_in("transverse").values()] == [1] * 4
-    assert [len(batch) for batch in plan().batches_in("transverse").values()] == [4]
+    assert [len(batch.requests) for batch in alone.batches_in("transverse").values()] == [1] * 4
+
+
+def changed(before, after):
+    return {name for name in before.products if before.made_of(name) != after.made_of(name)}
+
+
+def test_no_product_depends_on_the_size_of_jobs():
+    assert changed(plan(), plan(points_per_job=1)) == set()
 
 
 @pytest.mark.slow
-def test_what_a_file_is_made_of_changes_with_its_own_settings_alone():
+def test_what_a_product_is_made_of_changes_with_its_own_settings_alone():
     sweeps = {**TINY["sweeps"], "transverse": {**AXES, "amplitude": [0, 0.5, 1]}}
-    before, after = plan(), plan(sweeps=sweeps)
-    files = [*before.dataset_files(before.datasets), *before.figure_files(before.datasets)]
-    changed = {f for f in files if before.fingerprint_of(f) != after.fingerprint_of(f)}
-    assert changed == {
-        "transverse.nc",
-        "summaries/transverse.html",
-        *after.figure_files(["transverse"]),
-    }
+    pages = {"pages/explorer", "pages/explorer_all"}
+    figures = {"figures/fig1_force_history", "figures/fig2_transverse_map"}
+    assert changed(plan(), plan(sweeps=sweeps)) == {"transverse"} | figures | pages
+
+
+MOTIONS = {
+    "circle": {**AXES, "group": "motions", "motion": "elliptic:phase=90"},
+    "line": {**AXES, "group": "motions", "motion": "elliptic:forward=0.5,phase=0"},
+}
+
+
+def test_another_way_to_write_a_motion_computes_nothing():
+    before = plan(extended=MOTIONS)
+    circle = MOTIONS["circle"] | {"motion": "elliptic"}
+    after = plan(extended=MOTIONS | {"circle": circle})
+    assert after.batch_files(*after.groups) == before.batch_files(*before.groups)
+
+
+def test_a_map_with_another_error_has_another_batch_and_the_sweep_has_not():
+    def certified(**adaptive):
+        return plan(sweeps={"transverse": {**AXES, "adaptive": adaptive}})
+
+    before, after = certified(error=0.05), certified(error=0.06)
+    assert before.map_batch("certified_transverse") != after.map_batch("certified_transverse")
+    assert before.batch_files("transverse") == after.batch_files("transverse")
+    assert before.products_of("certified") == [
+        "certified_transverse",
+        "figures/certified_transverse",
+    ]
 
 
 def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():

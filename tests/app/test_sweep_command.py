@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
 
 import microslip
-from microslip.app import sweep_command, sweep_process
+from microslip.app import sweep_command
 from microslip.config import load
 
 ROOT = Path(__file__).parents[2]
@@ -33,25 +32,11 @@ def run(command, folder):
 # Help
 
 
-def test_the_targets_are_those_of_the_workflow():
-    """A rule whose files have no names to fill in is one that can be asked for by name."""
-    rules = {}
-    for path in (ROOT / "Snakefile", *(ROOT / "workflow" / "rules").glob("*.smk")):
-        parts = re.split(r"^(?:use rule \w+ as|rule) (\w+)", path.read_text(), flags=re.MULTILINE)[
-            1:
-        ]
-        rules |= dict(zip(parts[::2], parts[1::2], strict=True))
-    by_name = {name for name, text in rules.items() if not re.search(r"output:[^:]*\{\{", text)}
-    assert by_name == {*sweep_command.TARGETS, *sweep_command.RULES}
-
-
 def test_help_and_pages_name_every_target():
-    head = (ROOT / "Snakefile").read_text().partition("\nimport ")[0]
     table = (ROOT / "docs" / "how-to" / "workflow.md").read_text()
     for target in sweep_command.TARGETS:
         assert f"    {target} " in sweep_command.HELP
         assert f"`{target}`" in table
-        assert target == "all" or f"snakemake {target}" in head.replace("snakemake -j2 ", "")
 
 
 # What is refused
@@ -92,31 +77,12 @@ REFUSED = [
 SHOWN = ["empty", "not UTF-8", "UTF-16", "binary", "tabs", "a key twice", "nothing to merge"]
 
 
-class Here:
-    """Runs in this process what `microslip sweep` starts one for, up to where Snakemake begins."""
-
-    def __init__(self, command):
-        assert command[1:3] == ["-m", "microslip.app.sweep_process"]
-        self.code = sweep_process.main(command[3:])
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def wait(self):
-        return self.code
-
-
 @pytest.fixture
 def here(monkeypatch, tmp_path):
-    """Has the command start no process, in a folder of its own."""
+    """A folder of its own, in which Snakemake does not begin."""
     monkeypatch.chdir(tmp_path)
     # First, since some of its plugins start a process when they are imported.
     monkeypatch.setattr("snakemake.cli.main", lambda *_: pytest.fail("Snakemake has started"))
-    monkeypatch.setattr(sweep_command.subprocess, "Popen", Here)
-    monkeypatch.setattr(sweep_command.signal, "signal", lambda *_: None)
     return tmp_path
 
 
@@ -190,15 +156,6 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
     assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("option", ["-j0", "-c -2"])
-def test_plain_snakemake_is_told_that_it_has_no_cores(option, tmp_path):
-    done = run([*SNAKEMAKE, *option.split(), "--configfile", ROOT / "config/smoke.yaml"], tmp_path)
-    assert done.returncode == 1
-    line = done.stderr.strip().splitlines()[-1]
-    assert line.startswith("Error in --cores: ") and "allowed: a whole number >= 1" in line
-
-
 # How it ends
 
 # Hours of work for two jobs.
@@ -222,7 +179,7 @@ def session(leader):
 
 def is_job(process):
     with contextlib.suppress(OSError):
-        return b"solve_batch.py" in (process / "cmdline").read_bytes()
+        return b"solve.py" in (process / "cmdline").read_bytes()
     return False
 
 

@@ -136,10 +136,10 @@ def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
 WRITING = """
 import sys, time
 from microslip.app import terminal
-from microslip.sweeps import sealed_files
+from microslip.foundation import files
 
 def command():
-    with sealed_files.writing_beside(sys.argv[1]) as beside:
+    with files.writing_beside(sys.argv[1]) as beside:
         beside.write_text("half")
         time.sleep(1000)
 

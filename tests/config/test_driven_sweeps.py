@@ -8,8 +8,8 @@ from microslip.config import load
 from microslip.datasets import sweep_dataset
 from microslip.datasets.query import accessor
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
 from microslip.sweeps.evaluate import plain
+from microslip.sweeps.store import Store
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
 WEIGHTS = {"motion": "transverse", "amplitude": [0.5, 1], "force": [0.2, 0.6, 1.0]}

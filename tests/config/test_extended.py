@@ -17,7 +17,7 @@ from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
 from microslip.studies import registry
 from microslip.sweeps import batches as sweep
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 from microslip.theory import masing, paper
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}

@@ -33,18 +33,17 @@ def record(request, result=None):
 
 @pytest.fixture(scope="module")
 def made():
-    """A certified map of a made-up friction: its record, rounds and records."""
+    """A certified map of a made-up friction: its record, and the records of its points."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": ERROR}}
     map_ = certified_stub.configured("transverse", **axes)
-    rounds, records = certified_stub.played(map_, record)
-    return SimpleNamespace(map=map_, rounds=rounds, records=records)
+    return SimpleNamespace(map=map_, records=certified_stub.played(map_, record))
 
 
 @pytest.fixture(scope="module")
 def dataset(made, tmp_path_factory):
     """The dataset of that map, through a file."""
     path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(made.map, made.rounds, made.records))
+    certified_map.write(path, certified_map.build(made.map, made.records))
     with microslip.open_map("certified_transverse", path.parent) as opened:
         return opened.load()
 
@@ -94,7 +93,7 @@ def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
 
 def test_equal_answers_give_equal_files(made, tmp_path):
     for name, records in (("a.nc", made.records), ("b.nc", made.records[::-1])):
-        certified_map.write(tmp_path / name, certified_map.build(made.map, made.rounds, records))
+        certified_map.write(tmp_path / name, certified_map.build(made.map, records))
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
@@ -102,7 +101,7 @@ def test_a_point_that_failed_leaves_its_cells_unanswered(made):
     requests = [record["request"] for record in made.records]
     bad = next(r for r in requests if 0.01 < float(r["velocity"]) < 0.1 < float(r["amplitude"]))
     failed = [r if r["request"] != bad else record(bad, {"converged": False}) for r in made.records]
-    data = certified_map.build(made.map, made.rounds, failed)
+    data = certified_map.build(made.map, failed)
     there = float(bad["velocity"]) * 1.01, float(bad["amplitude"]) * 0.99
     answer = data.microslip.at(*there)
     assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
@@ -190,7 +189,7 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
         mu = float(masing.longitudinal(*place))
         return record(request, {"mu_macro": mu, "mu_macro_error": 0.0, "converged": True})
 
-    data = certified_map.build(map_, *certified_stub.played(map_, answered))
+    data = certified_map.build(map_, certified_stub.played(map_, answered))
     answer = Friction(data).at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
     truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()

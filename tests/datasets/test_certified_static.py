@@ -7,7 +7,6 @@ from stubs import certified_stub
 
 import microslip
 from microslip.datasets import certified_map
-from microslip.sweeps import map_rounds
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
@@ -25,12 +24,12 @@ def record(request):
 
 def built(**given):
     map_ = certified_stub.configured("transverse", **STATIC | given)
-    return certified_map.build(map_, *certified_stub.played(map_, record))
+    return certified_map.build(map_, certified_stub.played(map_, record))
 
 
 def test_only_points_at_velocity_0_are_asked():
     map_ = certified_stub.configured("transverse", **STATIC)
-    requests = map_rounds.next_round(map_, {}, 50)["requests"]
+    requests = certified_stub.first_requests(map_)
     # two patches that meet at the amplitude 1, where all of the contact slides
     assert len(requests) == 9
     assert {request["velocity"] for request in requests} == {"0"}

@@ -12,7 +12,6 @@ from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.drift import STATES, Drift
 from microslip.foundation.errors import InputError
-from microslip.sweeps import map_rounds
 from microslip.theory.drift_threshold import threshold
 
 ERROR = 5e-3
@@ -114,7 +113,7 @@ def test_a_point_that_failed_leaves_its_cell_unanswered():
 
 def test_points_are_asked_for_by_force():
     (map_,) = configured().certified.values()
-    requests = map_rounds.next_round(map_, {}, 50)["requests"]
+    requests = certified_stub.first_requests(map_)
     assert len(requests) == 45  # two patches of 5 x 5 that share the row at the amplitude 1
     assert {request["velocity"] for request in requests} == {None}
     assert {request["tolerance"] for request in requests} == {"0.0015"}
@@ -156,7 +155,7 @@ def test_a_name_that_a_certified_map_takes_is_refused():
 @pytest.mark.long
 def test_the_solver_agrees_at_places_that_no_map_has_used():
     (map_,) = configured(adaptive={"error": 3e-2}, amplitude=[0.3, 2]).certified.values()
-    data = certified_map.build(map_, *certified_stub.played(map_, certified_stub.solved))
+    data = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
     rng = np.random.default_rng(17)
     for amplitude in rng.uniform(0.3, 2.0, 6):
         force = rng.uniform(float(threshold("transverse", amplitude)), 0.95)

@@ -37,7 +37,7 @@ from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -157,8 +157,7 @@ def write_sweeps(folder, names):
         points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
         settings = given.of_sweep(name)
         sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
-        for file in (f"{name}.nc", f".{name}.nc.sha256"):
-            shutil.copy(place / file, folder)
+        shutil.copy(place / f"{name}.nc", folder)
     return store
 
 
@@ -187,7 +186,7 @@ def computed(tmp_path_factory):
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
     found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))
+    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, found))
     # made up, so that it takes nothing
     certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder

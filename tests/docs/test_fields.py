@@ -14,8 +14,8 @@ from microslip.datasets import certified_map, sweep_dataset
 from microslip.datasets.query.drift import Drift
 from microslip.si.prediction import COLUMNS
 from microslip.studies import registry
-from microslip.sweeps import batches, map_rounds
-from microslip.sweeps.cache import Store
+from microslip.sweeps import batches
+from microslip.sweeps.store import Store
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
 GRIDS = {
@@ -96,13 +96,12 @@ def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkey
 def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
     axes = GRIDS["bore"] | {"poisson": [0, 0.3], "adaptive": {"error": 0.1}}
     (map_,) = load.from_mapping({"sweeps": {"bore": axes}}).certified.values()
-    first = map_rounds.next_round(map_, {}, 50)
     flat = {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}
-    records = [
-        {"key": batches.key_of(request), "result": flat, "versions": {}}
-        for request in first["requests"]
-    ]
-    data = certified_map.build(map_, [first], records)
+
+    def answer(request):
+        return {"key": batches.key_of(request), "result": flat, "versions": {}}
+
+    data = certified_map.build(map_, certified_stub.played(map_, answer))
     assert set(section("A certified map")) == set(map(str, data.variables))
 
 

@@ -42,11 +42,7 @@ def run(program, package, **environment):
 
 def of_kernels(package):
     """What names the folder of compiled code, of the sources in a package."""
-    sources = Sources(package)
-    kernels = {
-        n for n, content in sources.contents.items() if b"microslip.foundation.compiled" in content
-    }
-    return sources.raw_digest(sources.closure(kernels))
+    return Sources(package).of_kernels()
 
 
 def test_there_are_kernels_to_speak_of():

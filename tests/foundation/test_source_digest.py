@@ -1,4 +1,4 @@
-"""Digests of sources: which files a result depends on follows from imports, as they were loaded."""
+"""Digests of sources: which files a result depends on, as they were loaded."""
 
 import ast
 import json
@@ -13,7 +13,6 @@ import pytest
 import microslip
 from microslip.foundation import source_digest
 from microslip.foundation.source_digest import Sources
-from microslip.sweeps import batches, keys
 
 PACKAGE = Path(microslip.__file__).parent
 MODULE = '''
@@ -56,12 +55,9 @@ def digest_of(tmp_path):
         ('"""What it limits."""\n', ""),
         ("\n\n\n", "\n"),
         ("factor * x", "(factor*x)"),
-        ("(x, *, factor=2.0):", "(x: float, *, factor: float = 2.0) -> float:"),
     ],
 )
-def test_layout_comments_docstrings_and_hints_of_functions_do_not_change_the_digest(
-    old, new, digest_of
-):
+def test_layout_comments_and_docstrings_do_not_change_the_digest(old, new, digest_of):
     assert old in MODULE
     assert digest_of(MODULE.replace(old, new)) == digest_of(MODULE)
 
@@ -87,45 +83,28 @@ def test_code_changes_the_digest(old, new, digest_of):
 
 FILES = {
     "__init__.py": "A = 1",
-    "sweeps/evaluate.py": "import toy.shared\ndef ask():\n    from toy.adaptive import single_run",
-    "shared.py": "",
-    "adaptive/point.py": "from toy.solver.run import solve\nif solve:\n    from .. import law",
-    "solver/run.py": "def solve():\n    from toy.models import rings",
-    "law.py": "from toy import parts",
-    "models/__init__.py": "",
-    "models/rings.py": "from ..hertz import load",
-    "models/squares.py": "",
-    "hertz.py": "",
-    "parts.py": "from toy.solver.methods import names\nimport toy.motions",
-    "adaptive/single_run.py": "from toy.adaptive import point",
-    "adaptive/stick_area.py": "",
-    "adaptive/period.py": "",
+    "foundation/errors.py": "",
+    "foundation/source_digest.py": "",
+    "sweeps/evaluate.py": "import toy.config.axes\ndef ask():\n    from toy.adaptive import point",
     "sweeps/period_codec.py": "",
-    "plot/maps.py": "from toy import hertz",
+    "sweeps/batches.py": "",
+    "config/axes.py": "",
+    "adaptive/point.py": "def solve():\n    from toy.motions.motion import Motion",
+    "solver/run.py": "",
     "solver/methods/__init__.py": "",
     "solver/methods/_shared.py": "from toy.solver.methods import _deeper",
     "solver/methods/_deeper.py": "",
     "solver/methods/one.py": "from toy.solver.methods._shared import D",
-    "solver/methods/other_one.py": "from . import _shared",
-    "solver/methods/alone.py": "import numpy",
-    "motions/__init__.py": "",
+    "motions/motion.py": "",
     "motions/sideways.py": "from toy.motions.turns import angle",
     "motions/turns.py": "",
     "pressures/hertz.py": "",
-    "pressures/power.py": "from toy.pressures.record import Pressure",
-    "pressures/record.py": "",
+    "pressures/from_file.py": "",
+    "report/figures/maps.py": "from toy.solver import run",
 }
-SOLVER = {
-    "sweeps/evaluate.py",
-    "shared.py",
-    "adaptive/point.py",
-    "solver/run.py",
-    "law.py",
-    "hertz.py",
-    "parts.py",
-}
-SOLVER |= {f"{name}/__init__.py" for name in ("models", "solver/methods", "motions")}
-SOLVER |= {"models/rings.py"}
+SOLVER = {"foundation/errors.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
+SOLVER |= {"adaptive/point.py", "solver/run.py", "motions/motion.py"}
+NONE = {"motion": "none"}
 
 
 @pytest.fixture
@@ -137,39 +116,34 @@ def package(tmp_path):
     return tmp_path / "toy"
 
 
-def test_what_counts_follows_from_imports_wherever_they_stand(package):
-    assert Sources(package).of_request("point", ()) == SOLVER
-
-
 @pytest.mark.parametrize(
-    ("kind", "named", "more"),
+    ("request_", "more"),
     [
-        ("probe", [], {"adaptive/single_run.py"}),
-        ("patches", [], {"adaptive/stick_area.py"}),
-        ("period", [], {"adaptive/period.py", "sweeps/period_codec.py"}),
-        ("point", [("solver/methods", "alone")], {"solver/methods/alone.py"}),
-        ("point", [("solver/methods", "none_of_these")], set()),
-        ("point", [("motions", "turns")], {"motions/turns.py"}),
-        ("point", [("motions", "sideways")], {"motions/sideways.py", "motions/turns.py"}),
-        ("point", [("pressures", "power")], {"pressures/power.py", "pressures/record.py"}),
+        (NONE, set()),
+        ({"motion": "turns"}, {"motions/turns.py"}),
+        ({"motion": "sideways:angle=3"}, {"motions/sideways.py", "motions/turns.py"}),
+        (NONE | {"pressure": "hertz"}, {"pressures/hertz.py"}),
+        (NONE | {"pressure": "file:sha256=0123"}, {"pressures/from_file.py"}),
         (
-            "point",
-            [("solver/methods", "other_one")],
-            {
-                "solver/methods/_deeper.py",
-                "solver/methods/_shared.py",
-                "solver/methods/other_one.py",
-            },
+            NONE | {"method": "one"},
+            {f"solver/methods/{name}.py" for name in ("one", "_shared", "_deeper")},
         ),
+        ({}, {f"motions/{name}.py" for name in ("motion", "sideways", "turns")}),
     ],
 )
-def test_a_request_depends_on_what_it_names_and_on_nothing_else_of_its_kind(
-    kind, named, more, package
+def test_a_result_depends_on_the_physics_rooms_and_the_files_that_its_request_names(
+    request_, more, package
 ):
-    found = Sources(package).of_request(kind, named)
-    asks = {"sweeps/evaluate.py", "shared.py"}
-    assert found - SOLVER == more - SOLVER
-    assert found >= more | asks
+    packages = {"solver/methods/__init__.py"}
+    found = Sources(package).of_request(request_)
+    assert found - packages == SOLVER | more
+
+
+def test_a_product_depends_on_what_it_imports(package):
+    assert Sources(package).closure(["report/figures/maps.py"]) == {
+        "report/figures/maps.py",
+        "solver/run.py",
+    }
 
 
 def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
@@ -183,7 +157,7 @@ def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
     (package / "folder.py").mkdir()
     after = Sources(package)
     assert after.contents.keys() == names
-    assert after.digest(after.of_request("point", ())) == Sources(package).digest(SOLVER)
+    assert after.of_request(NONE) == Sources(package).of_request(NONE)
 
 
 @pytest.mark.slow
@@ -242,21 +216,11 @@ for request in json.loads(sys.argv[1]):
         sys.exit(f"no answer to {request}")
 """
 NAMES = ("solver/methods/", "motions/", "pressures/")
-BY_LISTING = {
-    "theory/indenter_pressure.py",
-    "theory/masing.py",
-    "theory/oscillating_load.py",
-    "theory/paper.py",
-    "foundation/csv_text.py",
-    "foundation/named_files.py",
-    *source_digest.NAMES_ONLY,
-}
-"""Loaded with other motions and pressures, when these are listed."""
 
 
 @pytest.mark.slow
 def test_all_that_answering_a_request_loads_counts_for_it():
-    """What Python really loads is held against what follows from reading the imports."""
+    """What Python really loads is held against the rule of the rooms."""
     asked = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
     for request in asked:
         if request["kind"] == "field":
@@ -265,46 +229,13 @@ def test_all_that_answering_a_request_loads_counts_for_it():
         [sys.executable, "-c", LOADED_BY, json.dumps(asked)], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
+    naming = source_digest.NAMING | {"sweeps/__init__.py", "config/__init__.py", "config/axes.py"}
+    naming |= {"config/records.py"}  # constants, and classes that no answer holds
     for request, line in zip(asked, done.stdout.splitlines(), strict=True):
         files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(line)}
         listed = {f for f in files if f.startswith(NAMES) and "__init__" not in f}
         assert "sweeps/evaluate.py" in files
-        assert files - listed - BY_LISTING <= source_digest.files_of_request(request), request
-
-
-def test_what_reads_a_file_counts_for_its_pressure():
-    named = {"kind": "point", "motion": "bore", "pressure": "file:sha256=0123456789abcdef"}
-    files = source_digest.files_of_request(named)
-    assert {"pressures/from_file.py", "pressures/grid.py", "pressures/grid_csv.py"} <= files
-
-
-def test_every_kind_of_request_has_its_digest():
-    assert source_digest.ANSWERED_BY.keys() == batches.FOLDERS.keys()
-    for modules in source_digest.ANSWERED_BY.values():
-        assert all((PACKAGE / f"{module}.py").is_file() for module in modules)
-
-
-@pytest.mark.parametrize("name", ["sweeps/evaluate.py", "datasets/pressure_limits.py"])
-def test_modules_that_were_in_no_digest_are_in_one(name):
-    of_point = source_digest.files_of_request({"kind": "point", "motion": "bore"})
-    of_dataset = source_digest.LOADED.closure(
-        ["datasets/sweep_dataset.py", "datasets/point_variables.py", "datasets/theory_limits.py"]
-    )
-    assert name in of_point | of_dataset
-
-
-def test_other_results_stay_when_what_only_some_depend_on_is_edited():
-    of_map = source_digest.files_of_request({"kind": "point", "motion": "bore"})
-    assert not of_map & {
-        "adaptive/history.py",
-        "adaptive/period.py",
-        "adaptive/single_run.py",
-        "adaptive/stick_area.py",
-        "sweeps/period_codec.py",
-        "datasets/sweep_dataset.py",
-    }
-    assert not any(name.startswith("report/") for name in of_map)
-    assert "motions/transverse.py" not in of_map
+        assert files - listed - naming <= source_digest.LOADED.of_request(request), request
 
 
 # What was parsed is kept beside the compiled modules
@@ -312,13 +243,13 @@ def test_other_results_stay_when_what_only_some_depend_on_is_edited():
 
 def test_a_second_process_parses_only_what_was_edited(package, monkeypatch):
     before = Sources(package).digest(SOLVER)
-    (package / "law.py").write_text("from toy import parts\nA = 2")
+    (package / "solver/run.py").write_text("A = 2")
     parsed = []
     monkeypatch.setattr(
         "ast.parse", lambda content, parse=ast.parse: parsed.append(content) or parse(content)
     )
     after = Sources(package).digest(SOLVER)
-    assert after != before and parsed == [b"from toy import parts\nA = 2"]
+    assert after != before and parsed == [b"A = 2"]
     assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
 
 
@@ -334,7 +265,7 @@ def test_a_damaged_file_counts_as_empty_and_is_replaced(damage, package):
 
 def test_other_code_that_reads_sources_parses_them_again(package, monkeypatch):
     first = Sources(package).digest(SOLVER)
-    monkeypatch.setattr(source_digest, "_parse", lambda content: source_digest.Parsed("", [], []))
+    monkeypatch.setattr(source_digest, "_parse", lambda content: ("", []))
     assert Sources(package).digest(SOLVER) == first
     monkeypatch.setattr(source_digest, "_READER", "other code")
     assert Sources(package).digest(SOLVER) != first
@@ -351,28 +282,37 @@ def test_where_nothing_can_be_written_nothing_is_kept(package):
 def test_a_digest_is_of_the_sources_as_they_were_read(package):
     sources = Sources(package)
     before = sources.digest(SOLVER)
-    (package / "law.py").write_text("edited = True")
+    (package / "solver/run.py").write_text("edited = True")
     assert sources.digest(SOLVER) == before == sources.digest(SOLVER)
-    assert sources.edited(SOLVER) == ["law.py"]
+    assert sources.edited() == "solver/run.py"
     assert Sources(package).digest(SOLVER) != before
 
 
-def test_a_comment_is_no_edit_and_a_removed_or_half_written_file_is_one(package):
+@pytest.mark.parametrize(
+    ("name", "text", "edited"),
+    [
+        ("solver/run.py", "# why", False),
+        ("report/figures/maps.py", "A = 2", False),
+        ("solver/run.py", "def load(", True),
+        ("solver/run.py", None, True),
+    ],
+)
+def test_code_of_the_physics_rooms_alone_is_an_edit(name, text, edited, package):
     sources = Sources(package)
-    (package / "law.py").write_text(FILES["law.py"] + "  # why")
-    assert sources.edited(SOLVER) == []
-    (package / "hertz.py").write_text("def load(")
-    (package / "solver/run.py").unlink()
-    assert sources.edited(SOLVER) == ["hertz.py", "solver/run.py"]
+    (package / name).unlink()
+    if text is not None:
+        (package / name).write_text(text)
+        os.utime(package / name, (1, 1))
+    assert sources.edited() == (name if edited else None)
 
 
 def test_a_file_that_is_no_python_counts_by_its_bytes_and_imports_nothing(package):
     digests = []
     for text in ("def load(", "def load(x", "\0"):
-        (package / "hertz.py").write_text(text)
+        (package / "solver/run.py").write_text(text)
         sources = Sources(package)
-        assert sources.closure(["hertz.py"]) == {"hertz.py"}
-        digests.append(sources.digest(["hertz.py"]))
+        assert sources.closure(["solver/run.py"]) == {"solver/run.py"}
+        digests.append(sources.digest(["solver/run.py"]))
     assert len(set(digests)) == 3
 
 
@@ -413,12 +353,3 @@ def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path)
     assert first[1:] == [1, []]
     assert second[:2] == [first[0], 0]
     assert "choice.py was edited" in second[2][0]
-
-
-def test_a_batch_that_was_planned_with_other_sources_is_refused(tmp_path, monkeypatch):
-    request = {"kind": "point", "motion": "bore", "velocity": "1", "amplitude": "1"}
-    name = batches.name_of_batch([request])
-    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
-    with pytest.raises(batches.SourcesEdited, match="run again"):
-        batches.run_batch([request], store=None, name=name)
-    assert keys.result_key(request, "a") != keys.result_key(request, "b")

@@ -12,7 +12,7 @@ from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 from microslip.config import load
 from microslip.report.explorer import explorer, page, payload
 from microslip.sweeps import period_codec
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 from microslip.theory.catalogue import FORMS
 
 
@@ -201,15 +201,15 @@ def test_all_assets_are_there():
 @pytest.mark.long
 def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(finished, project):
     assert "explorer" not in jobs_in(finished.said)
-    assert jobs_in(project.run("explorer")) == {"solve_batch": 2, "explorer": 1}
+    assert jobs_in(project.run("explorer")) == {"solve": 2, "explore": 1, "explorer": 1}
     results = project.folder / "results"
     text = (results / "explorer.html").read_text(encoding="utf-8")
     assert '"name":"bore"' in text
     assert len(list(results.glob("periods/*/*/*.json"))) == 4
-    assert "bore: 2 periods, all converged" in (results / "logs" / "explorer.log").read_text()
+    assert "bore: 2 periods, all converged" in (results / "logs/explore/explorer.log").read_text()
     assert project.planned("explorer") == {}
     project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
-    assert project.planned("explorer") == {"explorer": 1}
+    assert project.planned("explorer") == {"explore": 1, "explorer": 1}
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from stubs.unpacked_period import unpacked
 
 from microslip.report.explorer.explorer import MAPS
 from microslip.report.explorer.page import write
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 pytestmark = [

@@ -42,7 +42,7 @@ def made(map_, friction, failed=None):
             result = {"converged": False}
         return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
-    return certified_map.build(map_, *certified_stub.played(map_, answered))
+    return certified_map.build(map_, certified_stub.played(map_, answered))
 
 
 @pytest.fixture(scope="module", params=["transverse", "bore"])

@@ -90,7 +90,7 @@ def rises(velocity, amplitude):
 
 
 def made(map_, answered):
-    return certified_map.build(map_, *certified_stub.played(map_, answered))
+    return certified_map.build(map_, certified_stub.played(map_, answered))
 
 
 def record(request, result):

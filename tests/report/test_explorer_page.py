@@ -57,7 +57,7 @@ def certified():
     """A certified map of transverse oscillation, of a made-up friction."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
     map_ = certified_stub.configured("transverse", **axes)
-    return certified_map.build(map_, *certified_stub.played(map_, smooth))
+    return certified_map.build(map_, certified_stub.played(map_, smooth))
 
 
 @pytest.fixture(scope="module")

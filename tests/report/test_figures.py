@@ -17,8 +17,8 @@ from stubs import figures_stub as stub
 from stubs import fit_stub
 from stubs.figures_stub import artists
 
+from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing
-from microslip.sweeps.sealed_files import CacheError
 
 pytestmark = pytest.mark.slow  # drawing takes a second or two
 

@@ -1,11 +1,11 @@
-"""The rounds of a certified map, played in one process without a workflow."""
+"""A certified map, refined in one process without a workflow."""
 
 import numpy as np
 import xarray as xr
 
 from microslip.config import load
 from microslip.datasets import certified_map
-from microslip.sweeps import evaluate, map_rounds
+from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
 from microslip.theory.drift_threshold import threshold
 
@@ -20,13 +20,24 @@ def configured(motion, **given):
 
 
 def played(map_, answer):
-    """Its rounds and the records that answer them; answer: from a request to its record."""
-    rounds, records = [], []
-    while not rounds or rounds[-1]["nodes"]:
-        known = map_rounds.answers_in(rounds, records)
-        rounds.append(map_rounds.next_round(map_, known, 50))
-        records += [answer(request) for request in rounds[-1]["requests"]]
-    return rounds, records
+    """The records of all its points; answer: from a request to its record."""
+    records = []
+
+    def ask(requests):
+        records.extend(map(answer, requests))
+        return records[-len(requests) :]
+
+    map_refinement.refine(map_, ask)
+    return records
+
+
+def first_requests(map_):
+    """Requests of the first round, which is the only one of what is the same everywhere."""
+    result = {"mu_macro": 0.5, "velocity": 0.5, "converged": True}
+    result |= {"mu_macro_error": 0.0, "velocity_error": 0.0}
+    return [
+        r["request"] for r in played(map_, lambda request: {"request": request, "result": result})
+    ]
 
 
 def bore(**given) -> xr.Dataset:
@@ -40,7 +51,7 @@ def bore(**given) -> xr.Dataset:
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | given)
-    return certified_map.build(map_, *played(map_, answer))
+    return certified_map.build(map_, played(map_, answer))
 
 
 def drift(force, amplitude):
@@ -65,7 +76,7 @@ def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
 
     drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | given}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
-    return certified_map.build(map_, *played(map_, answer))
+    return certified_map.build(map_, played(map_, answer))
 
 
 def solved(request):

@@ -4,7 +4,7 @@ import numpy as np
 from stubs.studies_stub import SWEEPS
 
 from microslip.config import load
-from microslip.sweeps import keys
+from microslip.sweeps import batches
 from microslip.theory import paper
 
 CLAIMS = {
@@ -96,7 +96,7 @@ def answered(results=result):
 
     def answer(request):
         seen.append(request)
-        key = keys.result_key(request, "d")
+        key = batches.result_key(request, "d")
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, seen

@@ -3,7 +3,7 @@
 from microslip.config import load
 from microslip.foundation import canonical
 from microslip.studies import registry
-from microslip.sweeps import keys
+from microslip.sweeps import batches
 from microslip.theory import paper
 
 SWEEPS = {"bore": {"velocity": [1], "amplitude": [1]}}
@@ -53,7 +53,7 @@ def answered(results):
 
     def answer(request):
         seen.append(canonical.canonical_json(request))
-        key = keys.result_key(request, "d")
+        key = batches.result_key(request, "d")
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
     return answer, seen

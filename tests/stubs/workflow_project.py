@@ -37,8 +37,7 @@ TINY = {
     },
     "points_per_job": 4,  # every job takes a second or two to start
 }
-ALL_JOBS = {"warm_up": 1, "warm_up_angles": 1, "solve_batch": 5, "collect": 3}
-ALL_JOBS |= {"draw_figure": 6, "all": 1}
+ALL_JOBS = {"warm_up": 2, "solve": 6, "collect": 3, "draw": 6, "all": 1}
 
 
 def jobs_in(said):

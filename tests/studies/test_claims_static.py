@@ -13,7 +13,7 @@ from microslip.adaptive.stick_area import patches
 from microslip.models.contact import StepFailure
 from microslip.studies.claims import claims, static_limits
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 from microslip.theory import hertz
 from microslip.theory import paper as theory
 

@@ -8,7 +8,7 @@ from microslip.datasets import netcdf, sweep_dataset
 from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 
 @pytest.fixture(scope="module")

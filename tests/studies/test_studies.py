@@ -19,6 +19,7 @@ import microslip
 from microslip.adaptive import single_run
 from microslip.adaptive.choice import choose_model
 from microslip.config import load, settings
+from microslip.foundation.canonical import canonical_json
 from microslip.foundation.errors import SolverError
 from microslip.models.contact import StepFailure
 from microslip.models.registry import MODELS
@@ -30,8 +31,8 @@ from microslip.studies import requests as study_requests
 from microslip.studies.accuracy import accuracy_cost, fronts
 from microslip.studies.requests import Point
 from microslip.studies.stability import stability
-from microslip.sweeps import batches, evaluate, keys
-from microslip.sweeps.cache import Store
+from microslip.sweeps import batches, evaluate
+from microslip.sweeps.store import Store
 
 # Ladders: what is run where
 
@@ -113,8 +114,8 @@ def test_references_are_ordinary_points_and_tight():
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     found = [json.loads(text) for text in asked(study, configured())]
-    names = {keys.result_key(request, "d") for request in found}
-    assert len(names) == len({keys.canonical_json(request) for request in found})
+    names = {batches.result_key(request, "d") for request in found}
+    assert len(names) == len({canonical_json(request) for request in found})
     for request in found:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
         assert batches.label(request)
@@ -127,7 +128,7 @@ def test_another_method_adds_jobs_and_changes_none(study):
     def cuts(methods):
         changed = {"methods": methods}
         long, short = registry.pieces(study, configured(changed, changed))
-        return {keys.canonical_json(piece) for piece in long + short}
+        return {canonical_json(piece) for piece in long + short}
 
     before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
     assert before < after
@@ -139,7 +140,7 @@ def test_another_point_adds_requests_and_changes_none():
     longer = configured({"points": ACCURACY["points"] | more})
     asked = [
         {
-            keys.canonical_json(request)
+            canonical_json(request)
             for part in registry.pieces("accuracy", one)
             for piece in part
             for request in piece

@@ -1,11 +1,7 @@
 """Sweeps: requests, batches of them, and answers from the store or the solver."""
 
 import errno
-import io
 import json
-import math
-from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,13 +10,12 @@ from stubs.sweep_stub import EFFORT, Solver
 import microslip
 from microslip.config import load
 from microslip.foundation import source_digest
-from microslip.foundation.errors import InputError, SolverError
+from microslip.foundation.errors import CacheError, InputError, SolverError
 from microslip.models.contact import StepFailure
 from microslip.solver.budget import Spent
-from microslip.sweeps import batch_files, evaluate, sealed_files
 from microslip.sweeps import batches as sweep
-from microslip.sweeps.cache import Store
-from microslip.sweeps.sealed_files import CacheError
+from microslip.sweeps import evaluate
+from microslip.sweeps.store import Store, is_final, write
 
 
 def configured(**transverse):
@@ -63,42 +58,71 @@ def test_single_runs_for_the_figures():
     assert sweep.history_requests(configured(), "bore") == []
 
 
-@pytest.mark.parametrize("size", [1, 4, 6, 50])
-def test_batches_hold_every_request_once(size):
-    requests = requests_of()
-    batches = sweep.batches(requests, size)
-    assert [r for batch in batches.values() for r in batch] == requests
-    assert len(batches) == math.ceil(6 / size)
+def points_of(**transverse):
+    return sweep.PointRequests(configured(**transverse).sweeps["transverse"])
 
 
-def test_a_batch_is_named_by_what_it_answers(monkeypatch):
-    requests = requests_of()
-    names = sweep.batches(requests, 6).keys()
-    assert sweep.batches(requests, 6).keys() == names
-    longer = requests_of(amplitude=[0, 1, 2, 3])
-    assert sweep.batches(requests, 2).keys() < sweep.batches(longer, 2).keys()
+@pytest.mark.parametrize("size", [1, 2, 4, 6, 50])
+def test_batches_of_points_hold_every_request_once_and_in_order(size):
+    for points in (points_of(), points_of(velocity=list(range(1, 30)), poisson=[0, 0.3])):
+        cut = sweep.batches_of_points(points, size)
+        assert [request for batch in cut for request in batch.requests] == list(points)
+        assert len({batch.name for batch in cut}) == len(cut)
+
+
+def test_the_mean_size_of_batches_is_the_one_asked_for():
+    points = points_of(amplitude=list(range(1000)))
+    for size in (1, 10, 100):
+        assert len(sweep.batches_of_points(points, size)) == pytest.approx(2000 / size, rel=0.5)
+    assert len(sweep.batches_of_requests(list(points), 10)) == pytest.approx(200, rel=0.5)
+
+
+def names_of(size, **transverse):
+    return {batch.name for batch in sweep.batches_of_points(points_of(**transverse), size)}
+
+
+@pytest.mark.parametrize("amplitude", [0.5, 11.5, 40])
+def test_an_amplitude_more_changes_the_block_that_it_falls_into(amplitude):
+    axis = [float(value) for value in range(1, 40)]
+    before, after = (names_of(8, amplitude=values) for values in (axis, [*axis, amplitude]))
+    assert len(before) > 5
+    assert 1 <= len(after - before) <= 2 and len(before - after) <= 1
+
+
+def test_a_velocity_more_changes_a_part_of_each_long_row():
+    axis = [float(value) for value in range(1, 200)]
+    before, after = (names_of(10, velocity=values) for values in (axis, [*axis, 77.5]))
+    assert len(before) > 30
+    assert 3 <= len(after - before) <= 6  # three rows
+
+
+def test_a_batch_is_named_by_its_requests_and_the_code(monkeypatch):
+    (batch,) = sweep.batches_of_points(points_of(amplitude=[1]), 50)
+    assert sweep.Batch(**json.loads(json.dumps(batch._asdict()))).name == batch.name
+    name = batch.name
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
-    assert sweep.batches(requests, 6).keys() != names
+    assert batch.name != name
 
 
-def test_what_a_batch_holds_is_what_the_solver_said(monkeypatch, store, tmp_path):
-    Solver(monkeypatch)
-    requests = requests_of()
-    cut = list(sweep.batches(requests, 4).values())
-    paths = [tmp_path / f"{i}.json" for i in range(len(cut))]
-    for path, part in zip(paths, cut, strict=True):
-        batch_files.write_batch(path, sweep.run_batch(part, store)[0])
-    alone = [sweep.answer(request, store)[0] for request in requests]
-    assert list(sweep.records_for(requests, paths)) == alone
-    answer = sweep.lookup(sweep.records_in(paths))
-    assert [answer(request) for request in reversed(requests)] == alone[::-1]
-    # the order of batches, and of requests in them, does not matter, nor what else they hold
-    assert list(sweep.records_for(requests[4:0:-1], paths[::-1])) == alone[4:0:-1]
-    with pytest.raises(sealed_files.CacheError, match="no batch answers .* amplitude 2"):
-        list(sweep.records_for(requests, paths[:1]))
-    paths[1].write_bytes(paths[1].read_bytes()[:-9])
-    with pytest.raises(sealed_files.CacheError, match="is damaged; run again"):
-        list(sweep.records_for(requests, paths))
+REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
+)
+def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value):
+    key = sweep.result_key(REQUEST, "d")
+    assert sweep.result_key({**REQUEST, name: value}, "d") != key
+    assert sweep.result_key(REQUEST, "e") != key
+    assert sweep.result_key(dict(reversed(REQUEST.items())), "d") == key
+
+
+def test_swapped_values_and_the_format_of_records_count(monkeypatch):
+    key = sweep.result_key(REQUEST, "d")
+    assert sweep.result_key({**REQUEST, "velocity": "1", "amplitude": "0.1"}, "d") != key
+    monkeypatch.setattr(sweep, "RECORD_FORMAT", 99)
+    assert sweep.result_key(REQUEST, "d") != key
 
 
 def failing_at(monkeypatch, error, amplitude=2.0):
@@ -112,33 +136,6 @@ def failing_at(monkeypatch, error, amplitude=2.0):
         return solve(motion, velocity, place, **settings)
 
     monkeypatch.setattr("microslip.solve", fail)
-
-
-def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, store, tmp_path):
-    failing_at(monkeypatch, SolverError("stalled"))
-    records, done = sweep.run_batch(requests_of(), store)
-    path = tmp_path / "batch.json"
-    batch_files.write_batch(path, records, done["final"])
-    assert batch_files.read_batch(path) == records
-    assert batch_files.why_not_whole(path) == "it has points that failed"
-
-
-def test_the_file_of_a_batch_is_not_opened_for_each_of_its_records(monkeypatch, store, tmp_path):
-    Solver(monkeypatch)
-    requests = requests_of()
-    paths = [tmp_path / "0.json", tmp_path / "1.json"]
-    for path, part in zip(paths, (requests[:3], requests[3:]), strict=True):
-        batch_files.write_batch(path, sweep.run_batch(part, store)[0])
-    opened, open_file = [], io.open
-
-    def counted(file, *arguments, **settings):
-        opened.append(Path(file))
-        return open_file(file, *arguments, **settings)
-
-    monkeypatch.setattr("builtins.open", counted)
-    monkeypatch.setattr(io, "open", counted)  # what pathlib calls
-    assert len(list(sweep.records_for(requests, paths))) == 6
-    assert max(Counter(opened).values()) <= 2  # once for the places, once for the content
 
 
 BATCH_DAMAGE = {
@@ -155,16 +152,27 @@ BATCH_DAMAGE = {
 @pytest.mark.parametrize("kind", BATCH_DAMAGE)
 def test_a_damaged_batch_is_noticed(kind, monkeypatch, store, tmp_path):
     Solver(monkeypatch)
-    path = tmp_path / "batch.json"
-    batch_files.write_batch(path, sweep.run_batch(requests_of(velocity=[0.5]), store)[0])
-    assert batch_files.why_not_whole(path) == ""
+    path = tmp_path / "batch.jsonl"
+    records = sweep.run_batch(requests_of(velocity=[0.5]), store)[0]
+    write(path, records)
+    assert is_final(path)
+    assert list(sweep.records_in([path, path])) == records * 2
     whole = path.read_bytes()
     path.write_bytes(BATCH_DAMAGE[kind](whole))
     assert path.read_bytes() != whole
-    assert batch_files.why_not_whole(path) == "it is damaged"
-    assert batch_files.read_batch(path) is None
-    with pytest.raises(sealed_files.CacheError, match="is damaged; run again"):
+    assert not is_final(path)
+    with pytest.raises(CacheError, match="is damaged; run again"):
         list(sweep.records_in([path]))
+
+
+def test_a_batch_with_a_point_that_failed_is_readable_and_not_final(monkeypatch, store, tmp_path):
+    failing_at(monkeypatch, SolverError("stalled"))
+    records, done = sweep.run_batch(requests_of(), store)
+    path = tmp_path / "batch.jsonl"
+    write(path, records, done["final"])
+    assert list(sweep.records_in([path])) == records
+    assert not is_final(path)
+    assert not is_final(tmp_path / "none.jsonl")
 
 
 def test_only_what_the_store_lacks_is_computed(monkeypatch, store):

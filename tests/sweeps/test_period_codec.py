@@ -8,9 +8,8 @@ from stubs.unpacked_period import unpacked
 
 import microslip
 from microslip.adaptive.period import NoPeriodicState
-from microslip.foundation import source_digest
 from microslip.sweeps import batches, evaluate, period_codec
-from microslip.sweeps.cache import Store
+from microslip.sweeps.store import Store
 
 POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
 POINTS += [("bore", "0.05", "0.7", "0.3"), ("zigzag", "0.2", "1", "0")]
@@ -53,10 +52,3 @@ def test_where_there_is_no_state_a_result_says_so(monkeypatch):
     monkeypatch.setattr("microslip.period", none, raising=False)
     result = evaluate.computed(asked(POINTS[0]))
     assert result == {"converged": False, "reason": "velocity = 0.1: no periodic state"}
-
-
-def test_how_periods_are_packed_counts_for_them_and_for_nothing_else():
-    requests = [{"kind": kind, "motion": "bore"} for kind in ("period", "point")]
-    of_period, of_point = map(source_digest.files_of_request, requests)
-    assert "sweeps/period_codec.py" in of_period - of_point
-    assert {name.split("/")[0] for name in of_period - of_point} == {"adaptive", "sweeps"}

@@ -9,9 +9,9 @@ import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.foundation.errors import InputError, SolverError
+from microslip.foundation.files import CacheError
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
-from microslip.sweeps.sealed_files import CacheError
+from microslip.sweeps.store import Store
 
 PLACE = ("bore", 0.5, 1.0)
 SETTINGS = {"poisson": 0.3, "tolerance": 1e-2}

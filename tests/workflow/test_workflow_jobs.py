@@ -29,13 +29,13 @@ def loaded(script, more="pass"):
 
 
 def test_a_job_loads_no_library_before_it_has_something_to_solve():
-    assert not (HEAVY | {"numpy", "scipy", "numba"}) & loaded("solve_batch")
+    assert not (HEAVY | {"numpy", "scipy", "numba"}) & loaded("solve")
 
 
 @pytest.mark.slow
 def test_a_job_that_solves_loads_nothing_that_draws_or_collects():
     solve = "import microslip; microslip.solve('bore', 0.5, 1.0, model='rigid', tolerance=0.01)"
-    found = loaded("solve_batch", solve)
+    found = loaded("solve", solve)
     assert "numba" in found
     assert not HEAVY & found
 
@@ -43,4 +43,4 @@ def test_a_job_that_solves_loads_nothing_that_draws_or_collects():
 @pytest.mark.long
 def test_collecting_loads_nothing_that_draws_and_drawing_nothing_that_solves():
     assert not {"matplotlib", "plotly", "numba"} & loaded("collect")
-    assert not {"plotly", "numba"} & loaded("draw_figure")
+    assert not {"plotly", "numba"} & loaded("draw")

@@ -8,7 +8,6 @@ import pytest
 import yaml
 
 from microslip.config import load
-from microslip.foundation import source_digest
 from microslip.report import dataset_page
 from microslip.report.figures import drawing
 
@@ -32,8 +31,9 @@ def test_every_figure_has_a_caption_of_its_own(figure):
 @pytest.mark.parametrize(
     "wildcards",
     [
-        {"sweep": "bore"},
-        {"sweep": "circle"},
+        {"dataset": "bore"},
+        {"dataset": "circle"},
+        {"dataset": "certified_bore"},
         {"dataset": "stability"},
         {"dataset": "claims"},
         {"dataset": "propulsion"},
@@ -87,11 +87,3 @@ def test_the_layout_is_that_of_the_catalogue():
     assert usage["software-stack-deployment"]
     assert (ROOT / "workflow" / "Snakefile").is_file()
     assert list((ROOT / "workflow" / "rules").glob("*.smk"))
-
-
-def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):
-    names = ("adaptive/point.py", "bundle/workflow/scripts/collect.py", "app/sweep_command.py")
-    for name in names:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("A = 1\n")
-    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"adaptive/point.py"}

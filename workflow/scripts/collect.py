@@ -1,42 +1,73 @@
-"""Assemble the dataset of one sweep from its batches.
+"""Assemble a dataset from its batches.
 
-Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases in rad).
-  transverse.nc       dims (amplitude, velocity)
-  bore.nc             dims (amplitude, velocity)
-  continuous_bore.nc  dims (velocity)
-  any of `extended`   dims (amplitude, velocity), or (velocity) if its motion is steady
-  any of `drives`     the same, the force in place of the velocity where one pulls, after the mass,
-                      the damping and the stiffness, those of them that are axes
-What has other axes is in groups of the file, see dataset.GROUPS: limits on fine axes, single runs.
-A sweep with a list of Poisson's ratios has the dim poisson before these. Beside it an HTML
-page that sums it up.
+Output: netCDF-4, CF conventions; dimensionless (units 1, phases in rad) except for the seconds and
+bytes of studies.
+  NAME.nc            of a sweep: dims (amplitude, velocity), as far as the motion has them, after
+                     mass, damping, stiffness, poisson where these are axes; force for velocity
+  certified_NAME.nc  dims point, cell, node
+  accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile
+  stability.nc       dims (method, case); group axes
+  propulsion.nc      dims (line, point)
+  claims.nc          dim claim; groups parts, checks, runs, static limit, patches
+What has other axes is in groups of the file.  Beside it an HTML page that sums it up.
 """
+
+import logging
 
 import xarray as xr
 
 from microslip.app.job_log import job_log
 from microslip.app.plan import Plan
 from microslip.config import load
-from microslip.datasets import sweep_dataset
-from microslip.report import dataset_page
-from microslip.sweeps import batches, sealed_files
+from microslip.datasets import certified_map, sweep_dataset
+from microslip.report import dataset_page, study_page
+from microslip.studies import registry
+from microslip.sweeps import batches, stamps
 
-name = snakemake.wildcards.sweep
+name, path = snakemake.wildcards.dataset, snakemake.output[0]
 
-with job_log(snakemake.log[0]) as log:
-    configuration = load.from_mapping(snakemake.config, ask_solver=False)
-    Plan(configuration).refuse_edited(f"{name}.nc", snakemake.params.code)
-    grid = configuration.grids[name]
-    sweep_dataset.write_sweep(
-        snakemake.output[0],
-        grid,
-        batches.records_for(batches.PointRequests(grid), snakemake.input.batches),
-        list(batches.records_in(snakemake.input.histories)),
-        configuration.of_sweep(name),
-    )
-    with xr.open_dataset(snakemake.output[0]) as data:
+
+def write_sweep(grid, paths) -> list[str]:
+    """Write the dataset and the page of a sweep; return the lines of its report."""
+    of_points = len(plan.batch_files(name))  # those of single runs come after them
+    points, runs = map(batches.records_in, (paths[:of_points], paths[of_points:]))
+    sweep_dataset.write_sweep(path, grid, points, list(runs), configuration.of_sweep(name))
+    with xr.open_dataset(path) as data:
         lines = list(sweep_dataset.report(data, name if grid.group or grid.drives else None))
-        for line in lines:
-            log.info(line)
         dataset_page.write(snakemake.output.summary, data, lines)
-    sealed_files.mark(snakemake.output, snakemake.params.made_of)
+    return lines
+
+
+def write_map(map_, records) -> list[str]:
+    """Write the dataset and the page of a certified map; return the lines of its report."""
+    data = certified_map.build(map_, records)
+    certified_map.write(path, data)
+    lines = list(certified_map.report(data, name))
+    dataset_page.write(snakemake.output.summary, data, lines)
+    return lines
+
+
+def write_study(study, records) -> list[str]:
+    """Write the dataset and the page of a study; return the lines of its report."""
+    data = registry.build(study, configuration, batches.lookup(records))
+    sweep_dataset.write(data, path, registry.groups(study))
+    lines = list(registry.report(study, data))
+    study_page.write(study, snakemake.output.summary, data, lines)
+    return lines
+
+
+with job_log(snakemake.log[0], shown=logging.INFO) as log:
+    configuration = load.from_mapping(snakemake.config, ask_solver=False)
+    plan = Plan(configuration)
+    plan.refuse_edited(name, snakemake.params.made_of)
+    stamps.set_aside(snakemake.output[:2])
+    records = batches.records_in(snakemake.input.batches)
+    if name in configuration.grids:
+        report = write_sweep(configuration.grids[name], snakemake.input.batches)
+    elif name in configuration.certified:
+        report = write_map(configuration.certified[name], records)
+    else:
+        report = write_study(plan.studies[name], records)
+    for line in report:
+        log.info(line)
+    stamps.write(snakemake.output.stamp, snakemake.params.made_of, snakemake.output[:2])

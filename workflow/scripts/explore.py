@@ -3,28 +3,27 @@
 Output: HTML, one file that needs no network; the numbers in it are dimensionless.
 """
 
-from pathlib import Path
-
-from microslip.app import plan
 from microslip.app.job_log import job_log
+from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.report.explorer import explorer, page
 from microslip.report.figures.data import loaded
-from microslip.sweeps import batches, sealed_files
+from microslip.sweeps import batches, stamps
 
 with job_log(snakemake.log[0]) as log:
     configuration = load.from_mapping(snakemake.config, ask_solver=False)
-    made = Path(snakemake.output[0]).name
-    plan.Plan(configuration).refuse_edited(made, snakemake.params.code)
+    made_of = snakemake.params.made_of
+    Plan(configuration).refuse_edited(f"pages/{snakemake.wildcards.page}", made_of)
     answer = batches.lookup(batches.records_in(snakemake.input.batches))
     periods = {
         name: [answer(request) for request in explorer.period_requests(configuration, name)]
-        for name in snakemake.params.explored
+        for name in explorer.maps_of(configuration)
     }
-    files = zip(snakemake.params.names, snakemake.input.datasets, strict=True)
-    datasets = {name: loaded(path) for name, path in files}
-    certified = [loaded(path) for path in snakemake.input.get("certified", ())]
+    paths = zip(snakemake.params.names, snakemake.input.datasets, strict=True)
+    datasets = {name: loaded(path) for name, path in paths}
+    certified = [datasets.pop(name) for name in explorer.certified_of(configuration)]
+    stamps.set_aside(snakemake.output[:1])
     page.write(snakemake.output[0], datasets, periods, certified)
     for line in explorer.report(periods):
         log.info(line)
-    sealed_files.mark(snakemake.output, snakemake.params.made_of)
+    stamps.write(snakemake.output.stamp, made_of, snakemake.output[:1])

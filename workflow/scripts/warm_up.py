@@ -5,8 +5,8 @@ Output: a text file that says that it was done.
 
 import microslip
 from microslip.app.job_log import job_log
-from microslip.sweeps.sealed_files import write_atomically
+from microslip.foundation.files import write_atomically
 
 with job_log(snakemake.log[0]):
-    microslip.warm_up(snakemake.params.kernels)
+    microslip.warm_up(snakemake.wildcards.kernels)
     write_atomically(snakemake.output[0], b"The kernels are compiled.\n")

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
+from microslip.sweeps.batches import Batch
+from microslip.sweeps.store import Store
 
 TYPICAL = {
     ("point", "transverse"): 0.005,
@@ -34,35 +35,30 @@ SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re
 
 
 def summary(
-    jobs: Iterable[tuple[str, Sequence[dict]]],
-    folder: str | Path,
-    cores: int,
-    *,
-    compiles: bool = False,
-    rounds: bool = False,
+    jobs: Iterable[tuple[str, Batch | None]], folder: str | Path, cores: int, *, compiles: bool
 ) -> list[str]:
     """Lines about the work of a run.
 
     Parameters
     ----------
-    jobs : iterable of (str, sequence of dict)
-        Group and requests of each batch that the run solves.
+    jobs : iterable of (str, Batch or None)
+        Group and batch of each job that solves; None for a certified map.
     folder : path
-        Folder of results. Requests that its store answers are not counted; logs in it say how long
+        Folder of results.  Requests that its store answers are not counted; logs in it say how long
         earlier points of a group took.
     cores : int
         Jobs at a time.
     compiles : bool
         Whether the run compiles the solver.
-    rounds : bool
-        Whether the run refines a certified map.
     """
     store, times, number = Store(folder), _Times(Path(folder)), Counter(points=0)
     seconds: list[float] = []
     unknown: Counter[str] = Counter()
-    for group, requests in jobs:
+    maps = False
+    for group, batch in jobs:
         job = START
-        for request in requests:
+        maps = maps or batch is None
+        for request in batch.requests if batch else ():
             if store.path(batches.group(request), batches.key_of(request)).exists():
                 continue
             number["points" if request["kind"] == "point" else "other runs"] += 1
@@ -82,7 +78,7 @@ def summary(
     if unknown:
         groups = ", ".join(f"{count:,} of {group}" for group, count in unknown.items())
         lines.append(f"There is no time yet for some other runs: {groups}.")
-    if rounds:
+    if maps:
         found = "To solve besides" if number.total() else "To solve"
         chosen = "round by round, so their number is known at the end"
         lines = lines if number.total() else []
@@ -121,7 +117,7 @@ class _Times:
 
     def _in_logs(self, group: str) -> float | None:
         points, seconds = 0, 0.0
-        for path in (self.folder / "logs" / "solve_batch" / group).glob("*.log"):
+        for path in (self.folder / "logs" / "solve" / group).glob("*.log"):
             for count, took in SOLVED.findall(path.read_text("utf-8", errors="replace")):
                 points, seconds = points + int(count), seconds + float(took)
         return seconds / points if points else None

@@ -1,30 +1,103 @@
-"""Targets of the workflow that make a single figure, such as `snakemake fig2`."""
+"""Targets of the workflow, and the figures that a configuration leads to."""
 
 from __future__ import annotations
 
-from microslip.app.plan import Plan
-from microslip.app.sweep_command import TARGETS
+import math
+from collections.abc import Sequence
+
+from microslip.config.records import Configuration
 from microslip.report.figures import drawing
+from microslip.studies import registry
+
+TARGETS = {
+    "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
+    "extended": "the same of other motions and pressures, its key extended",
+    "drives": "datasets of contacts that a force or a spring pulls, its key drives",
+    "certified": "maps with an error that holds everywhere, of the sweeps that say adaptive",
+    "accuracy": "what accuracy costs, for all models and methods",
+    "stability": "where methods fail",
+    "claims": "what the paper says, judged",
+    "propulsion": "what self-propelled motions pull with, from stall to no load",
+    "explorer": "one page that shows what is behind every point of the maps",
+    "explorer_all": "the same page with every other sweep of the configuration",
+}
+"""Targets of the workflow that users need, and what each makes."""
 
 
-def targets_of(plan: Plan) -> dict[str, str]:
+def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
+    """Figures that there is data for, and the names of the datasets of each."""
+    known = _datasets(configuration)
+    found = {
+        figure: names
+        for figure, names in drawing.FIGURES.items()
+        if known >= set(names) and _is_drawable(figure, names, configuration)
+    }
+    found |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
+    return found | {name: (name,) for name in configuration.certified}
+
+
+def _datasets(configuration: Configuration) -> set[str]:
+    """Datasets that figures with names of their own are drawn from."""
+    return {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
+
+
+def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
+    """Whether there is enough of a map for the figures that show maps, and whether what is compared
+    is of the same amplitude and velocity."""
+    if figure == "drives":
+        moved, *pulled, body = (configuration.grids[name] for name in names)
+        same = {grid.amplitude for grid in (*pulled, body)} == {body.amplitude}
+        return (
+            same and _has(moved.amplitude, body.amplitude) and _has(moved.velocity, body.velocity)
+        )
+    if figure == "pairs":
+        return len({configuration.grids[name].amplitude for name in names}) == 1
+    if figure not in ("fig2_transverse_map", "fig6_bore_map", "poisson"):
+        return True
+    grids = [configuration.sweeps[name] for name in names]
+    if not all(grid.spans_a_map for grid in grids):
+        return False
+    few = all(1 < len(grid.poisson) <= drawing.MOST_POISSONS for grid in grids)
+    return few or figure != "poisson"
+
+
+def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
+    """Whether one value is wanted, and an axis has it but for rounding."""
+    if axis is None or wanted is None:
+        return False
+    return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)
+
+
+def targets_of(configuration: Configuration) -> dict[str, str]:
     """Figures by the names of their targets: their own names, and fig1 to fig6.
 
-    Names that are targets already, such as drives, are left out. Figures that the configuration has
-    no data for have a target, too, which refuses with `why_no_figure`.
+    Figures that the configuration has no data for are among them, see `why_no_figure`.
     """
-    names = {name: name for name in (*drawing.FIGURES, *plan.figures)} | drawing.SHORT_NAMES
+    figures = (*drawing.FIGURES, *drawable(configuration))
+    names = {name: name for name in figures} | drawing.SHORT_NAMES
     return {name: figure for name, figure in names.items() if name not in TARGETS}
 
 
-def why_no_figure(plan: Plan, figure: str) -> str:
+def why_no_figure(configuration: Configuration, figure: str) -> str:
     """Why a configuration leads to no such figure, a key of drawing.FIGURES, in one line."""
-    configuration, names = plan.configuration, drawing.FIGURES[figure]
-    known = {*configuration.sweeps, *configuration.drives, *plan.studies}
-    missing = [name for name in names if name not in known]
+    names = drawing.FIGURES[figure]
+    missing = [name for name in names if name not in _datasets(configuration)]
     if missing:
         return f"{figure} needs the sweep {missing[0]}, which the configuration has not"
     return (
         f"{figure} cannot be drawn from {' and '.join(names)}: a map needs several velocities and "
         "amplitudes, and some figures need equal or several values of other axes"
     )
+
+
+def heading_of(configuration: Configuration, dataset: str) -> str:
+    """Heading, in the report of a run, of the figures that are drawn from a dataset first."""
+    headings = {
+        "The paper's figures": configuration.sweeps,
+        "Other motions and pressures": configuration.extended,
+        "Drives": configuration.drives,
+        "Certified maps": configuration.certified,
+        "The paper's claims": ["claims"],
+        "Self-propelled motions": ["propulsion"],
+    }
+    return next((text for text, names in headings.items() if dataset in names), "Methods")

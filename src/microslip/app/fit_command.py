@@ -103,7 +103,7 @@ def _write(found: Fit, options: argparse.Namespace) -> None:
         return
     dataset = found.to_xarray()
     if options.output:
-        from microslip.sweeps.sealed_files import writing_beside
+        from microslip.foundation.files import writing_beside
 
         with writing_beside(Path(options.output)) as beside:
             dataset.to_netcdf(beside, engine="netcdf4")

@@ -1,16 +1,14 @@
 """The log of a job of the workflow, and one clear message on failure."""
 
-import errno
 import gc
 import logging
-import re
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from microslip.foundation.errors import SolverError
-from microslip.sweeps.sealed_files import NO_WRITING, CacheError, advice
+from microslip.foundation.errors import NO_WRITING, CacheError, SolverError
+from microslip.foundation.files import advice
 
 
 class _LogFile(logging.FileHandler):
@@ -73,33 +71,3 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     # A log that is cut short would leave out points that did not converge.
     if file.problem is not None:
         sys.exit(f"Error: {advice('write', path, file.problem)}")
-
-
-REFUSED = re.compile(r"^\w+: \[Errno (\d+)\] ([^:\n]+)(?:: '(.+)')?\s*\Z", re.MULTILINE)
-
-
-def plain_words(folder: str | Path) -> Callable[[logging.LogRecord], bool]:
-    """Filter for Snakemake's log: where the system refuses Snakemake itself, what to do about it.
-
-    It comes in the place of a traceback. folder: named where the system names no file.
-    """
-
-    def say_plainly(record: logging.LogRecord) -> bool:
-        refused = REFUSED.search(str(record.msg))
-        if refused and "Traceback" in record.msg and int(refused[1]) in (*NO_WRITING, errno.EACCES):
-            error = OSError(int(refused[1]), refused[2])
-            record.msg = f"Error: {advice('write', refused[3] or folder, error)}"
-        return True
-
-    return say_plainly
-
-
-def closing_lines(folder: str | Path, names: Iterable[str]) -> list[str]:
-    """Lines about datasets from the logs of collecting them; names: those of the datasets.
-
-    The lines give the number of points of each, and the points that did not converge.
-    """
-    paths = (Path(folder, "logs", "collect", f"{name}.log") for name in names)
-    lines = [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]
-    # Damage that was met on the way was a warning, and has been shown.
-    return [line for line in lines if not line.startswith("damaged result")]

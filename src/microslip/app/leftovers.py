@@ -1,8 +1,8 @@
 """`microslip gc`: what is in a folder of results that no configuration asks for any more.
 
 After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
-stay where they are: another configuration may ask for them. This lists them, and removes them if
-told to. Only files that the workflow names and seals are looked at; all else in a folder is
+stay where they are: another configuration may ask for them.  This lists them, and removes them if
+told to.  Only files that the workflow names or stamps are looked at; all else in a folder is
 somebody's own.
 """
 
@@ -18,55 +18,48 @@ from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
 from microslip.config.extended import solver_names
-from microslip.config.records import CertifiedMap, ConfigError, Configuration
-from microslip.sweeps import batch_plans, batches, cache, map_rounds, sealed_files
+from microslip.config.records import ConfigError, Configuration
+from microslip.foundation import files
+from microslip.foundation.errors import CacheError
+from microslip.sweeps import batches, stamps, store
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
-BATCH = re.compile(r"[0-9a-f]{16}\.(json|plan)")
-ROUND = re.compile(r"[0-9]+(-[0-9]+)?\.json")
-MADE = (".nc", ".html", ".png", ".pdf")
-FOLDERS_MADE = (".", "summaries", "figures")
+BATCH = re.compile(r"[0-9a-f]{20}\.jsonl")
 DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 
 
-def asked_for(plans: Iterable[Plan], folder: Path = Path()) -> set[str]:
-    """Paths, inside the folder of results, of all that some of the plans would make.
+def asked_for(plan: Plan, folder: Path) -> set[str]:
+    """Paths, inside the folder of results, of all that a plan would make.
 
-    Which points a certified map has is known from the rounds in that folder.  Where one of them is
-    damaged, all points of the motion count as requested.
+    The points of a certified map are those in its batch.  Where that is not there or damaged, all
+    points of the motion count as requested.
     """
-    found = set()
-    for plan in plans:
-        found |= {*plan.made_files(), *plan.batch_files(*plan.groups), *plan.plan_files()}
-        for group in plan.groups:
-            found |= {_path_of(request) for request in plan.requests_in(group)}
-        for name in plan.configuration.certified:
-            rounds = sorted((folder / plan.rounds_folder(name)).glob("*.json"))
-            found |= {path.relative_to(folder).as_posix() for path in rounds}
-            for path in rounds:
-                if path.stem.isdecimal():
-                    found |= _points_of(path, plan.configuration.certified[name], folder)
+    certified = plan.configuration.certified
+    found = {file for product in plan.products.values() for file in product.files}
+    found |= {stamps.stamp_of(product) for product in plan.products}
+    found |= {*plan.batch_files(*plan.groups, *certified)}
+    requests = (
+        r for group in plan.groups for b in plan.batches_in(group).values() for r in b.requests
+    )
+    found |= {_path_of(request) for request in requests}
+    for name, map_ in certified.items():
+        (file,) = plan.batch_files(name)
+        try:
+            found |= {_path_of(record["request"]) for record in store.read(folder / file)}
+        except CacheError:
+            motion = solver_names(map_.sweep)[0].partition(":")[0]
+            group = f"{batches.FOLDERS['point']}/{motion}"
+            complain(f"{folder / file} is missing or damaged; all files in {group} are kept")
+            found |= {p.relative_to(folder).as_posix() for p in (folder / group).rglob("*.json")}
     return found
 
 
-def _points_of(path: Path, map_: CertifiedMap, folder: Path) -> set[str]:
-    """Paths of the points of a round; of all points of the motion if its file is damaged."""
-    try:
-        round_ = map_rounds.read_round(path)
-    except sealed_files.CacheError:
-        group = f"{batches.FOLDERS['point']}/{solver_names(map_.sweep)[0].partition(':')[0]}"
-        complain(f"{path} is damaged; the next run makes it again; all files in {group} are kept")
-        return {file.relative_to(folder).as_posix() for file in (folder / group).rglob("*.json")}
-    return {_path_of(request) for request in round_["requests"]}
-
-
 def _path_of(request: dict) -> str:
-    key = batches.key_of(request)
-    return cache.Store(".").path(batches.group(request), key).as_posix()
+    return store.Store(".").path(batches.group(request), batches.key_of(request)).as_posix()
 
 
-def there(folder: Path) -> Iterator[tuple[str, Path]]:
+def present(folder: Path) -> Iterator[tuple[str, Path]]:
     """(kind of KINDS, path) of every file in a folder of results that a run has made.
 
     A folder under the name of a file belongs to the user, and so do links and all that lies behind
@@ -93,34 +86,33 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
     for path in sorted((folder / "batches").glob("*/*")):
         if BATCH.fullmatch(path.name):
             yield KINDS[1], path
-    for path in sorted((folder / "rounds").glob("*/*/*")):
-        if ROUND.fullmatch(path.name):
-            yield KINDS[1], path
-    for place in FOLDERS_MADE:
-        for path in sorted((folder / place).glob("*")):
-            if path.suffix in MADE and sealed_files.seal_of(path).exists():
-                yield KINDS[2], path
+    for stamp in sorted((folder / stamps.FOLDER).rglob("*.json")):
+        yield KINDS[2], stamp
+        places = {"": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
+        inner = stamp.parent.relative_to(folder / stamps.FOLDER).as_posix().strip(".")
+        for place in places.get(inner, ()):
+            for name in stamps.read(stamp).get("sums", ()):
+                if Path(name).name == name and (folder / place / name).exists():
+                    yield KINDS[2], folder / place / name
 
 
 def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Files in a folder of results that none of the plans asks for, by their kind."""
-    wanted = asked_for(plans, folder)
+    wanted = {file for plan in plans for file in asked_for(plan, folder)}
     found: dict[str, list[Path]] = {kind: [] for kind in KINDS}
-    for kind, path in there(folder):
+    for kind, path in present(folder):
         if path.relative_to(folder).as_posix() not in wanted:
             found[kind].append(path)
     return found
 
 
 def remove(paths: Iterable[Path], folder: Path) -> None:
-    """Remove files of a folder of results with their seals, and folders inside it that are empty
-    then."""
+    """Remove files of a folder of results, and folders inside it that are empty then."""
     for path in paths:
-        for file in (path, sealed_files.seal_of(path)):
-            try:
-                file.unlink(missing_ok=True)
-            except OSError as error:
-                raise sealed_files.CacheError(sealed_files.advice("remove", file, error)) from error
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise CacheError(files.advice("remove", path, error)) from error
         for inner in _above(path, folder):
             try:
                 inner.rmdir()
@@ -134,17 +126,14 @@ def main(arguments: list[str]) -> int:
     try:
         configurations = [_loaded(path) for path in options.configfile or [DEFAULT]]
         folder = _folder(configurations)
-        sealed_files.refuse_unusable([folder], [])
+        files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
-        earlier = batch_plans.Folder(folder)
-        found = left_over(
-            folder, [Plan(configuration, earlier) for configuration in configurations]
-        )
+        found = left_over(folder, map(Plan, configurations))
         _say(found, folder, options.delete, options.list)
         if options.delete:
             remove((path for paths in found.values() for path in paths), folder)
-    except (ConfigError, sealed_files.CacheError) as error:
+    except (ConfigError, CacheError) as error:
         complain(f"microslip gc: {error}")
         return 2
     return 0

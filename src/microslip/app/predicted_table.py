@@ -120,8 +120,8 @@ def _write(
     rows: Sequence[Mapping[str, Any]],
 ) -> None:
     """All columns of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
+    from microslip.foundation.files import writing_beside
     from microslip.si.table import as_dataset
-    from microslip.sweeps.sealed_files import writing_beside
 
     dataset = as_dataset(motion, table, answers)
     dataset["error"] = dataset["error"].copy(data=[row["error"] or "" for row in rows])

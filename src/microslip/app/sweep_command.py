@@ -1,38 +1,38 @@
 """`microslip sweep`: the workflow of this package, run by Snakemake in the current folder.
 
 An installed package carries the workflow in its folder `bundle`; in a source tree it lies at the
-top. Either gives results that the other finds, since they are named by the solver's sources.
+top.  Either gives results that the other finds, since they are named by the code.
+
+Snakemake reads the files given with --configfile before the workflow does, prints all of its
+options where one is unknown, and ends with the exit code 1 whatever is wrong.  So its own parser,
+which knows profiles and abbreviations, and the configuration are tried first: what is wrong with
+them is one line, and the exit code 2.
 """
 
+from __future__ import annotations
+
+import argparse
+import atexit
+import io
 import os
 import re
-import signal
-import subprocess
+import shutil
 import sys
+import tempfile
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
+from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
+from microslip.config import load, schema
+from microslip.foundation import files
+from microslip.foundation.errors import CacheError, InputError
+from microslip.report.figures import drawing
 
 PACKAGE = Path(__file__).parents[1]
-
-# Arguments that say how many jobs run at once, by themselves or through a profile.
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
-
-TARGETS = {
-    "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
-    "extended": "the same of other motions and pressures, its key extended",
-    "drives": "datasets of contacts that a force or a spring pulls, its key drives",
-    "certified": "maps with an error that holds everywhere, of the sweeps that say adaptive",
-    "accuracy": "what accuracy costs, for all models and methods",
-    "stability": "where methods fail",
-    "claims": "what the paper says, judged",
-    "propulsion": "what self-propelled motions pull with, from stall to no load",
-    "explorer": "one page that shows what is behind every point of the maps",
-    "explorer_all": "the same page with every other sweep of the configuration",
-}
-"""Targets by name: the rules of the workflow without wildcards that users need."""
-RULES = ("warm_up", "warm_up_angles", "warm_up_pulled")
-"""Others that Snakemake makes by name."""
+"""Arguments that say how many jobs run at once, by themselves or through a profile."""
+KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
 _LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
 HELP = f"""\
@@ -62,51 +62,141 @@ of bad input it is 2. The defaults are those of profiles/default, here or in the
 
 
 def main(arguments: list[str]) -> int:
-    """Run Snakemake with these arguments; return its exit code."""
+    """Run Snakemake with these arguments in this process.
+
+    Returns the exit code 2 where they cannot be used; ends by SystemExit with that of Snakemake.
+    """
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
+    with redirect_stdout(sys.__stdout__):  # where Snakemake's jobs write, too
+        return _run(arguments)
+
+
+def _run(arguments: list[str]) -> int:
     try:
         os.getcwd()
-    except OSError as error:
-        complain(f"microslip sweep: the current folder: {error.strerror}")
+        given = ["--snakefile", str(snakefile()), *arguments]
+        if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
+            given = ["--cores", "all", *given]
+        _check(given)
+    except (InputError, load.ConfigError, FileNotFoundError) as error:
+        place = "the current folder: " if getattr(error, "strerror", None) else ""
+        complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
         return 2
+    _spare_cache()
+    from snakemake.cli import main as snakemake
+
     try:
-        command = [sys.executable, "-m", "microslip.app.sweep_process"]
-        command += ["--snakefile", str(snakefile())]
-    except FileNotFoundError as error:
-        complain(f"microslip sweep: {error}")
-        return 2
-    if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
-        command += ["--cores", "all"]
-    with subprocess.Popen([*command, *arguments]) as running:
-        signal.signal(signal.SIGTERM, lambda *_: running.terminate())
-        if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
-            signal.signal(signal.SIGHUP, lambda *_: _hang_up(running))  # unless nohup asks not to
-        while True:
-            try:
-                code = running.wait()
-                return code if code >= 0 else 128 - code  # as shells say it: 128 + signal
-            except KeyboardInterrupt:
-                pass  # Snakemake got it too: it tidies up and ends
-
-
-def _hang_up(running: subprocess.Popen) -> None:
-    """End Snakemake and its jobs, the terminal of which was closed.
-
-    A terminal sends the signal to its first process only, a shell to the whole group.  If this
-    process is the first one, or was started by the shell, the group is its own.
-    """
-    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # its own is to come
-    if os.getpgrp() == os.getpid():
-        os.killpg(0, signal.SIGHUP)  # jobs end at once, Snakemake when they have
-    running.terminate()
+        snakemake(given)
+    except KeyboardInterrupt:  # what Snakemake does not catch while it plans
+        complain("microslip sweep: interrupted")
+        return 130
+    return 0
 
 
 def snakefile() -> Path:
-    """Path of the workflow that belongs to this package. Raises FileNotFoundError."""
+    """Path of the workflow that belongs to this package.  Raises FileNotFoundError."""
     places = (PACKAGE / "bundle", PACKAGE.parents[1])
     for place in places:
         if (place / "Snakefile").is_file():
             return place / "Snakefile"
     raise FileNotFoundError(f"no Snakefile in {' or '.join(map(str, places))}")
+
+
+def _spare_cache() -> None:
+    """Have Snakemake keep its own files in a temporary folder where the home takes none.
+
+    It makes a folder there whenever it starts, and ends with a traceback where it cannot.
+    """
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    try:
+        os.makedirs(os.path.join(home, "snakemake"), exist_ok=True)
+        if os.access(home, os.W_OK):
+            return
+    except OSError:
+        pass
+    spare = tempfile.mkdtemp(prefix="microslip-")
+    atexit.register(shutil.rmtree, spare, ignore_errors=True)
+    os.environ["XDG_CACHE_HOME"] = spare
+    complain(f"microslip sweep: {home} cannot be written to: Snakemake's own files are in {spare}")
+
+
+def _check(arguments: list[str]) -> None:
+    """Raise InputError or ConfigError for what Snakemake would be slow, or long, to refuse."""
+    options = _parsed(arguments)
+    if options is None:
+        return
+    if options.directory is None and not os.access(".", os.W_OK):
+        raise InputError("--directory", os.getcwd(), "allowed is a folder that can be written to")
+    for name in ("cores", "jobs"):
+        count = getattr(options, name)
+        if isinstance(count, int) and count < 1:
+            raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
+    for target in options.targets:
+        if not _may_be_made(target):
+            hint = schema.near_miss(target, [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES])
+            allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
+            raise InputError("TARGET", target, hint + allowed)
+    for entry in options.config or ():
+        if not KEY_AND_VALUE.match(entry):
+            raise InputError("--config", entry, "allowed is KEY=VALUE")
+    if sum(word.partition("=")[0] == "--configfile" for word in arguments) > 1:
+        raise InputError(
+            "--configfile", "twice", "Snakemake would forget the first; allowed is --configfile A B"
+        )
+    _check_configuration(options)
+
+
+def _check_configuration(options: argparse.Namespace) -> None:
+    """Raise ConfigError for the configuration that the Snakefile would read and refuse."""
+    from snakemake.cli import parse_config
+    from snakemake.utils import update_config
+
+    paths = [os.path.relpath(file) for file in options.configfile or ()]
+    if not paths:
+        places = (Path(options.directory or "."), snakefile().parent)
+        defaults = [os.path.relpath(place / "config" / "config.yaml") for place in places]
+        paths = [next(filter(os.path.lexists, defaults), defaults[-1])]
+    mapping: dict = {}
+    for file in paths:
+        update_config(mapping, load.read_yaml(file))
+    update_config(mapping, parse_config(options.config))
+    source = ", ".join([*paths, *(["--config"] if options.config else [])])
+    folders = [os.path.dirname(os.path.abspath(file)) for file in paths]
+    configuration = load.from_mapping(mapping, source=source, folders=folders)
+    results = Path(options.directory or ".", configuration.results)
+    try:
+        files.refuse_unusable([results], [])
+    except CacheError as error:
+        raise load.ConfigError(f"{source}: results: {error}") from None
+
+
+def _may_be_made(target: str) -> bool:
+    """Whether a target is a file, a target of the workflow or the name of a figure.
+
+    The configuration decides which figures of groups and of certified maps there are.
+    """
+    figures = (*drawing.FIGURES, *drawing.SHORT_NAMES)
+    of_configuration = target.startswith((drawing.figure_of(""), drawing.CERTIFIED))
+    is_file = bool({".", "/"} & set(target))
+    return is_file or of_configuration or target in (*TARGETS, *figures)
+
+
+def _parsed(arguments: list[str]) -> argparse.Namespace | None:
+    """The arguments parsed by Snakemake; None where Snakemake prints a message by itself."""
+    from snakemake.cli import parse_args
+
+    said = io.StringIO()
+    try:
+        with redirect_stderr(said):
+            _, options = parse_args(arguments)
+    except SystemExit as error:
+        if error.code in (0, None):
+            raise  # --version
+        line = said.getvalue().strip().rpartition("\n")[2]
+        complain(f"microslip sweep: {line.partition('error: ')[2] or line}")
+        raise SystemExit(2) from None
+    except Exception:  # it will say so again
+        return None
+    return options

@@ -638,8 +638,8 @@ class Root(Settings):
     ] = "results"
     """Folder for all results, relative to the folder that the workflow runs in."""
     points_per_job: Points = 50
-    """New points that one job computes one after another. A job takes about a second to start;
-    large jobs leave cores idle at the end. A sweep may have a value of its own."""
+    """Mean number of points that one job computes one after another. A job takes about a second to
+    start; large jobs leave cores idle at the end. A sweep may have a value of its own."""
     sweeps: Annotated[Sweeps, Field(min_length=1)]
     """Sweeps of the paper, one at least."""
     extended: dict[PlainName, ExtendedSweep] = {}

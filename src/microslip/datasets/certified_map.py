@@ -23,11 +23,12 @@ from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
-from microslip.sweeps import map_rounds
+from microslip.foundation.files import writing_beside
+from microslip.sweeps import map_refinement
+from microslip.sweeps.batches import lookup
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
-from microslip.sweeps.sealed_files import writing_beside
 
 COORDINATES = "map_coordinates"
 """Attribute that says how a map is cut, as JSON."""
@@ -46,17 +47,15 @@ SCALED = {
 }
 
 
-def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -> xr.Dataset:
+def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     """Dataset of a certified map.
 
     Parameters
     ----------
     map_ : CertifiedMap
         What was asked for.
-    rounds : sequence of dict
-        All of its rounds, see map_rounds.
     records : iterable of dict
-        That answer them, in any order.
+        Those of all its points, in any order.
 
     Raises
     ------
@@ -64,8 +63,12 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         If a request is not answered.
     """
     records = list(records)
-    known = map_rounds.answers_in(rounds, records)
-    found, coordinates = map_rounds.refinement_of(map_, known), map_rounds.coordinates_of(map_)
+    record_of = lookup(records)
+    known = map_refinement.refine(map_, lambda requests: map(record_of, requests))
+    found, coordinates = (
+        map_refinement.refinement_of(map_, known),
+        map_refinement.coordinates_of(map_),
+    )
     nodes = sorted(known)
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
@@ -115,7 +118,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
 
 def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
     """Write the dataset to a netCDF-4 file, all of it or nothing; raises CacheError."""
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         netcdf.write(beside, dataset, {})
 
 
@@ -124,9 +127,9 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     drifts = is_of_drift(dataset)
     values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
     failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
+    converged = f"{failed} not converged" if failed else "all converged"
     yield (
-        f"{name}: {dataset.points} points, {failed or 'none'} not converged; within "
-        f"{errors.max():.1e}{scale} everywhere"
+        f"{name}: {dataset.points} points, {converged}; within {errors.max():.1e}{scale} everywhere"
     )
     over = int((errors > dataset.error).sum())
     if over:

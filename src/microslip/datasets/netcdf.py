@@ -60,7 +60,7 @@ def divided(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, 
 def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset]) -> None:
     """Write a root and its groups to a new netCDF-4 file; the same ones give the same bytes.
 
-    Nothing is made whole or sealed here: see sealed_files.writing_beside.
+    The file is not written atomically here: see files.writing_beside.
     """
     _append(root, path, mode="w")
     for group, part in parts.items():

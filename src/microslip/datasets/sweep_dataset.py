@@ -21,8 +21,8 @@ from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
+from microslip.foundation.files import writing_beside
 from microslip.motions.by_name import motion_named
-from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
@@ -79,7 +79,7 @@ def write_sweep(
     if sweep.contacts is not None:
         about["contacts"] = sweep.contacts
     versions = {canonical_json(record["versions"]) for record in histories}
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         netcdf.write(beside, _root(sweep), _parts(sweep, histories))
         with netCDF4.Dataset(beside, "a") as file:
             versions |= point_variables.append(file, sweep, axes, points)
@@ -143,7 +143,7 @@ def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = No
     same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a full
     disk, a read-only folder and the like.
     """
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
 
 

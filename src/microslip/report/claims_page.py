@@ -14,10 +14,10 @@ import jinja2
 import numpy as np
 import xarray as xr
 
+from microslip.foundation.files import writing_beside
 from microslip.report.dataset_page import provenance
 from microslip.studies.claims.static_limits import FORMULAS, SPLIT
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
-from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 
 PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
@@ -27,9 +27,9 @@ MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page of the xarray.Dataset; lines: those of its report.
 
-    Raises CacheError as `sealed_files.writing_beside` does.
+    Raises CacheError as `files.writing_beside` does.
     """
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
 
 

@@ -10,7 +10,7 @@ from html import escape
 import xarray as xr
 import yaml
 
-from microslip.sweeps.sealed_files import writing_beside
+from microslip.foundation.files import writing_beside
 
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
 """Quantities whose ranges show at a glance whether a run came out well."""
@@ -20,12 +20,12 @@ MOST_LINES = 40
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page of an xarray.Dataset; lines: those of its report.
 
-    Raises CacheError as `sealed_files.writing_beside` does.
+    Raises CacheError as `files.writing_beside` does.
     """
     # Text inside HTML, since Snakemake's report shows that in place.
     text, title = escape(page(dataset, lines)), escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
 
 

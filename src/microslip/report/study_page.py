@@ -13,6 +13,6 @@ _PAGES = {"claims": claims_page}
 def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page about a study's dataset; lines: those of its report.
 
-    Raises CacheError as `sealed_files.writing_beside` does.
+    Raises CacheError as `files.writing_beside` does.
     """
     _PAGES.get(study, dataset_page).write(path, dataset, lines)

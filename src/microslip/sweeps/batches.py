@@ -12,28 +12,27 @@ import math
 import platform
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
-from typing import overload
+from typing import NamedTuple
 
 from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
 from microslip.config.records import HISTORIES_OF_SWEEP, Configuration, Sweep
 from microslip.foundation import source_digest
-from microslip.foundation.canonical import number
-from microslip.foundation.errors import SolverError
+from microslip.foundation.canonical import canonical_json, fingerprint, number, sha256
+from microslip.foundation.errors import CacheError, SolverError
 from microslip.motions.body_contacts import contacts_of, contacts_text
-from microslip.sweeps import batch_files, evaluate
-from microslip.sweeps.cache import Store
-from microslip.sweeps.keys import batch_name, result_key
-from microslip.sweeps.sealed_files import CacheError
+from microslip.sweeps import evaluate
+from microslip.sweeps.store import Store, read
 
 log = logging.getLogger(__name__)
 
-# The initial states of Figure 5.
-STARTS = ("stress-free", "full-rotation", "full-slip")
+RECORD_FORMAT = 1
+"""Raised when the content of a record changes without any change in the solver."""
 
-# Folders of the store by kind of request. Those in trials and scaling hold times that were
-# measured: computed again they differ in these, and in nothing else.
+STARTS = ("stress-free", "full-rotation", "full-slip")
+"""Initial states of Figure 5."""
 FOLDERS = {
     "point": "points",
     "history": "histories",
@@ -47,9 +46,10 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
+"""Folders of the store by kind of request.  Those of trials and scaling hold measured times."""
 
 
-class PointRequests(Sequence):
+class PointRequests:
     """Requests for all points of a records.Sweep, each made when it is asked for.
 
     The order is that of the dataset: what pulls, Poisson's ratio, amplitude, velocity, the last one
@@ -85,42 +85,38 @@ class PointRequests(Sequence):
     def __len__(self) -> int:
         return math.prod(map(len, self._axes.values()))
 
-    @overload
-    def __getitem__(self, index: int) -> dict: ...
+    @property
+    def last(self) -> tuple[str, list[str]]:
+        """Key and values of the axis that changes fastest."""
+        return list(self._axes.items())[-1]
 
-    @overload
-    def __getitem__(self, index: slice) -> list[dict]: ...
+    @property
+    def rows(self) -> list[dict]:
+        """Requests without the last axis, in their order."""
+        *names, _ = self._axes
+        values = product(*(self._axes[name] for name in names))
+        return [self._common | dict(zip(names, place, strict=True)) for place in values]
 
-    def __getitem__(self, index: int | slice) -> dict | list[dict]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        rest, at = range(len(self))[index], {}
-        for name, values in reversed(self._axes.items()):
-            rest, place = divmod(rest, len(values))
-            at[name] = values[place]
-        return self._common | {name: at[name] for name in self._axes}
+    def __iter__(self) -> Iterator[dict]:
+        axis, values = self.last
+        return (row | {axis: value} for row in self.rows for value in values)
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
     """List the requests for the single runs that go into the dataset of the sweep `name`; none for
     one of `extended`."""
-    given = configuration.histories
-    requests = {
-        "transverse": lambda settings: [
-            _single("history", "transverse", settings, start="stress-free")
-        ],
-        "field": lambda settings: [_single("field", "continuous-bore", settings)],
-        "transients": lambda settings: [
-            _single("history", "continuous-bore", settings, start=start) for start in STARTS
-        ],
+    steady = {"motion": "continuous-bore"}
+    kinds: dict[str, list[dict]] = {
+        "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
+        "field": [{"kind": "field"} | steady],
+        "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
     }
-    return [r for run in HISTORIES_OF_SWEEP.get(name, ()) for r in requests[run](given[run])]
-
-
-def _single(kind: str, motion: str, settings: dict, **more: object) -> dict:
-    counts = ("cells", "steps", "periods")
-    numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-    return {"kind": kind, "motion": motion} | settings | numbers | more
+    counts, found = ("cells", "steps", "periods"), []
+    for run in HISTORIES_OF_SWEEP.get(name, ()):
+        settings = configuration.histories[run]
+        numbers = {k: number(v) for k, v in settings.items() if k not in counts}
+        found += [kind | settings | numbers for kind in kinds[run]]
+    return found
 
 
 def key_of(request: dict) -> str:
@@ -128,15 +124,78 @@ def key_of(request: dict) -> str:
     return result_key(request, source_digest.of_request(request))
 
 
-def batches(requests: Sequence[dict], size: int) -> dict[str, Sequence[dict]]:
-    """Cut requests into lists of `size` and return them by name; the name tells the content."""
-    cuts = (requests[i : i + size] for i in range(0, len(requests), size))
-    return {name_of_batch(cut): cut for cut in cuts}
+def result_key(request: dict, digest: str) -> str:
+    """Name of the result that answers a request with the code that has this digest.
+
+    It is a hash of the physics, the tolerance, the model and resolution asked for, and the digest.
+    The versions of NumPy, SciPy and Numba are not part of it: they change results by rounding
+    errors, and each result records them.
+    """
+    content = {"request": request, "source": digest, "format": RECORD_FORMAT}
+    return sha256(canonical_json(content))
 
 
-def name_of_batch(requests: Sequence[dict]) -> str:
-    """Name of the batch that answers these requests with the code that is running."""
-    return batch_name([key_of(request) for request in requests])
+# Batches: what a job answers
+
+
+class Batch(NamedTuple):
+    """Requests of a job: each row at each value of the axis along it.
+
+    Attributes
+    ----------
+    rows : list of dict
+        Requests without the axis, or whole requests where there is none.
+    axis : str
+        Key of the axis; empty if there is none.
+    values : sequence of str
+        Values along it.
+    """
+
+    rows: list[dict]
+    axis: str = ""
+    values: Sequence[str] = ()
+
+    @property
+    def requests(self) -> list[dict]:
+        """All requests, row by row."""
+        if not self.axis:
+            return self.rows
+        return [row | {self.axis: value} for row in self.rows for value in self.values]
+
+    @property
+    def name(self) -> str:
+        """Name that follows from the requests and the code that answers them."""
+        code = sorted({source_digest.of_request(row) for row in self.rows})
+        return fingerprint(code, self._asdict(), RECORD_FORMAT)[:20]
+
+
+def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
+    """Batches of whole rows, or of parts of rows longer than a job, in the order of the points.
+
+    size: mean number of points in a batch.
+    """
+    axis, values = requests.last
+    parts = _cut(values, size) if len(values) > size else [values]
+    blocks = _cut(requests.rows, max(size // len(values), 1))
+    return [Batch(block, axis, part) for block in blocks for part in parts]
+
+
+def batches_of_requests(requests: Sequence[dict], size: int) -> list[Batch]:
+    """Batches of single requests in their order; size: mean number in a batch."""
+    return [Batch(part) for part in _cut(requests, size)]
+
+
+def _cut(items: Sequence, mean: int) -> list[list]:
+    """Lists of `mean` items on average.
+
+    Each cut depends on the item after it alone, so that an item more changes one list.
+    """
+    parts: list[list] = []
+    for item in items:
+        if not parts or mean <= 1 or int(fingerprint(item)[:8], 16) % mean == 0:
+            parts.append([])
+        parts[-1].append(item)
+    return parts
 
 
 def group(request: dict) -> str:
@@ -146,12 +205,12 @@ def group(request: dict) -> str:
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
-    """Return the record that answers `request` and the CPU seconds that the solver took for it.
+    """Record that answers a request, and the CPU seconds that the solver took for it.
 
-    It comes from the store if that has it (0 seconds), else it is computed and stored. The record
-    is a dict: key, request, result, versions. What need not come out so again is not stored, see
-    answers.is_final: whoever asks next has it computed again. time_limit: of a point, as for
-    microslip.solve. Raises CacheError if it cannot be stored.
+    It comes from the store if that has it (0 seconds), else it is computed and stored.  A record
+    has key, request, result and versions.  A result that is not final, see evaluate.is_final, is
+    not stored.  time_limit: of a point, as for microslip.solve.  Raises CacheError if the record
+    cannot be stored.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -161,12 +220,11 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
     started = time.process_time()
     result = evaluate.computed(request, time_limit)
     seconds = time.process_time() - started
-    # How long it took is left out: equal requests have equal records, bit for bit, but for those
-    # that ask for a time.
+    # Times are left out, so that equal requests have equal records, except where they ask for one.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
-    edited = source_digest.LOADED.edited(source_digest.files_of_request(request))
+    edited = source_digest.LOADED.edited()
     if edited:
-        raise SourcesEdited(edited[0], record)
+        raise SourcesEdited(edited, record)
     if evaluate.is_final(result):
         store.write(group(request), key, record)
     return record, seconds
@@ -183,70 +241,48 @@ class SourcesEdited(CacheError):
         What was computed, by code that was loaded before the edit or after it.
     """
 
-    def __init__(self, file: str | Path, record: dict | None = None):
-        super().__init__(
-            f"{file} was edited while its code was running, so what it computes is not kept; "
-            "run again: finished points are kept"
-        )
+    def __init__(self, file: str, record: dict | None = None):
+        super().__init__(file, record)  # as processes hand it on
         self.record = record
 
+    def __str__(self) -> str:
+        return (
+            f"{self.args[0]} was edited while its code was running, so what it computes is not "
+            "kept; run again: finished points are kept"
+        )
 
-def run_batch(
-    requests: Sequence[dict], store: Store, progress: Callable = iter, name: str | None = None
-) -> tuple[list[dict], dict]:
-    """Answer every request; return the records (list) and statistics of the batch (dict).
 
-    progress: wraps the list of requests and yields them one by one, such as tqdm. The records
-    depend on the requests and the solver alone; times and counts are in the statistics. name: of
-    the batch where it was planned; raises SourcesEdited if it has another one by now. Raises
-    SolverError where the solver fails at every point of the batch.
+def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
+    """Records that answer the requests, and `statistics` of them.
+
+    The records depend on the requests and the solver alone.
     """
-    if name not in (None, name_of_batch(requests)):
-        raise SourcesEdited("the solver")
-    records, computed, seconds = [], 0, 0.0
-    for request in progress(requests):
-        record, took = answer(request, store)
-        records.append(record)
-        computed += took > 0
-        seconds += took
-        if not record["result"].get("converged", True):
-            log.info("not converged: %s: %s", label(request), record["result"]["reason"])
-    if records and all(record["result"].get("crashed") for record in records):
-        first = f"{label(requests[0])}: {records[0]['result']['reason']}"
+    answers = [answer(request, store) for request in requests]
+    records = [record for record, _ in answers]
+    return records, statistics(records, [took for _, took in answers])
+
+
+def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
+    """Counts, CPU seconds and finality of answers; logs points that did not converge.
+
+    Raises SolverError where the solver failed at all of them.
+    """
+    results = [record["result"] for record in records]
+    for record, result in zip(records, results, strict=True):
+        if not result.get("converged", True):
+            log.info("not converged: %s: %s", label(record["request"]), result["reason"])
+    if records and all(result.get("crashed") for result in results):
+        first = f"{label(records[0]['request'])}: {results[0]['reason']}"
         raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
-    final = all(evaluate.is_final(record["result"]) for record in records)
-    statistics = {"points": len(records), "computed": computed, "solver_seconds": seconds}
-    statistics["final"] = final
-    return records, statistics
+    counts = {"points": len(records), "computed": sum(took > 0 for took in seconds)}
+    final = all(map(evaluate.is_final, results))
+    return counts | {"solver_seconds": sum(seconds), "final": final}
 
 
-def records_in(paths: Iterable[Path]) -> Iterator[dict]:
-    """Records in the files of batches, one by one in their order.
-
-    Raises CacheError, one line that says what to do, for a file that is damaged.
-    """
+def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
+    """Records in the files of batches, one by one in their order; raises CacheError."""
     for path in paths:
-        records = batch_files.read_batch(path)
-        if records is None:
-            raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
-        yield from records
-
-
-def records_for(requests: Iterable[dict], paths: Iterable[Path]) -> Iterator[dict]:
-    """Records in the files of batches, one by one, each the answer to the next of the requests.
-
-    They may lie in any order, and others between them. Raises CacheError as `records_in` does, and
-    where a request is not answered.
-    """
-    records = batch_files.Records(paths)
-    for request in requests:
-        record = records.get(key_of(request))
-        if record is None:
-            raise CacheError(
-                f"no batch answers {label(request)}; remove the folder batches and run again: "
-                "finished points are kept"
-            )
-        yield record
+        yield from read(path)
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:

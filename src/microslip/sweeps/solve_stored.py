@@ -20,10 +20,10 @@ from microslip.adaptive.result import Result
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
 from microslip.foundation.errors import InputError
+from microslip.foundation.files import refuse_no_folder, refuse_unusable
 from microslip.motions.problem import Problem
 from microslip.sweeps import batches
-from microslip.sweeps.cache import Store
-from microslip.sweeps.sealed_files import refuse_no_folder, refuse_unusable
+from microslip.sweeps.store import Store
 
 
 def solve_stored(

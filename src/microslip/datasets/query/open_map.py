@@ -20,8 +20,9 @@ import xarray as xr
 from microslip.config.records import MOTION_OF_SWEEP
 from microslip.config.schema import near_miss
 from microslip.datasets.netcdf import group_names, refuse_oversized
-from microslip.foundation.errors import InputError
-from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
+from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.files import refuse_no_folder
+from microslip.sweeps.stamps import is_damaged
 
 SOLVED = {"mu_macro", "velocity_error"}
 """Variables of which the dataset of a sweep has one at least."""

@@ -11,7 +11,7 @@ import xarray as xr
 
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
-from microslip.sweeps.sealed_files import CacheError
+from microslip.foundation.files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
 
 

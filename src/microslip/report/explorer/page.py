@@ -9,9 +9,9 @@ from pathlib import Path
 
 from plotly.offline import get_plotlyjs
 
+from microslip.foundation.files import writing_beside
 from microslip.report.explorer import payload
 from microslip.report.explorer.explorer import ASSETS
-from microslip.sweeps.sealed_files import writing_beside
 
 FOLDER = Path(__file__).parent
 
@@ -24,7 +24,7 @@ def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Seq
     refuses.
     """
     text = page(payload.build(datasets, periods, certified))
-    with writing_beside(path, sealed=True) as beside:
+    with writing_beside(path) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
 
 

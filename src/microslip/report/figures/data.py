@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets.netcdf import whole
-from microslip.sweeps.sealed_files import CacheError
+from microslip.foundation.files import CacheError
 
 Curve = tuple[np.ndarray, np.ndarray]
 

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from microslip.config.records import MOTION_OF_SWEEP
-from microslip.sweeps.sealed_files import writing_beside
+from microslip.foundation.files import writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -196,6 +196,6 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
         raise ValueError(f"cannot write {path.name!r}: the name must end in .png or .pdf")
     plain, key = FORMATS[kind]
     metadata = plain | {key: getattr(figure, "made_from", None)}
-    with writing_beside(path, sealed=True) as beside, style():
+    with writing_beside(path) as beside, style():
         figure.savefig(beside, format=kind, metadata=metadata)
     return path

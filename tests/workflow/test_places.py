@@ -146,7 +146,7 @@ def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_b
     place.configure({**CONFIGURATION, "sweep": {}})
     done = place.snakemake("--dry-run")
     assert done.returncode != 0
-    assert "Error in configuration of friction: sweep: unknown key" in done.stderr
+    assert "Error in configuration: sweep: unknown key" in done.stderr
 
 
 # Installed copies
@@ -198,7 +198,7 @@ def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed
     assert "sideways" in done.stderr
     # Without any: the sweeps of the paper, which the package brings along.
     plan = installed(place, "sweep", "--dry-run", "--quiet", "host")
-    assert re.search(r"draw_figure +6\n", plan.stdout)
+    assert re.search(r"draw +6\n", plan.stdout)
 
 
 # The report

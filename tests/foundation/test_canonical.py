@@ -1,4 +1,4 @@
-"""Keys: what changes them and what does not."""
+"""Canonical texts of numbers, and what the workflow loads to plan."""
 
 import math
 import subprocess
@@ -11,10 +11,8 @@ from hypothesis import strategies as st
 
 import microslip
 from microslip.foundation import canonical
-from microslip.sweeps import keys
 
 PACKAGE = Path(microslip.__file__).parent
-REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}
 
 
 @pytest.mark.parametrize(
@@ -49,30 +47,6 @@ def test_canonical_numbers_keep_twelve_digits_and_stay_what_they_are(value):
 def test_what_is_no_finite_number_is_refused(value):
     with pytest.raises(ValueError, match="not a finite number"):
         canonical.number(value)
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
-)
-def test_everything_in_a_request_counts(name, value):
-    assert keys.result_key({**REQUEST, name: value}, "d") != keys.result_key(REQUEST, "d")
-
-
-def test_swapped_values_the_solver_and_the_format_count(monkeypatch):
-    key = keys.result_key(REQUEST, "d")
-    swapped = {**REQUEST, "velocity": "1", "amplitude": "0.1"}
-    assert keys.result_key(swapped, "d") != key
-    assert keys.result_key(REQUEST, "e") != key
-    assert keys.result_key(dict(reversed(REQUEST.items())), "d") == key
-    monkeypatch.setattr(keys, "RECORD_FORMAT", 99)
-    assert keys.result_key(REQUEST, "d") != key
-
-
-def test_batches_are_named_by_their_keys_in_order():
-    names = {keys.batch_name(k) for k in (["a", "b"], ["b", "a"], ["a"], ["ab"], ["a", "b", "c"])}
-    assert len(names) == 5
-    assert keys.batch_name(["a", "b"]) == keys.batch_name(["a", "b"])
 
 
 @pytest.mark.slow

@@ -1,0 +1,132 @@
+"""The points of a certified map: each round of them follows from the answers so far."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+from multiprocessing import parent_process
+from threading import Thread
+
+from microslip.config.extended import solver_names
+from microslip.config.records import CertifiedMap
+from microslip.foundation import named_files
+from microslip.sweeps.batches import PointRequests, answer
+from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity
+from microslip.sweeps.map_cells import Answers, Node, Refinement, refined
+from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.sweeps.store import Store
+from microslip.theory.kinks import kinks_of
+
+
+def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
+    """The coordinates that a certified map is cut in."""
+    motion, pressure = solver_names(map_.sweep)
+    if map_.force is not None:
+        return DriftCoordinates(motion, map_.force, map_.amplitude)
+    kinks = kinks_of(motion, pressure)
+    return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
+
+
+def refine(map_: CertifiedMap, ask: Callable[[list[dict]], Iterable[dict]]) -> Answers:
+    """Answers at all nodes of a certified map, round by round.
+
+    Parameters
+    ----------
+    map_ : CertifiedMap
+        The map.
+    ask : callable
+        From a list of requests to the records that answer them, in the same order.
+
+    Returns
+    -------
+    dict of tuple to (float, float)
+        Friction and its error by node, or the scaled velocity under a force; NaN and infinity where
+        a point did not converge.  It depends on the records alone.
+    """
+    coordinates = coordinates_of(map_)
+    known: dict[Node, tuple[float, float]] = {}
+    while nodes := refined(coordinates, known, map_.error).missing:
+        requests = [_request(map_, coordinates, node) for node in nodes]
+        for node, request, record in zip(nodes, requests, ask(requests), strict=True):
+            known[node] = _answer(request, record["result"])
+    return known
+
+
+def _request(
+    map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
+) -> dict:
+    """The request for a node, as of a sweep that has it."""
+    place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
+    point: dict = {"velocity": (0.0,)}
+    if "force" in place:
+        point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
+    point |= {name: (value,) for name, value in place.items()}
+    (request,) = PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))
+    return request
+
+
+def _answer(request: dict, result: dict) -> tuple[float, float]:
+    if not result.get("converged", False):
+        return math.nan, math.inf
+    if "force" in request:
+        return scaled_velocity(result["velocity"], result["velocity_error"])
+    return result["mu_macro"], result["mu_macro_error"]
+
+
+def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:
+    """The Refinement of a certified map with these answers."""
+    return refined(coordinates_of(map_), known, map_.error)
+
+
+def solved(
+    map_: CertifiedMap,
+    store: Store,
+    processes: int,
+    progress: Callable[[Iterable, int], Iterable],
+) -> tuple[list[dict], list[float]]:
+    """Records of all points of a map, and the CPU seconds that each took.
+
+    The points of a round are solved by several processes; each is stored as soon as it is solved.
+
+    Parameters
+    ----------
+    map_ : CertifiedMap
+        The map.
+    store : Store
+        Where points are looked up and stored.
+    processes : int
+        Number of processes.
+    progress : callable
+        Called with an iterable and its length for each round; yields the items of the iterable.
+    """
+    answers: dict[str, tuple[dict, float]] = {}
+    with ProcessPoolExecutor(
+        processes, initializer=_begin, initargs=(map_.sweep.pressure,)
+    ) as pool:
+
+        def ask(requests: list[dict]) -> Iterator[dict]:
+            done = pool.map(partial(answer, store=store), requests)
+            for record, seconds in progress(done, len(requests)):
+                answers[record["key"]] = record, seconds
+                yield record
+
+        refine(map_, ask)
+    records, seconds = zip(*answers.values(), strict=True)
+    return list(records), list(seconds)
+
+
+def _begin(pressure: str) -> None:
+    """Prepare a process of the pool; it ends when the process that started it ends."""
+    named_files.remember([pressure])
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None  # as in every process of a pool
+    parent.join()
+    os._exit(1)

@@ -1,0 +1,85 @@
+"""Other packages are used by their public interfaces, as imports and attributes show."""
+
+import ast
+import io
+import re
+import tokenize
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+OTHERS = ("snakemake", "xarray", "pint", "numba")
+NUMBA_CONFIG = ROOT / "src/microslip/foundation/kernel_cache.py"
+"""The one file that sets an option of numba.config besides the vector units in compiled.py."""
+WORKFLOW = {"source_path", "basedir", "current_basedir", "cores", "configfiles"}
+"""Attributes of the object `workflow` that rules may use: paths, cores, configuration files."""
+PYTHON = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")])
+RULES = [
+    ROOT / "Snakefile",
+    *sorted((ROOT / "workflow").rglob("*.smk")),
+    ROOT / "workflow/Snakefile",
+]
+
+
+def is_private(name):
+    return any(part.startswith("_") for part in name.split("."))
+
+
+def imported(tree):
+    """(bound name, full name) of what a file imports from the packages."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [(a.asname or a.name.partition(".")[0], a.name) for a in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [(a.asname or a.name, f"{node.module}.{a.name}") for a in node.names]
+        else:
+            continue
+        yield from ((bound, name) for bound, name in names if name.partition(".")[0] in OTHERS)
+
+
+def private_uses(tree):
+    """Private names that a file imports from the packages, and private attributes of the others."""
+    names = dict(imported(tree))
+    yield from filter(is_private, names.values())
+    for node in ast.walk(tree):
+        inner, parts = node, []
+        while isinstance(inner, ast.Attribute):
+            parts.append(inner.attr)
+            inner = inner.value
+        if (
+            parts
+            and isinstance(inner, ast.Name)
+            and inner.id in names
+            and is_private(".".join(parts))
+        ):
+            yield f"{names[inner.id]}.{'.'.join(reversed(parts))}"
+
+
+def test_private_uses_are_found():
+    text = "import snakemake.io as a\nfrom numba._x import y\na.b._c.d()\nimport pint\npint.unit"
+    assert set(private_uses(ast.parse(text))) == {
+        "numba._x.y",
+        "snakemake.io.b._c",
+        "snakemake.io.b._c.d",
+    }
+
+
+@pytest.mark.parametrize("path", PYTHON, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_module_uses_private_names_of_other_packages(path):
+    assert not list(private_uses(ast.parse(path.read_text(encoding="utf-8"))))
+
+
+def test_options_of_the_kernel_cache_are_set_in_one_file():
+    setting = re.compile(r"config\.CACHE_\w+")
+    assert [path for path in PYTHON if setting.search(path.read_text("utf-8"))] == [NUMBA_CONFIG]
+
+
+@pytest.mark.parametrize("path", RULES, ids=lambda path: path.name)
+def test_rules_use_public_attributes_of_snakemake(path):
+    tokens = tokenize.generate_tokens(io.StringIO(path.read_text("utf-8")).readline)
+    text = " ".join(token.string for token in tokens if token.type != tokenize.COMMENT)
+    assert set(re.findall(r"\bworkflow \. (\w+)", text)) <= WORKFLOW
+    assert not re.search(r"\b(rules|checkpoints|workflow|snakemake)\b( \. \w+)* \. _", text)
+    modules = set(re.findall(r"\b(?:from|import) (snakemake(?: \. \w+)*)", text))
+    assert modules <= {"snakemake . utils", "snakemake . exceptions"}

@@ -1,0 +1,324 @@
+"""Datasets and figures are those of the configuration and the code, whatever happened before."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+import xarray as xr
+from stubs.workflow_project import ENVIRONMENT, SNAKEMAKE, Project, jobs_in
+
+pytestmark = pytest.mark.long
+
+AXES = {"velocity": [0.5, 1, 2], "amplitude": [0.5, 1, 2], "tolerance": 1e-2}
+RIGID = {**AXES, "motion": "transverse", "model": "rigid", "group": "rigid"}
+DATASET, FIGURE = "results/slide.nc", "results/figures/extended_rigid.png"
+COUNTING = """
+
+import time
+from pathlib import Path
+_solve, _folder = solve, Path(__file__).parents[3]
+
+def solve(*arguments, **settings):
+    with open(_folder / "solved", "a") as file:
+        file.write(f"{arguments}\\n" if arguments else "")  # none to compile
+    time.sleep(0.3 * (_folder / "slow").exists())
+    return _solve(*arguments, **settings)
+"""
+
+
+def configured(**changed):
+    slide = RIGID | changed
+    paper = {"transverse": {"velocity": [1], "amplitude": [0]}}
+    return {"sweeps": paper, "extended": {"slide": slide}, "points_per_job": 3}
+
+
+class Counted(Project):
+    """A project that counts what it solves."""
+
+    def solved(self):
+        """Calls of the solver so far, one a line."""
+        path = self.folder / "solved"
+        return path.read_text().splitlines() if path.exists() else []
+
+    def values(self, name):
+        with xr.open_dataset(self.folder / DATASET) as data:
+            return data[name].values.tolist()
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A project after its first run. To be left as it is."""
+    project = Counted(tmp_path_factory.mktemp("scenarios") / "it")
+    project.append("src/microslip/adaptive/point.py", COUNTING)
+    project.configure(configured())
+    assert jobs_in(project.run(DATASET, FIGURE)) == {
+        "warm_up": 2,
+        "solve": 3,
+        "collect": 1,
+        "draw": 1,
+    }
+    assert len(project.solved()) == 9
+    return project
+
+
+@pytest.fixture
+def project(finished, tmp_path):
+    """A copy of the finished project to edit."""
+    return finished.copied(tmp_path / "copy")
+
+
+def test_again_there_is_nothing_to_do_whatever_the_triggers(finished):
+    assert "Nothing to be done" in finished.run(DATASET, FIGURE)
+    triggers = ["--rerun-triggers", "mtime", "params", "input", "software-env", "code"]
+    assert finished.planned(DATASET, FIGURE, *triggers) == {}
+
+
+@pytest.mark.parametrize(
+    ("axis", "values", "batches", "new"),
+    [
+        ("amplitude", [0.5, 1, 1.5, 2], 1, 3),
+        ("velocity", [0.5, 1, 1.5, 2], 3, 3),
+        ("poisson", [0, 0.3], 3, 9),
+    ],
+)
+def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, project):
+    project.configure(configured(**{axis: values}))
+    assert jobs_in(project.run(DATASET))["solve"] >= batches
+    assert len(project.solved()) == 9 + new
+    assert project.values(axis) == values
+    assert project.planned(DATASET) == {}
+    project.configure(configured())
+    assert jobs_in(project.run(DATASET)) == {"collect": 1}
+
+
+def killed(project, seconds):
+    """Start a run and kill it with its jobs after some seconds."""
+    command = [SNAKEMAKE, DATASET, "-j2", "--configfile", "tiny.yaml", "--nolock"]
+    running = subprocess.Popen(
+        command,
+        cwd=project.folder,
+        env=ENVIRONMENT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    time.sleep(seconds)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+
+
+def test_kills_lose_the_points_in_flight_at_most(finished, project):
+    shutil.rmtree(project.folder / "results" / "points")
+    shutil.rmtree(project.folder / "results" / "batches")
+    (project.folder / DATASET).unlink()
+    (project.folder / "solved").unlink()
+    (project.folder / "slow").touch()
+    draw = random.Random(1)
+    for _ in range(6):
+        killed(project, draw.uniform(2.0, 12.0))
+    (project.folder / "slow").unlink()
+    project.run(DATASET)
+    solved = project.solved()
+    assert len(set(solved)) == 9
+    assert len(solved) - 9 <= 6 * 2
+    assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
+    assert project.planned(DATASET) == {}
+
+
+def forget(project):
+    shutil.rmtree(project.folder / ".snakemake")
+    return project
+
+
+def copy(project):
+    """Results copied into another working directory, with the dates of copying."""
+    there = project.folder.parent / "there"
+    shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake"))
+    for path in there.rglob("*"):
+        os.utime(path)
+    return Counted.at(there)
+
+
+def share(project):
+    """Another working directory whose results are the same folder."""
+    there = project.folder.parent / "there"
+    shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake", "results"))
+    (there / "results").symlink_to(project.folder / "results")
+    return Counted.at(there)
+
+
+@pytest.mark.parametrize("how", [forget, copy, share])
+def test_what_snakemake_remembers_does_not_count(how, project):
+    moved = how(project)
+    assert moved.planned(DATASET, FIGURE) == {}
+    moved.configure(configured(velocity=[0.5, 1]))
+    assert moved.planned(DATASET)["collect"] == 1
+
+
+@pytest.mark.parametrize("dates", ["2096", "1970", "mixed"])
+def test_dates_do_not_count(dates, project):
+    draw = random.Random(1)
+    for path in (project.folder / "results").rglob("*"):
+        date = {"2096": 4e9, "1970": 1e3, "mixed": draw.uniform(1e3, 4e9)}[dates]
+        os.utime(path, (date, date))
+    assert project.planned(DATASET, FIGURE) == {}
+
+
+def test_two_configurations_share_a_folder_of_results(finished, project):
+    """A, B, A, by the dataset and by its figure alone."""
+    first = (finished.folder / DATASET).read_bytes()
+    figure = (finished.folder / FIGURE).read_bytes()
+    project.configure(configured(velocity=[0.5, 1, 2, 3]))
+    project.run(FIGURE)
+    assert project.values("velocity") == [0.5, 1, 2, 3]
+    assert (project.folder / FIGURE).read_bytes() != figure
+    project.configure(configured())
+    assert jobs_in(project.run(DATASET)) == {"collect": 1}
+    assert (project.folder / DATASET).read_bytes() == first
+    project.run(FIGURE)
+    assert (project.folder / FIGURE).read_bytes() == figure
+    assert len(project.solved()) == 9 + 3
+
+
+EDITS = {
+    "solver": ("src/microslip/models/reduced/rigid.py", {"solve", "collect", "draw"}),
+    "collector": ("src/microslip/datasets/sweep_dataset.py", {"collect", "draw"}),
+    "figure": ("src/microslip/report/figures/groups.py", {"draw"}),
+}
+
+
+@pytest.mark.parametrize("edited", EDITS)
+def test_an_edit_makes_again_what_it_concerns_and_nothing_if_it_is_undone(edited, project):
+    file, rules = EDITS[edited]
+    text = (project.folder / file).read_text()
+    project.append(file, "\n# A comment.\n")
+    assert project.planned(DATASET, FIGURE) == {}
+    project.append(file, "\nSPARE = 1\n")
+    assert set(project.planned(DATASET, FIGURE)) - {"warm_up"} == rules
+    (project.folder / file).write_text(text)
+    assert project.planned(DATASET, FIGURE) == {}
+
+
+EDITING = """
+
+from pathlib import Path as _Path
+_before = solve
+
+def solve(*arguments, **settings):
+    file = _Path(__file__).parents[1] / "theory" / "paper.py"
+    if "EDITED" not in file.read_text():
+        file.write_text(file.read_text() + "\\nEDITED = True\\n")
+    return _before(*arguments, **settings)
+"""
+
+
+def test_a_solver_that_is_edited_during_a_run_ends_it(project):
+    project.append("src/microslip/adaptive/point.py", EDITING)
+    before = project.points()
+    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert done.returncode != 0
+    assert "was edited while its code was running" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert project.points() == before
+    project.run(DATASET)
+    assert project.planned(DATASET) == {}
+
+
+def test_a_collector_that_fails_leaves_the_old_dataset(finished, project):
+    project.append("src/microslip/datasets/sweep_dataset.py", "\n\ndef report(*_):\n    1 / 0\n")
+    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert done.returncode != 0
+    assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
+
+
+DAMAGED = {
+    "a dataset cut short": (DATASET, lambda path: os.truncate(path, 1000), {"collect", "draw"}),
+    "a dataset of another": (DATASET, lambda path: path.write_text("mine"), {"collect", "draw"}),
+    "no page": ("results/summaries/slide.html", lambda path: path.unlink(), {"collect", "draw"}),
+    "an empty figure": (FIGURE, lambda path: os.truncate(path, 0), {"draw"}),
+    "no stamp": ("results/.made/slide.json", lambda path: path.unlink(), {"collect", "draw"}),
+    "a bad stamp": (
+        "results/.made/slide.json",
+        lambda path: path.write_text("{"),
+        {"collect", "draw"},
+    ),
+}
+
+
+@pytest.mark.parametrize("case", DAMAGED)
+def test_a_damaged_product_is_made_again(case, finished, project):
+    file, damage, rules = DAMAGED[case]
+    damage(project.folder / file)
+    said = project.run(DATASET, FIGURE)
+    assert set(jobs_in(said)) >= rules
+    for path in (DATASET, FIGURE):
+        assert (project.folder / path).read_bytes() == (finished.folder / path).read_bytes()
+    kept = project.folder / f"{DATASET}.damaged"
+    assert kept.exists() == (
+        case in ("a dataset cut short", "a dataset of another", "no stamp", "a bad stamp")
+    )
+    assert project.planned(DATASET, FIGURE) == {}
+
+
+def test_a_damaged_batch_is_made_again_from_its_points(finished, project):
+    batch, *_ = (project.folder / "results/batches/slide").glob("*.jsonl")
+    whole = batch.read_bytes()
+    os.truncate(batch, len(whole) - 30)
+    said = project.run(DATASET)
+    assert jobs_in(said) == {"solve": 1, "collect": 1}
+    assert batch.read_bytes() == whole
+    assert len(project.solved()) == 9
+    point, *_ = (project.folder / "results/points/transverse").rglob("*.json")
+    os.truncate(point, 40)
+    shutil.rmtree(project.folder / "results/batches")
+    (project.folder / DATASET).unlink()
+    assert "damaged result" in project.run(DATASET)
+    assert len(project.solved()) == 10
+    assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
+
+
+def test_a_dry_run_changes_no_content(project):
+    (project.folder / DATASET).write_bytes(b"\x89HDF, once")
+    results = project.folder / "results"
+
+    def contents():
+        files = (path for path in results.rglob("*") if path.is_file() and path.name != ".again")
+        return {path: path.read_bytes() for path in files}
+
+    before = contents()
+    for arguments in (["-n"], ["--list"], ["--lint"]):
+        done = project.snakemake("--configfile", "tiny.yaml", *arguments)
+        assert done.returncode == 0, done.stderr
+        assert contents() == before
+
+
+FAILING = """
+
+from microslip.foundation.errors import SolverError
+_good = solve
+
+def solve(motion, velocity, *arguments, **settings):
+    if velocity == 2 and not (_folder / "mended").exists():
+        raise {error}("no luck")
+    return _good(motion, velocity, *arguments, **settings)
+"""
+
+
+def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
+    project.append("src/microslip/adaptive/point.py", FAILING.format(error="SolverError"))
+    assert "slide: 9 points, 3 not converged" in project.run(DATASET)
+    assert project.planned(DATASET)["solve"] == 3
+    (project.folder / "mended").touch()
+    assert "slide: 9 points, all converged" in project.run(DATASET)
+    assert project.planned(DATASET) == {}
+
+
+def test_an_error_of_the_code_fails_the_run(project):
+    project.append("src/microslip/adaptive/point.py", FAILING.format(error="TypeError"))
+    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert done.returncode != 0
+    assert "TypeError: no luck" in done.stderr

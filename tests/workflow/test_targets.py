@@ -1,0 +1,292 @@
+"""Certified maps, other motions and the studies, run by Snakemake in a copy."""
+
+import re
+import shutil
+
+import pytest
+import xarray as xr
+from matplotlib.text import Text
+from stubs.propulsion_stub import DRIVING
+from stubs.workflow_project import Project, jobs_in
+
+import microslip
+from microslip.app import leftovers
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.datasets import netcdf
+from microslip.report.figures import drawing
+
+pytestmark = pytest.mark.long
+
+PAPER = {"transverse": {"velocity": [1], "amplitude": [0]}}
+
+
+def made(folder, configuration, *targets):
+    """A project with this configuration after a run of these targets; `said` holds its output."""
+    project = Project(folder)
+    project.configure(configuration)
+    project.said = project.run(*targets)
+    return project
+
+
+# Certified maps: the rigid model, whose points cost nothing.
+
+AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "tolerance": 0.01}
+MAP = {"sweeps": {"transverse": {**AXES, "adaptive": {"error": 0.03}}}}
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    """A project with a certified map. To be left as it is."""
+    return made(tmp_path_factory.mktemp("certified"), MAP, "certified")
+
+
+def map_bytes(project):
+    return (project.folder / "results" / "certified_transverse.nc").read_bytes()
+
+
+def test_one_command_makes_a_map_whose_error_holds_everywhere(certified):
+    results = certified.folder / "results"
+    data = microslip.open_map("certified_transverse", results).load()
+    assert float(data.cell_error.max()) <= data.error == 0.03
+    assert data.points == len(certified.points()) > 25
+    assert (results / "figures/certified_transverse.png").read_bytes().startswith(b"\x89PNG")
+    page = (results / "summaries/certified_transverse.html").read_text()
+    assert f"{data.points} points, all converged" in page
+    answer = data.microslip.at(velocity=0.7, amplitude=1.9)
+    rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
+    assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
+
+
+def test_progress_of_a_map_is_shown(certified):
+    assert re.search(r"certified_transverse: .*point/s", certified.said)
+
+
+def test_a_second_run_has_nothing_to_do_and_a_plain_one_makes_no_map(certified):
+    assert "Nothing to be done" in certified.run("certified")
+    assert "map" not in certified.planned()
+
+
+def test_a_map_that_was_killed_goes_on_from_its_points_to_the_same_bytes(certified, tmp_path):
+    project = certified.copied(tmp_path / "killed")
+    results, before = project.folder / "results", project.points()
+    (results / "certified_transverse.nc").unlink()
+    shutil.rmtree(results / "batches")
+    for path in sorted(results.glob("points/*/*/*.json"))[::3]:
+        path.unlink()
+    project.run("certified")
+    assert map_bytes(project) == map_bytes(certified)
+    assert project.points() == before
+
+
+def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
+    project = certified.copied(tmp_path / "looser")
+    looser = {**AXES, "adaptive": {"error": 0.1, "tolerance": 0.009}}
+    project.configure({"sweeps": {"transverse": looser}})
+    before = project.points()
+    assert jobs_in(project.run("certified"))
+    data = microslip.open_map("certified_transverse", project.folder / "results").load()
+    assert data.error == 0.1
+    assert data.points <= len(before)
+    assert project.points() == before
+
+
+def test_nothing_of_a_map_is_left_over(certified):
+    results = certified.folder / "results"
+    plan = Plan(load.load(certified.folder / "tiny.yaml"))
+    assert not any(leftovers.left_over(results, [plan]).values())
+    without = load.from_mapping({"sweeps": {"transverse": AXES}})
+    left = leftovers.left_over(results, [Plan(without)])
+    assert len(left[leftovers.KINDS[0]]) == len(certified.points())
+    names = {path.name for path in left[leftovers.KINDS[2]]}
+    assert names == {
+        f"certified_transverse.{kind}" for kind in ("nc", "html", "png", "pdf", "json")
+    }
+
+
+def test_a_sweep_of_forces_makes_a_map_of_drift(tmp_path):
+    weights = {"motion": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
+    weights |= {"adaptive": {"error": 0.1}}
+    project = made(tmp_path, {"sweeps": PAPER, "drives": {"weights": weights}}, "drives")
+    data = microslip.open_map("certified_weights", project.folder / "results").load()
+    assert float(data.cell_error.max()) <= data.error == 0.1
+    answer = data.microslip.at(0.6, 1.2)
+    asked = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
+    off = abs(float(answer.velocity) - asked.velocity)
+    assert off <= float(answer.velocity_error) + asked.velocity_error
+    assert "Nothing to be done" in project.run("drives")
+
+
+# Other motions
+
+
+def test_other_motions_have_datasets_and_a_figure_of_each_group(tmp_path):
+    axes = {"velocity": [0.1, 1], "amplitude": [0, 0.5, 1], "tolerance": 0.01}
+    circle = {**axes, "group": "motions", "model": "rigid", "motion": "elliptic", "title": "round"}
+    cone = {**axes, "group": "static", "motion": "longitudinal", "pressure": "power:exponent=1"}
+    sweeps = {"circle": circle, "cone": cone | {"velocity": [0, 0.1]}}
+    project = made(tmp_path, {"sweeps": PAPER, "extended": sweeps}, "extended")
+    results = project.folder / "results"
+    assert {path.stem for path in results.glob("*.nc")} == {"circle", "cone"}
+    for name in ("extended_motions", "extended_static"):
+        for form in ("png", "pdf"):
+            assert (results / f"figures/{name}.{form}").stat().st_size > 0
+    with xr.open_dataset(results / "circle.nc") as data:
+        assert (data.motion, data.title, data.group) == ("elliptic", "round", "motions")
+        assert data.mu_macro.dims == ("amplitude", "velocity")
+    with xr.open_dataset(results / "cone.nc") as data:
+        assert data.pressure == "power:exponent=1"
+        assert data.converged.all()
+    assert len(project.points()) == 12
+    assert "Nothing to be done" in project.run("extended")
+    assert project.planned()["collect"] == 1  # a plain run makes none of it
+
+
+# Studies
+
+CLAIMS = {"tolerance": 0.01, "velocity": [0.1], "cells": 8}
+CLAIMS |= {"amplitude_transverse": [1], "amplitude_bore": [1]}
+SMALLER = {
+    "studies/claims/claims.py": {"PAPER_SQUARES, PAPER_STEPS = 32, 100": "= 16, 20"},
+    "solver/methods/paper.py": {"STEPS_PER_PERIOD = 32, 100": "= 16, 20", "STEPS = 8000": "= 400"},
+}
+"""Numbers in modules, and others for them: the paper's own runs take a second in place of ten."""
+
+
+def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
+    project = Project(tmp_path)
+    project.configure({"sweeps": PAPER, "claims": CLAIMS})
+    for name, lines in SMALLER.items():
+        path = project.folder / "src" / "microslip" / name
+        text = path.read_text()
+        for line, numbers in lines.items():
+            assert text.count(line) == 1
+            text = text.replace(line, line.partition("=")[0] + numbers)
+        path.write_text(text)
+    said = project.run("results/figures/claims_static.png")
+    results = project.folder / "results"
+    with netcdf.whole(results / "claims.nc") as data:
+        assert data["claim"].values.tolist() == list(range(1, 10))
+        assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
+        stored = {path.stem for path in results.rglob("*/*/??/*.json")}
+        assert set(data["run"].values) <= stored
+        page = (results / "summaries/claims.html").read_text(encoding="utf-8")
+        assert all(str(key) in page for key in data["run"].values)
+    assert "claim 9: " in said
+    assert project.planned("claims") == {"draw": 1, "claims": 1}  # the other figure
+    more = {**CLAIMS, "amplitude_bore": [1, 10]}
+    before, after = (
+        Plan(load.from_mapping({"sweeps": PAPER, "claims": given})) for given in (CLAIMS, more)
+    )
+    groups = before.products["claims"].groups
+    new = {*after.batch_files(*groups)} - {*before.batch_files(*groups)}
+    assert len([name for name in new if name.startswith("batches/claims/")]) == 1
+
+
+METHODS = {
+    "sweeps": PAPER,
+    "accuracy": {
+        "methods": ["shipped", "my-method"],
+        "points": {"fast": {"motion": "longitudinal", "velocity": 0.5, "amplitude": 1}},
+        "levels": 2,
+        "repeats": 1,
+        "map": {
+            "velocity": [1, 3],
+            "amplitude_transverse": [0.5, 2],
+            "amplitude_bore": [0.5, 2],
+            "tolerance": [0.01],
+        },
+    },
+    "stability": {
+        "methods": ["shipped", "my-method"],
+        "axes": ["critical-amplitude"],
+        "tolerance": 0.01,
+    },
+}
+TARGETS = ["results/accuracy_cost.nc", "results/figures/accuracy_profile.png"]
+TARGETS += ["results/stability.nc", "results/figures/stability_atlas.png"]
+METHOD = '''
+"""Backward Euler under another name."""
+
+from microslip.solver.method import Method
+from microslip.models.path import EULER
+
+METHOD = Method("my own way", integrator=EULER)
+'''
+
+
+def write_method(project, stem):
+    (project.folder / f"src/microslip/solver/methods/{stem}.py").write_text(METHOD)
+
+
+@pytest.fixture(scope="module")
+def studies(tmp_path_factory):
+    """A project with a method of its own after both studies. To be left as it is."""
+    project = Project(tmp_path_factory.mktemp("studies"))
+    project.configure(METHODS)
+    write_method(project, "my_method")
+    project.said = project.run(*TARGETS)
+    return project
+
+
+def texts(name, path):
+    """All that is written in a figure drawn from the dataset at `path`."""
+    with netcdf.whole(path) as data:
+        figure = drawing.draw(name, {drawing.FIGURES[name][0]: data})
+        return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_a_method_in_one_new_file_is_in_the_datasets_and_in_the_figures(studies):
+    results = studies.folder / "results"
+    with netcdf.whole(results / "accuracy_cost.nc") as data:
+        own = data.isel(trial=data.trial_method.values == "my-method")
+        assert own.trial_model.values.tolist() == ["radial", "radial"]
+        assert own.converged.values.all()
+        assert (own.seconds.values > 0).all()
+        assert set(data.trial_model.values) >= {"rigid", "radial", "cartesian", "auto"}
+    with netcdf.whole(results / "stability.nc") as data:
+        assert data.method.values.tolist() == ["shipped", "my-method"]
+        assert data.method_summary.values[1] == "my own way"
+        assert (data.outcome.values > 0).all()
+    assert "my-method" in texts("accuracy_profile", results / "accuracy_cost.nc")
+    assert "my-method" in texts("stability_atlas", results / "stability.nc")
+    assert "fast: " in studies.said and "my-method: " in studies.said
+    assert "Nothing to be done" in studies.run(*TARGETS)
+
+
+def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
+    project = studies.copied(tmp_path / "copy")
+
+    def trials():
+        paths = project.folder.glob("results/trials/*/*/*.json")
+        return {path.name: path.read_bytes() for path in paths}
+
+    before = trials()
+    write_method(project, "second_way")
+    methods = ["shipped", "second-way", "my-method"]
+    project.configure({**METHODS, "accuracy": {**METHODS["accuracy"], "methods": methods}})
+    said = project.run("results/accuracy_cost.nc")
+    assert jobs_in(said) == {"solve": 1, "collect": 1}
+    after = trials()
+    assert {name: after[name] for name in before} == before
+    assert len(after) == len(before) + 2
+
+
+def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studies, tmp_path):
+    project = studies.copied(tmp_path / "copy")
+    project.append("src/microslip/solver/methods/my_method.py", "\n# More to read.\n")
+    assert project.planned(*TARGETS) == {}
+    project.append("src/microslip/solver/methods/my_method.py", "\nSPARE = 1\n")
+    assert project.planned("accuracy", "stability")["solve"] == 2
+
+
+def test_lines_of_self_propelled_motions_are_answered_in_batches(tmp_path):
+    """Three lines, two to a job; two titles of one line are one request."""
+    project = Project(tmp_path)
+    project.configure({"sweeps": PAPER, "propulsion": DRIVING})
+    expected = {"warm_up": 2, "solve": 2, "collect": 1, "draw": 1, "propulsion": 1}
+    assert project.planned("propulsion") == expected
+    motions = DRIVING["motions"]
+    motions = motions | {"twin": motions["eight"] | {"title": "again"}}
+    project.configure({"sweeps": PAPER, "propulsion": DRIVING | {"motions": motions}})
+    assert project.planned("propulsion") == expected

@@ -1,0 +1,31 @@
+"""Answer all points of a certified map, round by round, by several processes.
+
+Output: the records of all its points, as JSON lines.  All numbers in them are dimensionless.  Each
+is kept in the store as well, as soon as it is computed.
+"""
+
+from tqdm import tqdm
+
+from microslip.app.job_log import job_log
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.sweeps import batches, map_refinement, store
+
+name = snakemake.wildcards.certified
+
+if __name__ == "__main__":  # not in the processes that solve
+    with job_log(snakemake.log[0]) as log:
+        configuration = load.from_mapping(snakemake.config, ask_solver=False)
+        if snakemake.wildcards.batch != Plan(configuration).map_batch(name):
+            raise batches.SourcesEdited("the solver")
+        records, seconds = map_refinement.solved(
+            configuration.certified[name],
+            store.Store(snakemake.params.store),
+            snakemake.threads,
+            lambda items, count: tqdm(items, name, count, unit="point", mininterval=1.0),
+        )
+        done = batches.statistics(records, seconds)
+        store.write(snakemake.output[0], records, done["final"])
+        log.info(
+            "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done
+        )

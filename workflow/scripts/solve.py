@@ -1,0 +1,23 @@
+"""Answer a batch of requests: points of a sweep, single runs for a figure, or part of a study.
+
+Output: the records of the batch in the order of the requests, as JSON lines.  All numbers in them
+are dimensionless, except for times (s) and sizes of memory (byte) of trials and scaling.  Each is
+kept in the store as well, as soon as it is computed, in the folders that batches.FOLDERS lists.
+"""
+
+import json
+
+from microslip.app.job_log import job_log
+from microslip.foundation import named_files
+from microslip.sweeps import batches, store
+
+with job_log(snakemake.log[0]) as log:
+    # Requests name files by their content.
+    for sweeps in ("extended", "drives"):
+        named_files.remember(sweep["pressure"] for sweep in snakemake.config[sweeps].values())
+    batch = batches.Batch(**json.loads(snakemake.params.batch))
+    if batch.name != snakemake.wildcards.batch:
+        raise batches.SourcesEdited("the solver")
+    records, done = batches.run_batch(batch.requests, store.Store(snakemake.params.store))
+    store.write(snakemake.output[0], records, done["final"])
+    log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)
