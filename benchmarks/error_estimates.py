@@ -57,9 +57,7 @@ TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
 TWICE = 20
 """Every point whose number is a multiple of this has a second reference."""
 MOST_WORK = 3e7
-"""Work of a first reference where `finer.py` can make one: about six seconds."""
-MOST_WORK_OF_OTHERS = 1e8
-"""Largest work of a run of a reference where `finer.py` can make none."""
+"""Work of a first reference, and of a run of another one without `finer.py`: some ten seconds."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
@@ -179,7 +177,7 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
 
     if not every or not clear():
         others = bool(point.keys() & NOT_FINER)
-        first, first_result = tighter(point, MOST_WORK_OF_OTHERS if others else MOST_WORK)
+        first, first_result = tighter(point, MOST_WORK)
         every += [] if every else [first]
         if not clear() or (k % TWICE == 0 and first["uncertainty"] > EXACT):
             add_independent()
@@ -210,7 +208,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         value, uncertainty = finer.reference(problem, point["tolerance"], result)
         return {"reference": float(value), "uncertainty": float(uncertainty), "by": "finer"}
     expected = first.effort.work * DENSER[1] ** 3 if first.converged else np.inf
-    ran = first if expected < MOST_WORK_OF_OTHERS else result
+    ran = first if expected < MOST_WORK else result
     if not ran.cells:  # a closed form
         return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
     arguments = arguments_of(point) | {"tolerance": point["tolerance"] * TIGHTER}
@@ -219,7 +217,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         imposed = {"cells": round(factor * ran.cells)}
         if ran.steps_per_period:
             imposed["steps"] = 2 * round(0.5 * factor * ran.steps_per_period)
-        run = microslip.solve(**arguments, **imposed, most_work=MOST_WORK_OF_OTHERS)
+        run = microslip.solve(**arguments, **imposed, most_work=MOST_WORK)
         if not run.periodic:
             return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
         values.append(quantity(run)[0])

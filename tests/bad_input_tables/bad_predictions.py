@@ -84,7 +84,7 @@ BODIES = [
     (ELASTIC | {"nu": "0.7"}, "--nu = '0.7': allowed is a finite value at least 0 and at most 0.5"),
     (ELASTIC | {"young": "inf GPa"}, "it is not finite"),
     ({"nu": "30 %"}, "--material = 'steel': allowed without young and nu"),
-    ({"material": "Steel"}, "(did you mean steel?), or a Material"),
+    ({"material": "Steel"}, "(did you mean steel?)"),
     ({"material": "rigid"}, "allowed is an elastic body where the counterbody is rigid"),
     ({"counterbody": "wood"}, "or E and nu as in '70 GPa, 0.22'"),
     ({"counterbody": "0.22, 70 GPa"}, "its Young's modulus '0.22'"),
