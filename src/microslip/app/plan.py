@@ -27,8 +27,9 @@ from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep and its page, besides those that they import."""
-STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
+STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
+PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
 REFINEMENT_CODE = ("sweeps/map_refinement.py",)
 """Modules that choose the points of a certified map."""
 
@@ -145,8 +146,8 @@ class Plan:
             yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
         periods = [f"{name}_periods" for name in explorer.maps_of(given)]
         for page in explorer.PAGES:
-            datasets = tuple(explorer.datasets_of(given, page))
-            yield f"pages/{page.removesuffix('.html')}", Product([page], (), datasets, periods)
+            name, datasets = page.removesuffix(".html"), tuple(explorer.datasets_of(given, page))
+            yield f"pages/{name}", Product([page], PAGE_CODE, datasets, periods)
 
     @property
     def datasets(self) -> list[str]:
@@ -185,7 +186,7 @@ class Plan:
         It does not depend on how the points of a sweep are cut into batches.
         """
         of = self.products[product]
-        code = source_digest.of_modules(*of.code) if of.code else explorer.digest()
+        code = source_digest.of_modules(*of.code)
         datasets, points = map(self.made_of, of.datasets), map(self._points_in, of.groups)
         return fingerprint(product, code, of.settings, [*datasets], [*points])
 

@@ -30,6 +30,8 @@ ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
 _WRITING = ("accessor", "files", "kernel_cache", "source_digest")
 NAMING = {f"foundation/{name}.py" for name in _WRITING}
 """Files that name and write results; the values in them do not depend on these."""
+ENDINGS = {"py", "html", "css", "js"}
+"""Ends of the names of files that count: modules, and what pages are made of."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
 """Folders with a file for each name, and the key of a request that names it."""
 
@@ -42,7 +44,8 @@ class Sources:
     package : Path
         Folder of the package.
     contents : dict of str to bytes
-        Sources by their paths inside the package, without files that Python cannot import.
+        Files by their paths inside the package: modules that Python can import, and what stands
+        beside them, such as templates and scripts of pages.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
@@ -67,7 +70,7 @@ class Sources:
         return frozenset(reached)
 
     def digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of the names and the code of modules, in hexadecimal."""
+        """SHA-256 of the names and the code of files, in hexadecimal."""
         code = [(name, self._parsed(name)[0]) for name in sorted(names)]
         self._write_parsed()
         return _sha256(json.dumps(code).encode())
@@ -124,6 +127,8 @@ class Sources:
             path = _in_a_users_folder(name)
             self.contents[name] = path.read_bytes() if path else b""
         key = _sha256(self.contents[name])
+        if not name.endswith(".py"):
+            return key, []
         if key not in self._known:
             self._known[key] = _parse(self.contents[name])
             self._is_written = False
@@ -158,12 +163,12 @@ def is_physics(name: str) -> bool:
 
 
 def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Path inside the package and path of each module in a folder and those below it."""
+    """Path inside the package and path of each file in a folder and those below it."""
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         stem, _, ending = entry.name.partition(".")
         if not stem.isidentifier() or stem == "__pycache__":
             continue
-        if ending == "py" and entry.is_file():
+        if ending in ENDINGS and entry.is_file():
             yield prefix + entry.name, entry.path
         elif not ending and entry.is_dir():
             yield from _modules(entry.path, f"{prefix}{entry.name}/")
@@ -255,7 +260,7 @@ def of_solver() -> str:
 
 
 def of_modules(*names: str) -> str:
-    """Digest of modules of the package, files or folders, and of all that they import."""
+    """Digest of files and folders of the package, and of all that their modules import."""
     files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
     return LOADED.digest(LOADED.closure(files))
 

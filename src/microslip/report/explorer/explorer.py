@@ -10,13 +10,10 @@ Importing this package is cheap, since the workflow reads it whenever it is pars
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator
 from math import prod
-from pathlib import Path
 
 from microslip.config.records import CertifiedMap, Configuration, Sweep
-from microslip.foundation import source_digest
 from microslip.foundation.canonical import number
 
 SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
@@ -134,13 +131,6 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
         for amplitude in axes[0][::every]
         for velocity in axes[1][::every]
     ]
-
-
-def digest() -> str:
-    """Digest of all that the page depends on besides datasets and periods."""
-    parts = [Path(__file__).with_name(name).read_bytes() for name in ASSETS]
-    parts.append(source_digest.of_modules("report/explorer", "sweeps/period_codec.py").encode())
-    return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
 def report(periods: dict) -> Iterator[str]:
