@@ -8,7 +8,6 @@ from dataclasses import is_dataclass
 import numpy as np
 import xarray as xr
 
-from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 
 AXES = {
@@ -42,13 +41,15 @@ def to_xarray(record: object) -> xr.Dataset:
     InputError
         For anything else.
     """
-    kind = type(record).__name__
-    if not is_dataclass(record) or kind not in AXES:
-        raise InputError("record", record, f"allowed is one of {', '.join(AXES)}, not {kind}")
+    kinds = [base.__name__ for base in type(record).__mro__ if base.__name__ in AXES]
+    if not is_dataclass(record) or not kinds:
+        allowed = f"allowed is one of {', '.join(AXES)}, not {type(record).__name__}"
+        raise InputError("record", record, allowed)
+    (kind,) = kinds
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
     about = {"record": kind}
-    plain = record.to_dict() if isinstance(record, Result) else vars(record)
+    plain = record.to_dict() if hasattr(record, "to_dict") else vars(record)
     for name, value in plain.items():
         if isinstance(value, np.ndarray):
             variables[name] = _axes_of(name, value, axes), value
@@ -56,7 +57,7 @@ def to_xarray(record: object) -> xr.Dataset:
             variables[name] = (), value
         elif isinstance(value, str):
             about[name] = value
-        elif isinstance(value, tuple):
+        elif isinstance(value, list | tuple):
             about[name] = "; ".join(value)
         elif isinstance(value, Mapping):
             about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
