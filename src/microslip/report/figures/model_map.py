@@ -51,7 +51,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
     logarithmic = _is_logarithmic(amplitude.values)
     x, y = _edges(velocity.values, True), _edges(amplitude.values, logarithmic)
     axes.set(xscale="log", yscale="log" if logarithmic else "linear")
-    colours = ListedColormap([_pale(name) for name in models] or ["white"])
+    colours = ListedColormap([_pale(name) for name in models] or [(1.0, 1.0, 1.0)])
     # Coloured edges: no hairlines between the cells in a PDF.
     ink: look.Ink = {"cmap": colours, "vmin": -0.5, "vmax": max(len(models), 1) - 0.5}
     ink |= {"edgecolors": "face"}
