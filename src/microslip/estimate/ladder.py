@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from math import isclose
 from typing import NamedTuple
 
 import numpy as np
@@ -79,23 +78,24 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Levels to try one after the other at a tolerance; the last is the one above the first
-        level of the tolerance SMALLEST_TOLERANCE."""
+        """Levels to try one after the other at a tolerance, up to one level above the first of
+        SMALLEST_TOLERANCE."""
         if self.imposed:
             return (self.start,)
         first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
         return LEVELS[min(first, last + 1) : last + 2]
 
     def _first(self, tolerance: float) -> int:
-        """Place of the first level in LEVELS."""
+        """Index in LEVELS of the first level at a tolerance."""
         least = self.start * RATIO ** math.log10(LOOSEST / min(tolerance, LOOSEST))
         # rounding of the power must not skip a level
-        enough = (k for k, n in enumerate(LEVELS) if n > least or isclose(n, least))
+        enough = (k for k, n in enumerate(LEVELS) if n > least or math.isclose(n, least))
         return next(enough, len(LEVELS) - 1)
 
 
 class Kind(NamedTuple):
-    """How finely problems of a kind begin.
+    """How finely problems of a kind begin, calibrated by
+    `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
 
     Attributes
     ----------
@@ -127,8 +127,8 @@ COUPLED = LOAD._replace(start=STATIC.start)
 """Several contacts that work against each other: which one slides changes within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Angles on half the disc, per level.  A rotation turns the slip about a centre within the contact.
-Under a translation tractions depend on the angle a little, and only at nu > 0: four angles leave
-1e-4 at most, see `benchmarks/angles.py`."""
+Under a translation tractions depend on the angle a little, and only at nu > 0.  Calibrated by
+`benchmarks/angles.py`."""
 
 
 def ladder_for(

@@ -12,6 +12,7 @@ LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
 """Largest allowed values: larger ones are typing errors, or exceed the memory or range of
 floats."""
 SMALLEST_TOLERANCE = 1e-6
+"""Smallest accepted error that can be asked for, absolute on mu_macro."""
 LARGEST_BODY = 1e6
 """Largest allowed stiffness, mass and damping of a drive, in working units."""
 SMALLEST_STIFFNESS = 1e-9
