@@ -4,7 +4,9 @@ Validation, the JSON schema and the tables in config/README.md follow from these
 stays as it was written, so that the filled-in settings can be handed on and read again.
 """
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
@@ -41,6 +43,11 @@ CONFIG = ConfigDict(
 )
 PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
 """For typed dicts, whose docstrings take long to extract."""
+STUDIES: dict[str, dict] = json.loads(
+    Path(__file__).with_name("study_defaults.json").read_text(encoding="utf-8")
+)
+POINTS, MOTIONS = STUDIES["accuracy"], STUDIES["propulsion"]
+"""Default points of the study of accuracy and default motions of that of propulsion, by name."""
 MOST_LINES, MOST_PANELS = 8, 4
 """Lines of a panel of the propulsion figure, and its panels."""
 
@@ -452,27 +459,6 @@ class StudyPoint(Settings):
         return self
 
 
-def _points(*rows: tuple) -> dict[str, dict]:
-    keys = ("motion", "velocity", "amplitude", "title", "poisson")
-    return {name: dict(zip(keys, row, strict=False)) for name, *row in rows}
-
-
-POINTS = _points(
-    ("large-amplitude", "transverse", 0.5, 3.0, "large amplitude"),
-    ("mid", "transverse", 0.1, 0.5, "mid-range"),
-    ("near-static", "transverse", 0.002, 0.5, "near the static limit"),
-    ("critical-amplitude", "transverse", 0.02, 1.0, "critical amplitude"),
-    ("tiny-amplitude", "transverse", 0.05, 0.05, "tiny amplitude"),
-    ("incompressible", "transverse", 0.1, 0.7, "incompressible", 0.5),
-    ("steady-bore", "continuous-bore", 0.8, None, "steady bore"),
-    ("slow-bore", "bore", 0.005, 1.0, "slow bore"),
-    ("bore", "bore", 0.2, 1.0, "bore"),
-    ("large-bore", "bore", 0.5, 5.0, "bore, centre of rotation inside"),
-    ("tiny-bore", "bore", 0.05, 0.1, "tiny bore"),
-)
-"""Points of the shipped study of accuracy."""
-
-
 class _Grid(Settings):
     velocity: Axis
     amplitude_transverse: Axis
@@ -546,31 +532,6 @@ class SelfPropelledMotion(Settings):
     """Heading of the panels that show it, together with others of the same heading."""
     title: Title | None = None
     """Title of the line, drawn as it stands. null: the name."""
-
-
-def _motions() -> dict[str, dict]:
-    eight = "elliptic:forward_cycles=2,phase"
-    flat = "elliptic:forward=0.5,forward_cycles=2,phase=0"
-    rows: dict[str, tuple[str, float, str, str]] = {
-        "eight": (f"{eight}=0", 1.0, "loops", "eight"),
-        "eight-flat": (flat, 1.0, "loops", "eight, half as long"),
-        "eight-ahead": (f"{eight}=45", 1.0, "loops", "phase 45 degrees"),
-        "eight-behind": (f"{eight}=-45", 1.0, "loops", "phase -45 degrees"),
-        "eight-large": (f"{eight}=0", 3.0, "loops", "eight, three times as large"),
-    }
-    for name, motion, amplitude, panel in (
-        ("pressed", "normal:forward=1,phase", 0.9, "forward to and fro, A 0.9"),
-        ("sliding", "normal:forward=1,load=0.2,phase", 4.0, "the same, sliding, A 4"),
-    ):
-        for phase in range(60, 211, 30):
-            title = f"phase {phase} degrees"
-            rows[f"{name}-{phase}"] = f"{motion}={phase}", amplitude, panel, title
-    keys = ("motion", "amplitude", "panel", "title")
-    return {name: dict(zip(keys, row, strict=True)) for name, row in rows.items()}
-
-
-MOTIONS = _motions()
-"""Motions of the shipped study of propulsion."""
 
 
 class Propulsion(Settings):

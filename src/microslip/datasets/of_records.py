@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import is_dataclass
 
 import numpy as np
 import xarray as xr
 
+from microslip.adaptive.history import History
+from microslip.adaptive.period import Period
+from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
+from microslip.si.prediction import Prediction
 
-AXES = {
-    "Result": (),
-    "Prediction": (),
-    "History": ("phase",),
-    "PropulsionLine": ("velocity",),
-    "Period": ("phase", "point"),
+AXES: dict[type, tuple[str, ...]] = {
+    Result: (),
+    Prediction: (),
+    History: ("phase",),
+    PropulsionLine: ("velocity",),
+    Period: ("phase", "point"),
 }
-"""Records that have a dataset, by the names of their classes, and their axes."""
+"""Axes of the datasets of records, by class."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound")
 """Arrays of a Period with a value for each point, if they have one axis."""
 
@@ -41,14 +45,15 @@ def to_xarray(record: object) -> xr.Dataset:
     InputError
         For anything else.
     """
-    kinds = [base.__name__ for base in type(record).__mro__ if base.__name__ in AXES]
-    if not is_dataclass(record) or not kinds:
-        allowed = f"allowed is one of {', '.join(AXES)}, not {type(record).__name__}"
-        raise InputError("record", record, allowed)
-    (kind,) = kinds
+    kind = next((kind for kind in AXES if isinstance(record, kind)), None)
+    if kind is None:
+        names = ", ".join(kind.__name__ for kind in AXES)
+        raise InputError(
+            "record", record, f"allowed is one of {names}, not {type(record).__name__}"
+        )
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
-    about = {"record": kind}
+    about = {"record": kind.__name__}
     plain = record.to_dict() if hasattr(record, "to_dict") else vars(record)
     for name, value in plain.items():
         if isinstance(value, np.ndarray):

@@ -27,8 +27,6 @@ from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
 METHOD = "boundary element method, elastic half-space with local Coulomb friction"
-INSTITUTION = "not stated"
-"""The workflow knows no institution; whoever publishes a dataset fills in the attribute."""
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
 
 
@@ -127,7 +125,6 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
         "Conventions": CONVENTIONS,
         "title": title,
         "source": f"microslip {microslip.__version__}: {METHOD}",
-        "institution": INSTITUTION,
         "references": PAPER,
         "microslip_version": microslip.__version__,
         "source_digest": source_digest.of_solver(),

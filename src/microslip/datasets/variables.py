@@ -39,11 +39,15 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """A variable of codes, indices of `meanings`."""
+    """A variable of codes, indices of `meanings`, as xarray.Dataset takes it."""
+    return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
+
+
+def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
+    """Attributes of a variable of codes, indices of `meanings`."""
     numbers = np.arange(len(meanings), dtype=np.int8)
     words = " ".join(name.replace(" ", "_") for name in meanings)
-    about = {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
-    return dims, np.asarray(codes).astype(np.int8), about
+    return {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
 
 
 def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
-from microslip.datasets.query import beyond, cells, lazily
+from microslip.datasets.query import beyond, cells, inverse
 from microslip.datasets.query.answers import (
     EXACT,
     FASTER,
+    FRICTION,
     MAP,
     NARROWER,
     OUTSIDE,
@@ -22,14 +24,14 @@ from microslip.datasets.query.answers import (
     STATIC,
     STILL,
     WIDER,
-    answered,
+    dataset_of,
 )
 from microslip.datasets.query.cells import CellNodes, Map
-from microslip.datasets.query.coordinates import grid_axes, labelled
+from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
 from microslip.datasets.query.drift import Drift
-from microslip.datasets.query.inverse import Inverse
 from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_negative
 from microslip.datasets.query.solver import pulled_by, solved
+from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
@@ -44,7 +46,7 @@ def accessor(dataset: xr.Dataset) -> Friction | Drift:
     return Drift(dataset) if certified_map.is_of_drift(dataset) else Friction(dataset)
 
 
-class Friction(Inverse):
+class Friction:
     """Friction at any point of a motion, from a dataset of one of its sweeps.
 
     Raises ValueError where the dataset is none of a sweep.
@@ -116,36 +118,21 @@ class Friction(Inverse):
             what no limit is proved for: of other motions and pressures than the paper's, all beyond
             the map, unless there is a tolerance.
         """
-        if lazily.is_lazy(velocity, amplitude):
-            settings = {"poisson": poisson, "tolerance": tolerance}
-            velocities, amplitudes = self._labelled(velocity, amplitude)
-            asked = {"amplitude": amplitudes, "velocity": velocities}
-            return lazily.answered(self.at, self._dataset, asked, **settings)
+        coordinates = self._coordinates(velocity, amplitude)
         nodes = self._nodes(poisson)
         nu = poisson_within(nodes.poisson, poisson)
-        velocities, amplitudes = self._points(velocity, amplitude)
-        flat_velocity = velocities.values.ravel().astype(float)
-        flat_amplitude = np.full(len(flat_velocity), np.nan)
-        if amplitudes is not None:
-            flat_amplitude = amplitudes.values.ravel().astype(float)
-        if not self._limits_known or cells.is_static(self._dataset):
-            answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
-        elif (table := self._table(nodes, nu)) is None:
-            raise InputError("velocity", 0.0, "microslip.at needs nodes above 0 in the dataset")
-        elif amplitudes is None:
-            answer = self._steady(table, flat_velocity)
-        else:
-            answer = self._oscillating(table, flat_velocity, flat_amplitude, nu)
-        value, error, source = answer
-        error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
             tolerance = real("tolerance", tolerance, 0.0)
             if tolerance == 0.0:
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
-            point = flat_velocity, flat_amplitude
-            self._solve((value, error, source), point, nu, tolerance)
-        found = answered(self._motion, velocities, (value, error, source), nu)
-        return found.assign_attrs(self._note(error, source))
+        function = partial(self._friction, nodes, nu, tolerance)
+        parts = evaluate(function, coordinates, (float, float, np.int8))
+        poisson_ratio = variable((), nu, "Poisson's ratio")
+        answer = dataset_of(parts, FRICTION, self._motion, poisson_ratio)
+        if answer.chunks:
+            return answer
+        _, error, source = (part.values for part in parts)
+        return answer.assign_attrs(self._note(error, source))
 
     def on_grid(
         self, velocity: object = 49, amplitude: object = 49, **settings: float | None
@@ -176,26 +163,102 @@ class Friction(Inverse):
             wanted["amplitude"] = amplitude
         return self.at(**grid_axes(self._dataset, wanted), **settings)
 
-    # The question
+    def solve_for(
+        self,
+        wanted: object,
+        *,
+        velocity: object = None,
+        amplitude: object = None,
+        poisson: float | None = None,
+        within: tuple[float, float] | None = None,
+    ) -> xr.Dataset:
+        """Amplitude or velocity at which friction is the wanted one, with its interval.
 
-    def _points(
-        self, velocity: object, amplitude: object
-    ) -> tuple[xr.DataArray, xr.DataArray | None]:
-        velocities, amplitudes = self._labelled(velocity, amplitude)
-        if amplitudes is None:
-            return velocities, None
-        # An outer product has the order of the datasets.
-        amplitudes, velocities = xr.broadcast(amplitudes, velocities)
-        return velocities, amplitudes
+        Parameters
+        ----------
+        wanted : number, sequence or DataArray
+            The wanted friction mu_macro, at least 0; a sequence becomes a dimension of this name.
+        velocity, amplitude : number, sequence or DataArray
+            The known coordinate; the other one is searched.  continuous-bore has no amplitude, and
+            its velocity is searched.
+        poisson : number, optional
+            Poisson's ratio, as for `at`.
+        within : two numbers, optional
+            Ends of the searched range; the range of the dataset by default.
 
-    def _labelled(
-        self, velocity: object, amplitude: object
-    ) -> tuple[xr.DataArray, xr.DataArray | None]:
+        Returns
+        -------
+        xarray.Dataset
+            Over the dimensions of the arguments and `root`: the place where the map has this
+            friction (NaN: none), and its `_low` and `_high`, between which friction is the wanted
+            one to within the error of the map; `bounded`, whether both ends lie inside the range.
+            Without `root`: `outcome`, an index into OUTCOMES.
+
+        Raises
+        ------
+        InputError
+            For both or neither of velocity and amplitude, and as `at`.
+        """
+        known = {"velocity": velocity, "amplitude": amplitude}
+        known = {name: value for name, value in known.items() if value is not None}
+        if len(known) != (1 if self._periodic else 0):
+            allowed = "one of velocity and amplitude, the other one is looked for"
+            allowed = allowed if self._periodic else "none, the velocity is looked for"
+            raise InputError("solve_for", sorted(known), f"allowed is {allowed}")
+        name = "velocity" if "velocity" not in known else "amplitude"
+        ends = inverse.ends_of(self._dataset, name, within)
+        nodes = self._nodes(poisson)
+        nu = poisson_within(nodes.poisson, poisson)
+
+        def at(place: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            points = {name: place} | dict.fromkeys(known, other)
+            value, error, _ = self._friction(nodes, nu, None, **points)
+            return value, error
+
+        parts = [labelled("wanted", wanted)]
+        parts += [labelled(name, value) for name, value in known.items()]
+        parts = xr.broadcast(*parts)
+        values, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
+        found = inverse.search(at, values, other, ends)
+        return inverse.answer(name, parts[0], *found, self._motion)
+
+    # The map
+
+    def _coordinates(self, velocity: object, amplitude: object) -> dict[str, xr.DataArray]:
+        """Labelled coordinates, the amplitude first, as in the datasets."""
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
-        velocities = labelled("velocity", velocity)
-        return velocities, None if amplitude is None else labelled("amplitude", amplitude)
+        coordinates = {"velocity": labelled("velocity", velocity)}
+        if amplitude is None:
+            return coordinates
+        return {"amplitude": labelled("amplitude", amplitude)} | coordinates
+
+    def _friction(
+        self,
+        nodes: Nodes | CellNodes,
+        nu: float,
+        tolerance: float | None,
+        velocity: np.ndarray,
+        amplitude: np.ndarray | None = None,
+    ) -> Answer:
+        """Friction at points, shape (n,), from the map, the limits or the solver."""
+        steady = amplitude is None
+        if amplitude is None:
+            amplitude = np.full(len(velocity), np.nan)
+        if not self._limits_known or cells.is_static(self._dataset):
+            answer = self._map_alone(nodes, velocity, amplitude, nu, tolerance)
+        elif (table := self._table(nodes, nu)) is None:
+            raise InputError("velocity", 0.0, "microslip.at needs nodes above 0 in the dataset")
+        elif steady:
+            answer = self._steady(table, velocity)
+        else:
+            answer = self._oscillating(table, velocity, amplitude, nu)
+        value, error, source = answer
+        error[np.isnan(value) | np.isnan(error)] = np.inf
+        if tolerance is not None:
+            self._solve(answer, (velocity, amplitude), nu, tolerance)
+        return value, error, source
 
     def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
         """The points of the map, read once for as long as the dataset stays the same.
@@ -269,7 +332,7 @@ class Friction(Inverse):
         wide = np.isin(source, OUTSIDE) & (error > max(usual, beyond.ROUNDING))
         if not wide.any():
             return {}
-        count = f"{wide.sum()} of {len(wide)} points" if len(wide) > 1 else "the point"
+        count = f"{wide.sum()} of {wide.size} points" if wide.size > 1 else "the point"
         return {
             "note": f"{count} outside the tabulated range, error estimate up to "
             f"{error[wide].max():.2g}: microslip.at(..., tolerance=1e-3) computes them"
@@ -302,10 +365,10 @@ class Friction(Inverse):
             np.clip(amplitude, narrowest, widest), np.clip(below, slowest, fastest)
         )
         source = np.full(len(value), MAP)
-        last = table.values[-1], table.errors[-1]
         held, ratio = np.fmin(amplitude, widest), np.full_like(value, nu)
         far = np.zeros_like(value)
-        far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
+        edge = table.columns.values, *table.last_row
+        far[wide] = beyond.distances(limits, *edge, below[wide], widest)
         rules: tuple[tuple[np.ndarray, int, Callable, tuple, float], ...] = (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, held, ratio), slowest),
@@ -314,9 +377,9 @@ class Friction(Inverse):
         )
         for where, code, rule, coordinates, end in rules:
             if where.any():
-                edge = beyond.Estimate(value[where], error[where])
+                near = beyond.Estimate(value[where], error[where])
                 at = (part[where] for part in coordinates)
-                value[where], error[where] = rule(limits, edge, *at, end)
+                value[where], error[where] = rule(limits, near, *at, end)
                 source[where] = code
         value, error = beyond.within_the_balance(limits, value, error, velocity, amplitude)
         slow = velocity == 0.0
@@ -355,10 +418,10 @@ READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poi
 def _digest(dataset: xr.Dataset) -> bytes | None:
     """Digest of what a map is made of; None if its numbers are not in memory."""
     found = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
-    for name, variable in dataset.variables.items():
+    for name, part in dataset.variables.items():
         if name in READ or str(name).startswith("cell_"):
-            if variable.chunks:
+            if part.chunks:
                 return None
-            found.update(f"|{name} {variable.dims} {variable.dtype} {variable.shape}|".encode())
-            found.update(variable.values.tobytes())
+            found.update(f"|{name} {part.dims} {part.dtype} {part.shape}|".encode())
+            found.update(part.values.tobytes())
     return found.digest()

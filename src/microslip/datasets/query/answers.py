@@ -1,16 +1,15 @@
-"""Answers of a map as a dataset: friction, a bound of its error, and where each comes from."""
+"""Answers of a map as a dataset: friction, a bound of its error, and the source of each value."""
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.datasets.variables import flags, link_errors, variable
+from microslip.datasets.variables import attributes, flag_attributes, link_errors
 
 NEEDS = "microslip.at needs"
 LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
-"""Words for a dataset without a variable of a map."""
+"""Message for a dataset without a variable of a map."""
 SOURCES = (
     "map",
     "no vibration",
@@ -24,45 +23,35 @@ SOURCES = (
 )
 """Sources of an answer, by their code in the variable `source`."""
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
+FRICTION = {
+    "mu_macro": attributes(float, MU_MACRO.description),
+    "mu_macro_error": attributes(float, "bound of its error"),
+    "source": flag_attributes("where the answer comes from", SOURCES),
+}
+"""Attributes of the variables of an answer."""
 OUTSIDE = (STATIC, SLOWER, FASTER, WIDER, NARROWER)
 """Sources of answers outside the tabulated range."""
 
 
-def answered(
-    motion: str,
-    shape: xr.DataArray,
-    answer: tuple[np.ndarray, np.ndarray, np.ndarray],
-    poisson: float,
+def dataset_of(
+    parts: tuple[xr.DataArray, ...], about: dict[str, dict], motion: str, poisson: object
 ) -> xr.Dataset:
-    """Dataset of an answer.
+    """Dataset of the parts of an answer.
 
     Parameters
     ----------
+    parts : tuple of xarray.DataArray
+        Values of the variables.
+    about : dict of dict
+        Attributes of each variable by its name, in the order of `parts`.
     motion : str
-        What was asked about.
-    shape : xarray.DataArray
-        Its dimensions and coordinates.
-    answer : tuple of numpy.ndarray, shape (n,) each
-        Friction, bounds of its error, and codes of SOURCES.
-    poisson : float
-        Poisson's ratio of all.
-
-    Returns
-    -------
-    xarray.Dataset
-        mu_macro, mu_macro_error and source.
+        Attribute of the dataset.
+    poisson : tuple or xarray.DataArray
+        Poisson's ratio, a coordinate of the dataset unless it is a dimension of the parts.
     """
-    value, error, source = (part.reshape(shape.shape) for part in answer)
-    about = "where the answer comes from"
-    found = xr.Dataset(
-        {
-            "mu_macro": variable(shape.dims, value, MU_MACRO.description),
-            "mu_macro_error": variable(shape.dims, error, "bound of its error"),
-            "source": flags(shape.dims, source, about, SOURCES),
-        },
-        coords=shape.coords,
-        attrs={"motion": motion},
-    )
+    for part, attrs in zip(parts, about.values(), strict=True):
+        part.attrs = dict(attrs)
+    found = xr.Dataset(dict(zip(about, parts, strict=True)), attrs={"motion": motion})
     if "poisson" not in found.dims:
-        found = found.assign_coords(poisson=variable((), poisson, "Poisson's ratio"))
+        found = found.assign_coords(poisson=poisson)
     return link_errors(found)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from microslip.datasets import certified_map
 from microslip.datasets.query.answers import LOST
-from microslip.datasets.query.interpolation import Axis, Table
+from microslip.datasets.query.interpolation import Axis, Table, lagrange
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
@@ -79,20 +79,10 @@ class CellTable:
         return Axis(np.array([slow, *inner, fast]))
 
     @cached_property
-    def _edges(self) -> tuple[np.ndarray, ...]:
+    def last_row(self) -> tuple[np.ndarray, np.ndarray]:
+        """Friction and its error bounds along the largest amplitude, shape (m,) each."""
         velocity = self.columns.values
-        found = [self.at(np.full_like(velocity, a), velocity) for a in self.rows.values]
-        return tuple(np.array(part) for part in zip(*found, strict=True))
-
-    @property
-    def values(self) -> np.ndarray:
-        """Friction along the smallest and the largest amplitude, shape (2, m)."""
-        return self._edges[0]
-
-    @property
-    def errors(self) -> np.ndarray:
-        """Bounds of the errors of `values`."""
-        return self._edges[1]
+        return self.at(np.full_like(velocity, self.rows.values[-1]), velocity)
 
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and bounds of their errors at points inside, amplitudes and velocities of shape
@@ -116,26 +106,14 @@ class CellTable:
 
 
 def _polynomial(nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """Value of the polynomial through equally spaced nodes, (n,), at shares (n, directions)."""
+    """Values (n,) of the polynomial through equally spaced nodes at shares (n, directions)."""
     value = nodes[..., None]  # the points run last
     for share in shares.T:
-        # Term by term, so that a point's answer has the same bits whatever else is asked.
-        value = sum(
-            w * part for w, part in zip(_weights(share, len(value) - 1), value, strict=True)
-        )
+        degree = len(value) - 1
+        weights = lagrange(np.arange(degree + 1.0)[None], degree * share)
+        # Term by term, so that the bits of a point do not depend on the other points.
+        value = sum(w * part for w, part in zip(weights.T, value, strict=True))
     return value
-
-
-def _weights(share: np.ndarray, degree: int) -> np.ndarray:
-    """Weights (degree + 1, n) of equally spaced values for the polynomial through them, at shares
-    (n,)."""
-    steps = degree * share
-    weights = np.ones((degree + 1, len(share)))
-    for own in range(degree + 1):
-        for other in range(degree + 1):
-            if other != own:
-                weights[own] *= (steps - other) / (own - other)
-    return weights
 
 
 Map = Table | CellTable

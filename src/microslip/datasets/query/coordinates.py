@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
 from numbers import Integral, Real
 from typing import Any
@@ -35,6 +36,46 @@ def labelled(name: str, given: object) -> xr.DataArray:
         raise InputError(name, given, allowed)
     dims = (name,) * array.ndim
     return xr.DataArray(array, dims=dims, coords={name: array} if dims else {})
+
+
+def evaluate(
+    function: Callable[..., tuple[np.ndarray, ...]],
+    coordinates: dict[str, xr.DataArray],
+    types: tuple[type, ...],
+) -> tuple[xr.DataArray, ...]:
+    """Evaluate a function at labelled coordinates, which broadcast by their dimensions.
+
+    Where one of the coordinates is in chunks of dask, the results are in chunks, too, and are
+    computed and checked when their values are read.
+
+    Parameters
+    ----------
+    function : callable
+        From the coordinates by name, float arrays of shape (n,), to arrays of shape (n,).
+    coordinates : dict of xarray.DataArray
+        Coordinates as `labelled` returns them, the slowest dimension of the results first.
+    types : tuple of type
+        Types of the results.
+    """
+
+    def block(*parts: np.ndarray) -> tuple[np.ndarray, ...]:
+        arrays = np.broadcast_arrays(*parts)
+        flat = {
+            name: labelled(name, xr.DataArray(array.ravel().astype(float), dims="n")).values
+            for name, array in zip(coordinates, arrays, strict=True)
+        }
+        results = zip(function(**flat), types, strict=True)
+        return tuple(result.astype(type_).reshape(arrays[0].shape) for result, type_ in results)
+
+    return xr.apply_ufunc(
+        block,
+        *coordinates.values(),
+        join="outer",
+        dask="parallelized",
+        keep_attrs=True,
+        output_core_dims=[[]] * len(types),
+        output_dtypes=types,
+    )
 
 
 def _array(name: str, given: Any) -> np.ndarray:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
-from microslip.datasets.query import lazily
-from microslip.datasets.query.cells import cells_of
-from microslip.datasets.query.coordinates import grid_axes, labelled
-from microslip.datasets.variables import flags, link_errors, variable
+from microslip.datasets.query.answers import dataset_of
+from microslip.datasets.query.cells import CellTable, cells_of
+from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
+from microslip.datasets.variables import attributes, flag_attributes
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
@@ -18,6 +20,13 @@ STATES = ("stays", "drifts", "undecided", "runs away")
 """States of a contact, by their code in the variable `state`; undecided: the force equals the
 threshold within the error of the threshold."""
 (STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
+DRIFT = {
+    "velocity": attributes(float, "mean forward velocity"),
+    "velocity_error": attributes(float, "bound of its error"),
+    "threshold": attributes(float, "force up to which the contact stays where it is"),
+    "state": flag_attributes("what becomes of the contact", STATES),
+}
+"""Attributes of the variables of an answer."""
 THRESHOLD_ERROR = 1e-12
 """Error of the closed forms for thresholds."""
 
@@ -60,43 +69,16 @@ class Drift:
             Naming the argument, for what is no such number, for what the dataset has lost, and for
             what drifts beyond the largest force or the amplitudes of the map.
         """
-        if lazily.is_lazy(force, amplitude):
-            asked = {"amplitude": labelled("amplitude", amplitude)}
-            asked |= {"force": labelled("force", force)}
-            return lazily.answered(self.at, self._dataset, asked)
-        found = cells_of(self._dataset)
+        table = cells_of(self._dataset).cells
         # An outer product has the order of the datasets.
-        given = labelled("amplitude", amplitude), labelled("force", force)
-        amplitudes, forces = xr.broadcast(*given)
-        rows = amplitudes.values.ravel().astype(float)
-        flat = forces.values.ravel().astype(float)
-        coordinates = found.cells.coordinates
-        assert isinstance(coordinates, DriftCoordinates)  # as __init__ demands
-        least = np.asarray(threshold(coordinates.motion, rows), float)
-        state = np.full(len(flat), DRIFTS, np.int8)
-        state[flat <= least + THRESHOLD_ERROR] = UNDECIDED
-        state[(flat < least - THRESHOLD_ERROR) | (flat == 0.0)] = STAYS
-        state[flat >= 1.0] = RUNS_AWAY
-        moves = (state == DRIFTS) | (state == UNDECIDED)
-        _refuse_beyond(coordinates, flat[moves], rows[moves])
-        velocity, error = np.zeros((2, len(flat)))
-        velocity[state == RUNS_AWAY] = np.inf
-        scaled = coordinates.scaled(flat[moves], rows[moves], least[moves])
-        velocity[moves], error[moves] = velocity_of(*found.cells.at_scaled(scaled))
-        texts = {
-            "velocity": (velocity, "mean forward velocity"),
-            "velocity_error": (error, "bound of its error"),
-            "threshold": (least, "force up to which the contact stays where it is"),
+        coordinates = {
+            "amplitude": labelled("amplitude", amplitude),
+            "force": labelled("force", force),
         }
-        answer = {
-            name: variable(forces.dims, values.reshape(forces.shape), text)
-            for name, (values, text) in texts.items()
-        }
-        codes = state.reshape(forces.shape)
-        answer["state"] = flags(forces.dims, codes, "what becomes of the contact", STATES)
-        about = {"motion": self._dataset.attrs["motion"]}
-        answered = xr.Dataset(answer, coords=forces.coords, attrs=about)
-        return link_errors(answered.assign_coords(poisson=self._dataset["poisson"]))
+        types = (float, float, float, np.int8)
+        parts = evaluate(partial(_drift, table), coordinates, types)
+        motion, poisson = self._dataset.attrs["motion"], self._dataset["poisson"]
+        return dataset_of(parts, DRIFT, motion, poisson)
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
         """Velocity and a bound of its error on a regular grid, for figures and plain xarray.
@@ -117,6 +99,24 @@ class Drift:
             As `at` does, and for less than two of them.
         """
         return self.at(**grid_axes(self._dataset, {"force": force, "amplitude": amplitude}))
+
+
+def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Velocity, its error bound, threshold of the force and code of the state, shape (n,) each."""
+    coordinates = table.coordinates
+    assert isinstance(coordinates, DriftCoordinates)  # as Drift demands
+    least = np.asarray(threshold(coordinates.motion, amplitude), float)
+    state = np.full(len(force), DRIFTS, np.int8)
+    state[force <= least + THRESHOLD_ERROR] = UNDECIDED
+    state[(force < least - THRESHOLD_ERROR) | (force == 0.0)] = STAYS
+    state[force >= 1.0] = RUNS_AWAY
+    moves = (state == DRIFTS) | (state == UNDECIDED)
+    _refuse_beyond(coordinates, force[moves], amplitude[moves])
+    velocity, error = np.zeros((2, len(force)))
+    velocity[state == RUNS_AWAY] = np.inf
+    scaled = coordinates.scaled(force[moves], amplitude[moves], least[moves])
+    velocity[moves], error[moves] = velocity_of(*table.at_scaled(scaled))
+    return velocity, error, least, state
 
 
 def _refuse_beyond(coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:

@@ -1,9 +1,10 @@
-"""Interpolation of a table with an error that it earns: local cubics, judged by leaving nodes out.
+"""Interpolation in a table by local cubics, with an error estimate from leaving nodes out.
 
-Along an axis the value is that of the cubic through the four nearest nodes.  How wrong such a cubic
-can be is seen at the nodes: each is predicted from its neighbours alone, as if it had not been
-computed.  The largest miss at the nodes around a cell, from twice the spacing, bounds what the
-cubic leaves within it: smooth stretches are sixteen times better than that, a kink about as bad.
+Along an axis the value is that of the cubic through the four nearest nodes.  The error of such a
+cubic is estimated at the nodes: each node is predicted from its neighbours alone.  The largest
+difference at the nodes around a cell, from twice the spacing, bounds the error of the cubic inside
+the cell.  The true error is sixteen times smaller where the function is smooth, and about as large
+at a kink.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 NODES = 4
-"""Nodes of a local cubic."""
+"""Number of nodes of a local cubic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,16 +37,29 @@ class Axis:
         return self.scaled(self.values)
 
     def scaled(self, points: np.ndarray) -> np.ndarray:
-        """Points in the measure that the axis is interpolated in."""
+        """Points, or their logarithms on a logarithmic axis."""
         return np.log(points) if self.logarithmic else np.asarray(points, float)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """Which of the points lie on the axis or between its ends."""
+        """True for points between the ends of the axis, the ends included."""
         return (points >= self.values[0]) & (points <= self.values[-1])
 
     def cubics(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Local cubics at points inside, shape (n,): (index of the cell, its share that lies to the
-        left of the point, indices of the nodes (n, k), their weights (n, k)); k: at most 4."""
+        """Local cubics at points between the ends of the axis.
+
+        Parameters
+        ----------
+        points : numpy.ndarray, shape (n,)
+
+        Returns
+        -------
+        cell : numpy.ndarray, shape (n,)
+            Index of the node below each point.
+        share : numpy.ndarray, shape (n,)
+            Position of the point in its cell, 0 to 1.
+        index, weights : numpy.ndarray, shape (n, k)
+            Indices and weights of the k nodes of the cubic, k at most 4.
+        """
         x, q = self.nodes, self.scaled(points)
         count = len(x)
         if count == 1:
@@ -56,12 +70,13 @@ class Axis:
         share = (q - x[cell]) / (x[cell + 1] - x[cell])
         first = np.clip(cell - (width // 2 - 1), 0, count - width)
         index = first[:, None] + np.arange(width)
-        return cell, share, index, _lagrange(x[index], q)
+        return cell, share, index, lagrange(x[index], q)
 
     def misses(self, table: np.ndarray) -> np.ndarray:
-        """|node - what the cubic through its neighbours says| along the first axis of a table.
+        """Absolute difference between each node and the cubic through its neighbours.
 
-        An end node is given what the node beside it has, and of two nodes both their difference.
+        The nodes run along the first axis of the table.  An end node gets the difference of the
+        node beside it; two nodes both get the difference between them.
         """
         x = self.nodes
         count = len(x)
@@ -71,7 +86,7 @@ class Axis:
         for i in range(1, count - 1):
             others = np.delete(np.arange(count), i)
             near = np.sort(others[np.argsort(np.abs(others - i), kind="stable")[:NODES]])
-            weights = _lagrange(x[None, near], x[i : i + 1])[0]
+            weights = lagrange(x[None, near], x[i : i + 1])[0]
             out[i] = np.abs(table[i] - weights @ table[near])
         out[0], out[-1] = out[1], out[-2]
         return out
@@ -82,9 +97,10 @@ def _unevenness(values: np.ndarray) -> float:
     return steps.max() / steps.min()
 
 
-def _lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights (n, k) of values at nodes (n, k) for the polynomial through them, at points (n,)."""
-    weights = np.ones_like(nodes)
+def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Weights (n, k) of values at nodes (n, k) or (1, k) for the polynomial through them, at points
+    (n,)."""
+    weights = np.ones((len(points), nodes.shape[1]))
     for own in range(nodes.shape[1]):
         for other in range(nodes.shape[1]):
             if other != own:
@@ -95,44 +111,56 @@ def _lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Values and their errors over two axes, shape (len(rows), len(columns)); NaN: not known."""
+    """Values and their errors over two axes, shape (len(rows), len(columns)); NaN: unknown."""
 
     rows: Axis
     columns: Axis
     values: np.ndarray
     errors: np.ndarray
 
+    @property
+    def last_row(self) -> tuple[np.ndarray, np.ndarray]:
+        """Values and errors along the last row, shape (len(columns),) each."""
+        return self.values[-1], self.errors[-1]
+
     @cached_property
-    def _miss(self) -> tuple[np.ndarray, np.ndarray]:
-        """Error from leaving nodes out along each axis: the largest at a node and around it."""
+    def _misses(self) -> tuple[np.ndarray, np.ndarray]:
+        """Largest difference at the nodes around each cell, along the rows and the columns."""
         along_rows = self.rows.misses(self.values)
         along_columns = self.columns.misses(self.values.T).T
-        return largest_around(along_rows), largest_around(along_columns)
+        return largest_around(along_rows, 4), largest_around(along_columns, 4)
 
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and bounds of their errors at points inside, shape (n,) each; NaN and infinity
-        where a node that counts is not known."""
+        """Values and error bounds at points inside the table, shape (n,) each.
+
+        They are NaN and infinity where one of the nodes is unknown.
+        """
         i, s, rows, row_weights = self.rows.cubics(row)
         j, t, columns, column_weights = self.columns.cubics(column)
         picked = rows[:, :, None], columns[:, None, :]
         value = np.einsum("ni,nj,nij->n", row_weights, column_weights, self.values[picked])
         error = self.errors[picked].max(axis=(1, 2))
-        # Between two nodes the error of an interpolation goes like the product of the distances.
-        for miss, share in zip(self._miss, (s, t), strict=True):
-            error = error + 4.0 * share * (1.0 - share) * _largest_of_cell(miss, i, j)
+        # Between two nodes the interpolation error is proportional to the product of the distances.
+        for miss, share in zip(self._misses, (s, t), strict=True):
+            error = error + 4.0 * share * (1.0 - share) * miss[i, j]
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
 
 
-def largest_around(values: np.ndarray) -> np.ndarray:
-    """The largest of every entry of a table and those beside it, across corners too."""
-    padded = np.pad(values, 1, mode="edge")
-    n, m = values.shape
-    shifts = [(a, b) for a in range(3) for b in range(3)]
-    return np.maximum.reduce([padded[a : a + n, b : b + m] for a, b in shifts])
+def largest_around(values: np.ndarray, size: int = 3) -> np.ndarray:
+    """Largest entry of each window of a table that is padded by its edge entries.
 
+    Parameters
+    ----------
+    values : numpy.ndarray, shape (n, m)
+        Entries at the nodes of a table.
+    size : int
+        3: windows of 3 x 3 nodes around each node; 4: of 4 x 4 nodes around each cell.
 
-def _largest_of_cell(values: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-    n, m = values.shape
-    right, above = np.minimum(i + 1, n - 1), np.minimum(j + 1, m - 1)
-    corners = (values[a, b] for a in (i, right) for b in (j, above))
-    return np.maximum.reduce(list(corners))
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n, m) for size 3; (n - 1, m - 1), at least 1 each, for size 4.
+    """
+    padded = np.pad(values, [(1, max(1, size - 1 - n)) for n in values.shape], mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (size, size))
+    return windows.max(axis=(-2, -1))

@@ -1,14 +1,13 @@
-"""Places of a map with a requested friction: `dataset.microslip.solve_for(...)`.
+"""Search of a map for the places with a requested friction.
 
-A map is known to within its error, so that the result is an interval: all places whose friction may
-be the requested one, with the place where the map's own value equals it.  Friction may be the same
-at several places, and then there are as many intervals.
+A map has an error, so that the result is an interval: all places whose friction may be the
+requested one, and the place where the value of the map equals it.  Friction may be the same at
+several places; then there is an interval for each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -25,114 +24,27 @@ OUTCOMES = (
     "friction is smaller everywhere",
 )
 """Outcomes of a search, by their code in the variable `outcome`; possible: within the error, but
-the map's own value nowhere equals the requested friction."""
+the value of the map nowhere equals the requested friction."""
 (FOUND, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
-"""Places that are looked at first, in equal steps and in equal ratios; between two of them friction
-is taken to cross what is wanted once at most."""
+"""Numbers of the first places, in equal steps and in equal ratios.  Friction is assumed to cross
+the requested value at most once between two of them."""
 DECADES = 6
 """Decades from the smallest to the largest of the GEOMETRIC places."""
 AT_A_TIME = 1000
-"""Questions, which bounds the memory."""
+"""Number of searches that are made together, which bounds the memory."""
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
-
-class Inverse:
-    """Adds questions the other way round to what has a method `at`."""
-
-    at: Callable[..., xr.Dataset]
-    _dataset: xr.Dataset
-    _motion: str
-    _periodic: bool
-
-    def solve_for(
-        self,
-        wanted: object,
-        *,
-        velocity: object = None,
-        amplitude: object = None,
-        poisson: float | None = None,
-        within: tuple[float, float] | None = None,
-    ) -> xr.Dataset:
-        """Amplitude or velocity at which friction is the wanted one, with its interval.
-
-        Parameters
-        ----------
-        wanted : number, sequence or DataArray
-            The wanted friction mu_macro, at least 0; a sequence becomes a dimension of this name.
-        velocity, amplitude : number, sequence or DataArray
-            The one that is known; the other one is looked for.  continuous-bore has no amplitude,
-            and its velocity is looked for.
-        poisson : number, optional
-            As for `at`.
-        within : two numbers, optional
-            Where to look; the range of the dataset if not given.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over the dimensions of what was given and `root`: the place where the map has this
-            friction (NaN: none), and `_low` and `_high` of it, between which friction is the wanted
-            one to within the map's error; `bounded`, whether both ends lie inside of the range.
-            Without `root`: `outcome`, an index into OUTCOMES.
-
-        Raises
-        ------
-        InputError
-            For both or neither of the two, and as `at`.
-        """
-        periodic = self._periodic
-        known = {"velocity": velocity, "amplitude": amplitude}
-        known = {name: value for name, value in known.items() if value is not None}
-        if len(known) != (1 if periodic else 0):
-            allowed = "one of velocity and amplitude, the other one is looked for"
-            allowed = allowed if periodic else "none, the velocity is looked for"
-            raise InputError("solve_for", sorted(known), f"allowed is {allowed}")
-        sought = "velocity" if "velocity" not in known else "amplitude"
-        ends = _ends(self._dataset, sought, within)
-
-        def at(place: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            points = {sought: xr.DataArray(place, dims="point")}
-            points |= {name: xr.DataArray(other, dims="point") for name in known}
-            found = self.at(**points, poisson=poisson)
-            return found["mu_macro"].values, found["mu_macro_error"].values
-
-        parts = [labelled("wanted", wanted)]
-        parts += [labelled(name, value) for name, value in known.items()]
-        parts = xr.broadcast(*parts)
-        values, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
-        found = [
-            _answers(_Questions(at, values[k : k + AT_A_TIME], other[k : k + AT_A_TIME]), *ends)
-            for k in range(0, len(values), AT_A_TIME)
-        ]
-        return _dataset(sought, parts[0], found, self._motion)
+Friction = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Friction and its error at places along the searched axis and other coordinates, shape (n,)."""
 
 
-class _Questions(NamedTuple):
-    """Some questions: at(places, others) gives friction and its error; shapes (n,)."""
-
-    at: Callable
-    wanted: np.ndarray
-    other: np.ndarray
-
-    def missing(self, place: np.ndarray, row: np.ndarray) -> np.ndarray:
-        """Friction less the wanted one."""
-        row = np.asarray(row, int)
-        return self.at(place, self.other[row])[0] - self.wanted[row]
-
-    def beyond(self, place: np.ndarray, row: np.ndarray) -> np.ndarray:
-        """How much further than its error friction is from the wanted one."""
-        row = np.asarray(row, int)
-        value, error = self.at(place, self.other[row])
-        return np.abs(value - self.wanted[row]) - error
-
-
-def _ends(
-    dataset: xr.Dataset, sought: str, within: tuple[float, float] | None
+def ends_of(
+    dataset: xr.Dataset, name: str, within: tuple[float, float] | None
 ) -> tuple[float, float]:
-    """The range that is looked through."""
+    """Ends of the searched range: `within`, or the range of the coordinate in the dataset."""
     if within is None:
-        return float(dataset[sought].min()), float(dataset[sought].max())
+        return float(dataset[name].min()), float(dataset[name].max())
     try:
         low, high = labelled("within", within).values.astype(float)
     except (TypeError, ValueError):
@@ -142,131 +54,151 @@ def _ends(
     return float(low), float(high)
 
 
-def _places(low: float, high: float) -> np.ndarray:
+def search(
+    at: Friction, wanted: np.ndarray, other: np.ndarray, ends: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Search a range for requested values of friction.
+
+    Parameters
+    ----------
+    at : callable
+        Friction and its error.
+    wanted, other : numpy.ndarray, shape (n,)
+        Requested friction and the coordinate that is not searched.
+    ends : tuple of float
+        Ends of the searched range.
+
+    Returns
+    -------
+    intervals : numpy.ndarray, shape (k, 5)
+        Index of the search, place or NaN, lower end, upper end, and 1 where both ends lie inside
+        the range; ascending.
+    outcome : numpy.ndarray, shape (n,)
+        Indices of OUTCOMES.
+    """
+    low, high = ends
     least = max(low, high * 10.0**-DECADES)
     both = np.linspace(low, high, EVEN), np.geomspace(least, high, GEOMETRIC)
-    return np.unique(np.clip(np.concatenate(both), low, high))
+    places = np.unique(np.clip(np.concatenate(both), low, high))
+    intervals, outcomes = [np.empty((0, 5))], [np.empty(0, int)]
+    for begin in range(0, len(wanted), AT_A_TIME):
+        part = slice(begin, begin + AT_A_TIME)
+        rows, outcome = _search(at, wanted[part], other[part], places)
+        rows[:, 0] += begin
+        intervals.append(rows)
+        outcomes.append(outcome)
+    return np.concatenate(intervals), np.concatenate(outcomes)
 
 
-def _answers(asked: _Questions, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of (question, place or NaN, low end, high end, bounded), and the outcome of each."""
-    places = _places(low, high)
-    count = len(asked.wanted)
+def _search(
+    at: Friction, wanted: np.ndarray, other: np.ndarray, places: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Intervals and outcomes, as for `search`, from friction at the first places."""
+    count = len(wanted)
     value, error = (
         part.reshape(count, -1)
-        for part in asked.at(np.tile(places, count), np.repeat(asked.other, len(places)))
+        for part in at(np.tile(places, count), np.repeat(other, len(places)))
     )
-    off = value - asked.wanted[:, None]
-    inside = ~(np.abs(off) > error)  # what is not known may be anything
+    off = value - wanted[:, None]
+    inside = ~(np.abs(off) > error)  # an unknown value may be the requested one
     crosses = np.sign(off[:, :-1]) * np.sign(off[:, 1:]) < 0.0
-    intervals = [(row, *one) for row in range(count) for one in _runs(inside[row], crosses[row])]
-    outcome = np.where(off[:, 0] > 0.0, LARGER, SMALLER)
-    if not intervals:
-        return np.empty((0, 5)), outcome
-    row, first, last = np.array(intervals).T
-    place = _roots(asked, places, off, crosses, (row, first, last))
+    # A run of cells may hold the requested friction: two cells belong together where the node
+    # between them is inside. The nodes at the ends of a run are outside, except at `places[0, -1]`.
+    touched = inside[:, :-1] | inside[:, 1:] | crosses
+    row, first = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (1, 0))))
+    last = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (0, 1))))[1] + 1
+    points = wanted[row], other[row]
+    place = np.full(len(row), np.nan)
+    crossing = np.full(len(row), -1)
+    for k, (i, begin, end) in enumerate(zip(row, first, last, strict=True)):
+        exact = begin + np.flatnonzero(off[i, begin : end + 1] == 0.0)
+        cells = begin + np.flatnonzero(crosses[i, begin:end])
+        if exact.size:
+            place[k] = places[exact[len(exact) // 2]]
+        elif cells.size:
+            crossing[k] = cells[len(cells) // 2]
+    crossed = crossing >= 0
+
+    def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
+        return at(place, other)[0] - wanted
+
+    def excess(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Distance of friction from the requested value, beyond the error."""
+        value, error = at(place, other)
+        return np.abs(value - wanted) - error
+
+    cells = crossing[crossed]
+    bracket = places[cells], places[cells + 1]
+    place[crossed] = _roots(difference, *bracket, points, crossed)[0]
     ends = []
     for node, step in ((first, 1), (last, -1)):
         # The neighbour is within the error, or else the crossing is between both.
-        next_node = np.clip(node + step, 0, len(places) - 1)
-        inner = np.where(inside[row, next_node], places[next_node], place)
-        at_end = inside[row, node]
-        ends.append(_end(asked, places[node], inner, row, at_end))
+        neighbour = np.clip(node + step, 0, len(places) - 1)
+        inner = np.where(inside[row, neighbour], places[neighbour], place)
+        end = np.where(inside[row, node] | np.isnan(inner), places[node], inner)
+        sought = ~inside[row, node]
+        pair = np.sort([places[node][sought], end[sought]], axis=0)
+        root, success = _roots(excess, *pair, points, sought)
+        end[sought] = np.where(success, root, end[sought])  # an error of 0 leaves no room
+        ends.append(end)
     bounded = ~inside[row, first] & ~inside[row, last]
-    for k in range(count):
-        own = place[row == k]
-        if own.size:
-            known = np.isfinite(own).any()
-            outcome[k] = (SEVERAL if own.size > 1 else FOUND) if known else POSSIBLE
+    number = np.bincount(row, minlength=count)
+    known = np.bincount(row, np.isfinite(place), count) > 0
+    outcome = np.select(
+        [known & (number > 1), known, number > 0, off[:, 0] > 0.0],
+        [SEVERAL, FOUND, POSSIBLE, LARGER],
+        SMALLER,
+    )
     return np.stack([row, place, *ends, bounded], axis=1), outcome
 
 
-def _runs(inside: np.ndarray, crosses: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Pairs of the first and the last node around what may have the wanted friction.
-
-    The nodes of a pair are outside, unless the range ends there.
-    """
-    touched = inside[:-1] | inside[1:] | crosses
-    cells = np.flatnonzero(touched)
-    if not cells.size:
-        return
-    # Two cells belong together where the node between them is inside.
-    breaks = np.flatnonzero((np.diff(cells) > 1) | ~inside[cells[1:]])
-    for part in np.split(cells, breaks + 1):
-        yield int(part[0]), int(part[-1]) + 1
-
-
 def _roots(
-    asked: _Questions,
-    places: np.ndarray,
-    off: np.ndarray,
-    crosses: np.ndarray,
-    runs: tuple[np.ndarray, ...],
-) -> np.ndarray:
-    """In each run the place where friction is the wanted one, NaN: none; the middle one of many."""
+    function: Callable,
+    left: np.ndarray,
+    right: np.ndarray,
+    points: tuple[np.ndarray, ...],
+    chosen: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Roots in brackets, and whether each was found; points: further arguments of the function, of
+    which those chosen belong to the brackets."""
     from scipy.optimize.elementwise import find_root
 
-    found = np.full(len(runs[0]), np.nan)
-    cells = []
-    for k, (row, first, last) in enumerate(zip(*runs, strict=True)):
-        exact = first + np.flatnonzero(off[row, first : last + 1] == 0.0)
-        own = first + np.flatnonzero(crosses[row, first:last])
-        if exact.size:
-            found[k] = places[exact[len(exact) // 2]]
-        elif own.size:
-            cells.append((k, row, own[len(own) // 2]))
-    if cells:
-        which, row, cell = np.array(cells).T
-        bracket = places[cell], places[cell + 1]
-        answer = find_root(asked.missing, bracket, args=(row.astype(float),), tolerances=ACCURACY)
-        found[which] = answer.x
-    return found
+    if not len(left):
+        return left, np.ones(0, bool)
+    arguments = tuple(part[chosen] for part in points)
+    answer = find_root(function, (left, right), args=arguments, tolerances=ACCURACY)
+    return answer.x, answer.success
 
 
-def _end(
-    asked: _Questions, outer: np.ndarray, inner: np.ndarray, row: np.ndarray, skip: np.ndarray
-) -> np.ndarray:
-    """End of the interval within the error, between a place outside of it and one inside; the
-    outer place itself where `skip`."""
-    from scipy.optimize.elementwise import find_root
-
-    end = np.where(skip | np.isnan(inner), outer, inner)
-    if skip.all():
-        return end
-    left, right = np.minimum(outer, end)[~skip], np.maximum(outer, end)[~skip]
-    rows = row[~skip].astype(float)
-    answer = find_root(asked.beyond, (left, right), args=(rows,), tolerances=ACCURACY)
-    end[~skip] = np.where(answer.success, answer.x, end[~skip])  # an error of 0 leaves no room
-    return end
-
-
-def _dataset(
-    sought: str, shape: xr.DataArray, found: list[tuple[np.ndarray, np.ndarray]], motion: str
+def answer(
+    name: str, shape: xr.DataArray, intervals: np.ndarray, outcome: np.ndarray, motion: str
 ) -> xr.Dataset:
-    """The answers of all questions as arrays of the shape of what was asked."""
-    offsets = np.cumsum([0] + [len(outcome) for _, outcome in found])
-    rows = np.concatenate(
-        [part + np.array([k, 0, 0, 0, 0]) for (part, _), k in zip(found, offsets, strict=False)]
-    )
-    outcome = np.concatenate([part for _, part in found])
-    row = rows[:, 0].astype(int)
-    first = np.searchsorted(row, row)  # rows of one question follow one another
-    root = np.arange(len(row)) - first
+    """Dataset of intervals of a coordinate over the dimensions of a request and `root`.
+
+    Parameters
+    ----------
+    name : str
+        Searched coordinate.
+    shape : xarray.DataArray
+        Dimensions and coordinates of the request.
+    intervals, outcome : numpy.ndarray
+        As `search` returns them.
+    motion : str
+        Attribute of the dataset.
+    """
+    row = intervals[:, 0].astype(int)
+    root = np.arange(len(row)) - np.searchsorted(row, row)
     most = int(root.max(initial=0)) + 1
     table = np.full((4, len(outcome), most), np.nan)
-    table[:, row, root] = rows[:, 1:].T
-    dims, size = (*shape.dims, "root"), (*shape.shape, most)
-    texts = {
-        sought: f"{sought} with the wanted friction",
-        f"{sought}_low": "lower end of its interval",
-        f"{sought}_high": "upper end of its interval",
-    }
-    values = {
-        name: variable(dims, part.reshape(size), text)
-        for (name, text), part in zip(texts.items(), table, strict=False)
-    }
-    inside = (table[3] == 1.0).reshape(size)
-    values["bounded"] = variable(dims, inside, "both ends lie inside of the range", bool)
+    table[:, row, root] = intervals[:, 1:].T
+    dims, (place, low, high, bounded) = (*shape.dims, "root"), table.reshape(4, *shape.shape, most)
+    inside = bounded == 1.0
     codes = outcome.reshape(shape.shape)
-    values["outcome"] = flags(shape.dims, codes, "outcome of the search", OUTCOMES)
+    values = {
+        name: variable(dims, place, f"{name} with the wanted friction"),
+        f"{name}_low": variable(dims, low, "lower end of its interval"),
+        f"{name}_high": variable(dims, high, "upper end of its interval"),
+        "bounded": variable(dims, inside, "both ends lie inside of the range", bool),
+        "outcome": flags(shape.dims, codes, "outcome of the search", OUTCOMES),
+    }
     return xr.Dataset(values, coords=shape.coords, attrs={"motion": motion})
