@@ -25,7 +25,7 @@ def test_the_first_round_asks_for_points_of_the_sweep_and_is_the_last_if_all_are
 
 def test_a_point_that_did_not_converge_is_not_known():
     (map_,) = configured().certified.values()
-    known = map_refinement.refine(map_, lambda requests: [{"result": {}} for _ in requests])
+    known, _ = map_refinement.refine(map_, lambda requests: [{"result": {}} for _ in requests])
     assert all(np.isnan(value) and np.isinf(error) for value, error in known.values())
 
 

@@ -38,58 +38,47 @@ BORDERS = {
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
-"""Names of the variables that say where a cell begins and ends, by direction."""
-SCALED = {
-    "velocity": "scaled velocity",
-    "force": "scaled force",
-    "amplitude": "scaled amplitude",
-    "poisson": "scaled Poisson's ratio",
-}
+"""Names of the variables with the lower and upper ends of the cells, by direction."""
 
 
 def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
-    """Dataset of a certified map.
+    """Build the dataset of a certified map.
 
     Parameters
     ----------
     map_ : CertifiedMap
-        What was asked for.
+        The map of the configuration.
     records : iterable of dict
-        Those of all its points, in any order.
+        Records of all its points, in any order.
 
     Raises
     ------
     KeyError
-        If a request is not answered.
+        For a point without a record.
     """
-    records = list(records)
-    record_of = lookup(records)
-    known = map_refinement.refine(map_, lambda requests: map(record_of, requests))
-    found, coordinates = (
-        map_refinement.refinement_of(map_, known),
-        map_refinement.coordinates_of(map_),
-    )
-    nodes = sorted(known)
+    record_of = lookup(records := list(records))
+    answers, cells = map_refinement.refine(map_, lambda requests: map(record_of, requests))
+    coordinates = map_refinement.coordinates_of(map_)
+    nodes = sorted(answers)
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
-    values, errors = np.array([known[node] for node in nodes]).T
-    picked = np.array([[index[n] for n in cell.nodes(degrees)] for cell in found.cells], np.int32)
+    values, errors = np.array([answers[node] for node in nodes]).T
+    cell_nodes = [[index[node] for node in cell.nodes(degrees)] for cell in cells.cells]
     axes: dict[str, tuple] = {
-        name: ("point", np.array(values))
-        for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
+        name: ("point", np.array(axis))
+        for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
-    # what is the same all over the map
-    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes
+    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes  # one value unless it is a direction
     if map_.force is None:
         axes = {"velocity": ((), 0.0)} | axes
     dataset = xr.Dataset(
         {
-            **_at_points(map_, values, errors),
-            **_borders(coordinates, found.cells),
-            "cell_error": variable("cell", found.errors, _bound_of(map_)),
+            **_point_variables(map_, values, errors),
+            **_borders(coordinates, cells.cells),
+            "cell_error": variable("cell", cells.errors, _bound_of(map_)),
             "cell_node": (
                 ("cell", "node"),
-                picked,
+                np.array(cell_nodes, np.int32),
                 {"long_name": "points of the cell, the last direction fastest"},
             ),
         },
@@ -147,17 +136,15 @@ def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     return kind.from_json(dataset.attrs[COORDINATES])
 
 
-def _at_points(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
-    """Variables of what was solved for."""
-    if map_.force is None:
-        return {
-            "mu_macro": variable("point", values, MU_MACRO.description),
-            "mu_macro_error": variable("point", errors, "estimated error of mu_macro"),
-        }
-    velocity, error = velocity_of(values, errors)
+def _point_variables(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
+    """Variables of the solved quantity and its error."""
+    name, text = "mu_macro", MU_MACRO.description
+    if map_.force is not None:
+        name, text = "velocity", "mean forward velocity"
+        values, errors = velocity_of(values, errors)
     return {
-        "velocity": variable("point", velocity, "mean forward velocity"),
-        "velocity_error": variable("point", error, "estimated error of velocity"),
+        name: variable("point", values, text),
+        f"{name}_error": variable("point", errors, f"estimated error of {name}"),
     }
 
 
@@ -168,11 +155,11 @@ def _bound_of(map_: CertifiedMap) -> str:
 
 
 def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:
-    """Variables that say where the cells begin and end."""
-    found, borders = {}, np.array(cells)  # (cell, beginning or end, direction)
+    """Variables of the lower and upper ends of the cells, in scaled coordinates."""
+    ends, found = np.array(cells), {}  # ends: (cell, lower or upper, direction)
     for i, direction in enumerate(coordinates.directions):
-        for name, ends, verb in zip(
-            BORDERS[direction], borders[:, :, i].T, ("begins", "ends"), strict=True
-        ):
-            found[name] = variable("cell", ends, f"{SCALED[direction]} where the cell {verb}")
+        text = "Poisson's ratio" if direction == "poisson" else direction
+        for j, verb in enumerate(("begins", "ends")):
+            name = BORDERS[direction][j]
+            found[name] = variable("cell", ends[:, j, i], f"scaled {text} where the cell {verb}")
     return found

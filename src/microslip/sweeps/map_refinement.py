@@ -31,8 +31,10 @@ def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
     return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
 
-def refine(map_: CertifiedMap, ask: Callable[[list[dict]], Iterable[dict]]) -> Answers:
-    """Answers at all nodes of a certified map, round by round.
+def refine(
+    map_: CertifiedMap, ask: Callable[[list[dict]], Iterable[dict]]
+) -> tuple[Answers, Refinement]:
+    """Solve all nodes of a certified map, round by round.
 
     Parameters
     ----------
@@ -43,17 +45,19 @@ def refine(map_: CertifiedMap, ask: Callable[[list[dict]], Iterable[dict]]) -> A
 
     Returns
     -------
-    dict of tuple to (float, float)
+    answers : dict of tuple to (float, float)
         Friction and its error by node, or the scaled velocity under a force; NaN and infinity where
-        a point did not converge.  It depends on the records alone.
+        a point did not converge.  They depend on the records alone.
+    refinement : Refinement
+        The cells.
     """
     coordinates = coordinates_of(map_)
-    known: dict[Node, tuple[float, float]] = {}
-    while nodes := refined(coordinates, known, map_.error).missing:
+    answers: dict[Node, tuple[float, float]] = {}
+    while nodes := (state := refined(coordinates, answers, map_.error)).missing:
         requests = [_request(map_, coordinates, node) for node in nodes]
         for node, request, record in zip(nodes, requests, ask(requests), strict=True):
-            known[node] = _answer(request, record["result"])
-    return known
+            answers[node] = _answer(request, record["result"])
+    return answers, state
 
 
 def _request(
@@ -75,11 +79,6 @@ def _answer(request: dict, result: dict) -> tuple[float, float]:
     if "force" in request:
         return scaled_velocity(result["velocity"], result["velocity_error"])
     return result["mu_macro"], result["mu_macro_error"]
-
-
-def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:
-    """The Refinement of a certified map with these answers."""
-    return refined(coordinates_of(map_), known, map_.error)
 
 
 def solved(
