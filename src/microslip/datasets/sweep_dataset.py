@@ -238,24 +238,26 @@ def _traction_field(record: dict) -> dict[str, tuple]:
 def _transients(records: Sequence[dict]) -> dict[str, tuple]:
     velocity = float(records[0]["request"]["velocity"])
     starts = [record["request"]["start"] for record in records]
-    dims, force = ("start", "transient_step"), "forward friction force over mu F_z"
-    torque = point_variables.DESCRIPTIONS["mu_torque"]
-    texts = {"displacement": "forward travel over u_lim", "force_forward": force}
-    texts["torque"] = point_variables.TORQUE
-    names = {"displacement": "displacement_forward"}  # in the records
-    found = {
-        f"transient_{name}": variable(
-            dims, [record["result"][names.get(name, name)] for record in records], text
-        )
-        for name, text in texts.items()
-    }
-    found["transient_torque"][2]["description"] = torque
-    said = "forward velocity of the transients"
-    found["transient_velocity"] = variable((), velocity, said)
-    for name, form, text, what in (
-        ("force", "mu_forward_theory", "steady forward force (Eq 21)", f"steady {force} (Eq 21)"),
-        ("torque", "mu_torque_theory", "steady torque (Eq 22)", f"steady {torque} (Eq 22)"),
-    ):
+    force, torque = "forward friction force over mu F_z", point_variables.DESCRIPTIONS["mu_torque"]
+
+    def runs(name: str, text: str, **about: str) -> tuple:
+        values = [record["result"][name] for record in records]
+        return variable(("start", "transient_step"), values, text, **about)
+
+    def steady(form: str, text: str, description: str) -> tuple:
         value = FORMS["continuous-bore"][form].function(velocity)
-        found[f"transient_{name}_theory"] = variable((), value, text, description=what)
-    return {"start": ("start", starts, {"long_name": "initial state of the transient"})} | found
+        return variable((), value, f"steady {text}", description=f"steady {description}")
+
+    return {
+        "start": ("start", starts, {"long_name": "initial state of the transient"}),
+        "transient_displacement": runs("displacement_forward", "forward travel over u_lim"),
+        "transient_force_forward": runs("force_forward", force),
+        "transient_torque": runs("torque", point_variables.TORQUE, description=torque),
+        "transient_velocity": variable((), velocity, "forward velocity of the transients"),
+        "transient_force_theory": steady(
+            "mu_forward_theory", "forward force (Eq 21)", f"{force} (Eq 21)"
+        ),
+        "transient_torque_theory": steady(
+            "mu_torque_theory", "torque (Eq 22)", f"{torque} (Eq 22)"
+        ),
+    }

@@ -29,7 +29,7 @@ from microslip.datasets.query.answers import (
 from microslip.datasets.query.cells import CellNodes, Map
 from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
 from microslip.datasets.query.drift import Drift
-from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_negative
+from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_values
 from microslip.datasets.query.solver import pulled_by, solved
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
@@ -273,8 +273,7 @@ class Friction:
                 nodes = cells.cells_of(self._dataset)
             else:
                 nodes = nodes_of(self._dataset, periodic=self._periodic, poisson=poisson)
-            if self._limits_known:
-                refuse_negative(nodes)
+            refuse_values(nodes, 0.0 if self._limits_known else -1.0)
             self._known, self._tables = (digest, nodes), {}
         return self._known[1]
 

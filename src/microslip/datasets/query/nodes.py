@@ -145,16 +145,14 @@ def _refuse_impossible(nodes: Nodes) -> None:
     if (nodes.errors < 0.0).any():
         least = float(np.nanmin(nodes.errors))
         raise InputError("mu_macro_error", least, "in the dataset; allowed is 0 or more")
-    _refuse_values(nodes, -1.0)
 
 
-def refuse_negative(nodes: Nodes | CellNodes) -> None:
-    """Raise InputError for mu_macro below 0, where the vibration cannot turn friction round."""
-    _refuse_values(nodes, 0.0)
+def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
+    """Raise InputError for mu_macro outside `least` to 1 by more than its error.
 
-
-def _refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
-    """Raise InputError for mu_macro outside of least to 1: the force is at most mu F_z."""
+    The force is at most mu F_z, so that mu_macro is at least -1.  It is at least 0 for motions that
+    cannot propel the contact.
+    """
     off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
     if off.any():
         allowed = f"in the dataset; allowed is {least:g} to 1"
