@@ -1,6 +1,6 @@
 """Tables of all keys of a configuration for config/README.md, from microslip.config.settings.
 
-``python docs/make_configuration_tables.py config/README.md`` writes them anew.
+``python docs/make_configuration_tables.py config/README.md`` updates them.
 """
 
 import json
@@ -31,16 +31,16 @@ SECTIONS = {
     "`propulsion`: a motion": "SelfPropelledMotion",
     "`claims`": "Claims",
 }
-"""Models of the tables by their headings."""
+"""Models by the headings of their tables."""
 COMMON = "SteadySweep"
-"""Model whose keys other sweeps have, too; their tables list further keys only."""
+"""Model whose keys all sweeps have; the tables of other sweeps list further keys only."""
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 LONGEST = 100
-"""Characters of a default that is written out."""
+"""Largest number of characters of a default in a table."""
 
 
 def tables() -> str:
-    """Markdown with a table for each of SECTIONS."""
+    """Tables of all SECTIONS, in Markdown."""
     return "\n".join(line for title, name in SECTIONS.items() for line in _section(title, name))
 
 
@@ -67,7 +67,7 @@ def _default(key: str, inner: dict[str, Any], rule: dict[str, Any]) -> str:
 
 
 def main(path: str) -> None:
-    """Write the tables between the marks in a file."""
+    """Replace the tables between BEGIN and END in a file."""
     text = Path(path).read_text(encoding="utf-8")
     marked = f"{BEGIN}\n{tables()}\n\n{END}"
     new = re.sub(f"{BEGIN}.*{END}", lambda _: marked, text, flags=re.DOTALL)

@@ -202,7 +202,7 @@ TOGETHER = [
     (
         {"extended.line.amplitude": "[1]"},
         "extended.line.group",
-        "over velocity and amplitude, as circle asks",
+        "over velocity and amplitude for circle",
         "allowed: another group",
     ),
     ({f"{B}.amplitude": CLOSE}, f"{B}.amplitude", "1 occurs twice", "different values"),

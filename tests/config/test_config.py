@@ -170,12 +170,6 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
             assert refused == bool(MODELS[model].refuses(problem))
 
 
-def test_settings_of_a_sweep_are_plain_json(tmp_path):
-    found = load(saved(tmp_path, GOOD)).of_sweep("continuous_bore")
-    assert set(found["histories"]) == {"field", "transients"}
-    assert json.loads(json.dumps(found))["sweep"]["velocity"] == [1.0]
-
-
 @pytest.mark.parametrize("model", ["auto", "polar", "cartesian", "rigid"])
 @pytest.mark.parametrize("poisson", [0, 0.3])
 def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):

@@ -108,7 +108,7 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
         away = data.sel(force=1.0)
         assert not away.converged.any() and away.velocity.isnull().all()
         assert all(text.startswith("runs away") for text in away.reason.values)
-        with pytest.raises(ValueError, match="pulled by a force"):
+        with pytest.raises(ValueError, match="over a prescribed force"):
             accessor.Friction(data)
 
 

@@ -4,7 +4,6 @@ import json
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 import xarray as xr
 from stubs.sweep_stub import Solver
@@ -57,7 +56,7 @@ def test_a_steady_motion_has_no_amplitude():
 
 
 def test_names_of_other_results_are_taken():
-    assert {*registry.DATASETS, *registry.DATASETS.values()} <= set(settings.TAKEN)
+    assert {*registry.DATASETS, *registry.DATASETS.values()} <= set(settings.RESERVED)
     for name in ("transverse", "claims", "bore_histories"):
         with pytest.raises(load.ConfigError, match=f"extended.{name}: another result has this"):
             configured(**{name: CIRCLE})
@@ -262,27 +261,6 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
 
 
 # Questions
-
-
-@pytest.fixture
-def friction(monkeypatch, tmp_path):
-    Solver(monkeypatch)
-    axes = {"velocity": list(np.geomspace(0.1, 10, 9)), "amplitude": list(np.linspace(0, 2, 9))}
-    built(tmp_path, **axes)
-    return microslip.open_map("circle", tmp_path).friction
-
-
-@pytest.mark.slow
-def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
-    for place, said in (
-        ((0.01, 1), "velocity = 0.01: allowed is 0.1 to 10"),
-        ((1, 3), "amplitude = 3: allowed is 0 to 2"),
-        ((0, 1), "velocity = 0: the map has none such"),
-    ):
-        with pytest.raises(ValueError, match=f"{said}; no limit of elliptic is known: .* solver"):
-            friction.at(*place)
-    answer = friction.at(0.01, 1, tolerance=1e-3)
-    assert float(answer.mu_macro) == pytest.approx(0.01 / 2.01)
 
 
 def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_path):

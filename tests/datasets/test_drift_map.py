@@ -80,13 +80,6 @@ def test_what_drifts_beyond_the_map_is_refused(dataset):
         dataset.microslip.at(-0.5, 1.0)
 
 
-def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
-    force, amplitude = places(500)
-    lazy = dataset.microslip.at(force.chunk(n=150), amplitude.chunk(n=150))
-    assert lazy.velocity.chunks == ((150, 150, 150, 50),)
-    xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(force, amplitude))
-
-
 def test_a_grid_answers_as_points_do(dataset):
     grid = dataset.microslip.on_grid(force=[0.2, 0.8], amplitude=[0.5, 1.0, 2.0])
     assert grid.velocity.dims == ("amplitude", "force")
@@ -123,14 +116,14 @@ def test_points_are_asked_for_by_force():
 
 BAD = [
     ({"mass": 1}, "not allowed with mass, force; allowed: a force alone"),
-    ({"force": [0.5, 1.0]}, "up to the force 1; allowed: above 0 and below 1, where"),
+    ({"force": [0.5, 1.0]}, "up to the force 1; allowed: above 0 and below 1, the force"),
     ({"amplitude": [1]}, "with two amplitudes at least"),
     ({"poisson": [0, 0.3]}, "one Poisson's ratio"),
     ({"poisson": 0.3}, "transverse under hertz at Poisson's ratio 0.3, whose threshold"),
     ({"pressure": "punch"}, "transverse under punch"),
     ({"motion": "longitudinal"}, "longitudinal under hertz"),
-    ({"model": "mdr"}, "not allowed with model mdr, whose threshold is another one"),
-    ({"amplitude": [0, 0.1], "force": [0.1, 0.5]}, "nothing moves; allowed: a force above"),
+    ({"model": "mdr"}, "not allowed with model mdr, which has another threshold"),
+    ({"amplitude": [0, 0.1], "force": [0.1, 0.5]}, "move nothing; allowed: a force above"),
     ({"contacts": "phase=0;phase=180"}, "not allowed with force, contacts"),
     ({"force": None, "velocity": [0.1, 1], "stiffness": 1}, "not allowed with stiffness"),
 ]
@@ -144,12 +137,6 @@ def test_what_has_no_such_map_is_refused_in_a_line(given, said):
     line = str(refused.value)
     assert line.startswith("configuration: drives.weights.adaptive: ") and "\n" not in line
     assert said in line
-
-
-def test_a_name_that_a_certified_map_takes_is_refused():
-    drives = {"weights": DRIFT, "certified_weights": certified_stub.DRIFT}
-    with pytest.raises(ConfigError, match="certified_weights: another result has this name"):
-        load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
 
 @pytest.mark.long

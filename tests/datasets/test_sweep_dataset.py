@@ -333,22 +333,6 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
         assert both.motion == "bore"
 
 
-@pytest.mark.slow
-def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
-    paths = []
-    for nu in (0.3, 0):
-        (tmp_path / str(nu)).mkdir()
-        paths.append(tmp_path / f"{nu}.nc")
-        write("bore", tmp_path / str(nu), paths[-1], {"bore": {**GRIDS["bore"], "poisson": nu}})
-    joined = xr.concat([xr.open_dataset(path) for path in paths], "poisson", data_vars="minimal")
-    assert joined.mu_macro.dims == ("poisson", "amplitude", "velocity")
-    assert joined.poisson.values.tolist() == [0.3, 0]
-    with xr.open_mfdataset(
-        paths, combine="nested", concat_dim="poisson", data_vars="minimal"
-    ) as lazy:
-        xr.testing.assert_allclose(lazy.mu_macro.compute(), joined.mu_macro)
-
-
 @pytest.mark.long
 def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
     """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""

@@ -3,7 +3,6 @@
 import concurrent.futures
 import errno
 import logging
-import multiprocessing
 import os
 import random
 import signal
@@ -207,22 +206,6 @@ def test_a_read_only_folder_gives_the_same_message(store):
     store.folder.chmod(0o500)
     with pytest.raises(CacheError, match=r"Permission denied.*set permissions"):
         store.write("a", KEY, RECORD)
-
-
-def _write_many(folder, seed):
-    store = Store(folder)
-    for _ in range(50):
-        store.write("a", KEY, RECORD)
-        assert store.read("a", KEY) is not None
-    return seed
-
-
-@pytest.mark.slow
-def test_two_writers_of_one_result_do_not_disturb_each_other(store):
-    with multiprocessing.get_context("spawn").Pool(2) as pool:
-        assert pool.starmap(_write_many, [(store.folder, 1), (store.folder, 2)]) == [1, 2]
-    assert store.read("a", KEY) == {**RECORD, "key": KEY}
-    assert not leftovers(store)
 
 
 def test_many_threads_and_containers_write_one_result_without_disturbing_each_other(

@@ -1,6 +1,6 @@
-"""Axes of sweeps as coordinates.
+"""Coordinates of the axes of sweeps.
 
-Imports nothing heavy, since the workflow reads it whenever it is parsed.
+The module is imported whenever the workflow is parsed, so that it imports nothing slow.
 """
 
 import math
@@ -11,11 +11,11 @@ from microslip.config.records import Refusal
 from microslip.foundation.canonical import number
 
 DRIVES = ("mass", "damping", "stiffness", "force")
-"""Parameters of a drive, in the order of the dimensions of a dataset."""
+"""Parameters of a drive, in the order of the dimensions of datasets."""
 MOST_POINTS = 1_000_000
-"""Largest number of points of a sweep. Naming more takes the workflow a minute at every start."""
+"""Largest number of points of a sweep: for more the workflow takes a minute at every start."""
 MOST_MAP_POINTS = 10_000
-"""Largest number of points of a study's map, each of which every model computes."""
+"""Largest number of points of the map of a study, which every model computes."""
 
 
 def refuse_crowd(points: int, most: int, key: str = "") -> None:
@@ -27,8 +27,8 @@ def refuse_crowd(points: int, most: int, key: str = "") -> None:
 def coordinates(axis: Any) -> tuple[float, ...]:
     """Coordinates of an axis in ascending order.
 
-    axis: a number, a list of numbers, or {"linear" or "log": {"start", "stop", "count"}}. Raises
-    Refusal for equal coordinates and for a spacing that has none.
+    axis: a number, a list of numbers, or {"linear" or "log": {"start", "stop", "count"}}.  Raises
+    Refusal for equal coordinates and for an empty range.
     """
     if isinstance(axis, dict):
         ((spacing, range_),) = axis.items()
@@ -46,14 +46,14 @@ def _spaced(spacing: str, start: float, stop: float, count: int) -> list[float]:
     if spacing == "log" and start == 0:
         raise Refusal("0 is not allowed; allowed: a number > 0", "log.start")
     if stop <= start:
-        said = f"{number(stop)} is not allowed; allowed: a number above {number(start)}"
-        raise Refusal(said, f"{spacing}.stop")
+        message = f"{number(stop)} is not allowed; allowed: a number above {number(start)}"
+        raise Refusal(message, f"{spacing}.stop")
     if spacing == "log" and math.isinf(stop / start):
-        said = f"{number(start)} is not allowed; allowed: a number nearer {number(stop)}"
-        raise Refusal(said, f"{spacing}.start")
+        message = f"{number(start)} is not allowed; allowed: a number nearer {number(stop)}"
+        raise Refusal(message, f"{spacing}.start")
     if spacing == "linear":
         values = (start + (stop - start) * i / (count - 1) for i in range(count))
     else:
         values = (start * math.exp(math.log(stop / start) * i / (count - 1)) for i in range(count))
-    # Six digits make the coordinates readable, and the same on every machine.
+    # Six digits are readable and do not depend on the machine.
     return [float(f"{value:.6g}") for value in values]

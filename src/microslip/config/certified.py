@@ -1,4 +1,4 @@
-"""Certified maps: the key `adaptive` of a sweep."""
+"""Certified maps, from the key `adaptive` of a sweep."""
 
 from typing import TYPE_CHECKING
 
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from microslip.config.settings import Adaptive
 
 EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
-"""Models of the half-space, whose drift thresholds are known."""
+"""Models of the half-space, which have the closed forms of the drift threshold."""
 SHARE_OF_POINTS = 0.3
-"""Default tolerance of the points of a map, over the error of the map."""
+"""Default tolerance of the points of a map, as a fraction of the error of the map."""
 
 
 def _demand(condition: bool, refused: str, allowed: str) -> None:
@@ -20,7 +20,7 @@ def _demand(condition: bool, refused: str, allowed: str) -> None:
 
 
 def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
-    """The certified map of a sweep; raises Refusal for a sweep without a map."""
+    """The certified map of a sweep; raises Refusal for a sweep that cannot have one."""
     many = len(sweep.amplitude or ()) > 1
     if sweep.drives:
         names = [name for name, _, _ in sweep.drives]
@@ -29,10 +29,10 @@ def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
         range_ = "with two amplitudes at least, which are its range, and one Poisson's ratio"
         _demand(many and len(sweep.poisson) == 1, "here", range_)
         largest = sweep.drives[0][1][-1]
-        range_ = "above 0 and below 1, where a contact runs away"
+        range_ = "above 0 and below 1, the force at which a contact runs away"
         _demand(0.0 < largest < 1.0, f"up to the force {largest:g}", range_)
     range_ = "with two amplitudes and two velocities above 0 at least, which are its range, or "
-    range_ += "the velocity 0 in their place"
+    range_ += "two amplitudes and the velocity 0"
     mapped = sweep.spans_a_map or (many and 0.0 in sweep.velocity) or bool(sweep.drives)
     _demand(mapped, "here", range_)
     free = sweep.tolerance is not None and sweep.cells is None and sweep.steps is None
@@ -44,7 +44,7 @@ def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
 
 
 def refuse_unsolvable(map_: CertifiedMap) -> None:
-    """Raise Refusal for a map of drift whose threshold of the force is not known exactly."""
+    """Raise Refusal for a map of drift without a closed form of the threshold."""
     from microslip.config.extended import solver_names
     from microslip.theory import drift_threshold
 
@@ -53,11 +53,11 @@ def refuse_unsolvable(map_: CertifiedMap) -> None:
     model, nu = map_.sweep.model, map_.sweep.poisson[0]
     motion, pressure = solver_names(map_.sweep)
     where = f"for {motion} under {pressure} at Poisson's ratio {nu:g}"
-    known = f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 but for bore"
+    known = f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 except for bore"
     is_known = drift_threshold.is_known(motion, pressure, nu)
-    _demand(is_known, f"{where}, whose threshold is not known exactly", known)
-    other = f"with model {model}, whose threshold is another one"
+    _demand(is_known, f"{where}, whose threshold has no closed form", known)
+    other = f"with model {model}, which has another threshold"
     _demand(model in EXACT_MODELS, other, ", ".join(EXACT_MODELS))
     least = float(drift_threshold.threshold(motion, map_.amplitude[1]))
     above = f"a force above the threshold at the largest amplitude, {least:.3g}"
-    _demand(least < map_.force, "where nothing moves", above)
+    _demand(least < map_.force, "for forces that move nothing", above)

@@ -1,7 +1,6 @@
-"""Motions, pressures and drives by the names that the solver knows, such as
-"elliptic:forward=0.5,phase=30".
+"""Motions, pressures and drives of sweeps, by names such as "elliptic:forward=0.5,phase=30".
 
-Only functions that need the solver import it: the workflow reads this module whenever it is parsed.
+The module is imported whenever the workflow is parsed, so that its functions import the solver.
 """
 
 from __future__ import annotations
@@ -16,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:
-    """Names of a sweep's motion and pressure as the solver writes them.
+    """Canonical names of the motion and the pressure of a sweep.
 
-    Equal motions and pressures have equal names, so that their points are found again.
+    Equal motions and equal pressures have equal names, by which stored points are found.
     """
     if ":" not in sweep.motion + sweep.pressure:
-        return sweep.motion, sweep.pressure  # a plain name is written in one way only
+        return sweep.motion, sweep.pressure  # names without numbers are canonical
     from microslip.motions.by_name import motion_named
     from microslip.pressures.by_name import pressure_named
 
@@ -29,7 +28,7 @@ def solver_names(sweep: Sweep) -> tuple[str, str]:
 
 
 def refuse_unsolvable(sweep: Sweep) -> None:
-    """Raise InputError or Refusal for a sweep that the solver refuses; keys name the arguments."""
+    """Raise InputError or Refusal, with the key, for a sweep that the solver refuses."""
     from microslip.adaptive.choice import choose_model
     from microslip.adaptive.pulled import refuse_drive
     from microslip.motions.by_name import motion_named
@@ -40,17 +39,17 @@ def refuse_unsolvable(sweep: Sweep) -> None:
     if motion.periodic and sweep.amplitude is None:
         raise Refusal(f"missing; required for {motion.name}", "amplitude")
     if sweep.amplitude is not None and not motion.periodic:
-        said = f"{list(sweep.amplitude)} is not allowed; {motion.name} has no amplitude"
-        raise Refusal(said, "amplitude")
+        message = f"{list(sweep.amplitude)} is not allowed; {motion.name} has no amplitude"
+        raise Refusal(message, "amplitude")
     if sweep.model != "auto":
         choose_model(_problem(sweep, 1.0, -1), sweep.model)
     if sweep.velocity[:1] == (0,):
         _problem(sweep, 0.0, 0)
     drives = {name: values for name, values, _ in sweep.drives}
     for end in (0, -1) if drives else ():
-        given = {name: drives[name][end] if name in drives else None for name in DRIVES}
+        drive = {name: drives[name][end] if name in drives else None for name in DRIVES}
         velocity = sweep.velocity[end] if sweep.velocity else None
-        problem = _problem(sweep, velocity, -1, **given)
+        problem = _problem(sweep, velocity, -1, **drive)
         refuse_drive(problem, choose_model(problem, sweep.model))
 
 

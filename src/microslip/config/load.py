@@ -1,7 +1,7 @@
-"""Configurations of sweeps and studies: a YAML file to checked records.
+"""From a YAML file to the checked records of a configuration.
 
-`settings` holds types, ranges and defaults of all keys; here are the checks across keys, and the
-expansion of axes.
+`settings` has the types, ranges and defaults of all keys.  This module checks combinations of keys
+and expands axes.
 """
 
 import codecs
@@ -20,7 +20,7 @@ from microslip.config.axes import DRIVES, MOST_POINTS, refuse_crowd
 from microslip.config.records import (
     MODELS_OF_MOTION,
     MOTION_OF_SWEEP,
-    TAKEN,
+    RESERVED,
     ConfigError,
     Configuration,
     Refusal,
@@ -36,27 +36,29 @@ from microslip.foundation.user_files import content_of
 MOST_BYTES = 1_000_000
 """Largest size of a configuration; PyYAML reads about 100 kB a second."""
 MOST_PANELS, MOST_LINES = 12, 8
-"""Sweeps on a figure of maps and on one of lines, each counted once per Poisson's ratio."""
+"""Largest number of sweeps on a figure of maps and on a figure of lines; a sweep counts once for
+each Poisson's ratio."""
 
 
 # Files
 
 
 def load(path: str | os.PathLike) -> Configuration:
-    """Read and check the YAML file `path`; return a Configuration or raise ConfigError.
+    """Read and check a YAML file; return a Configuration or raise ConfigError.
 
-    Files that it names are looked for beside it, then in the working directory.
+    Files of pressures are searched in the folder of the YAML file, then in the working directory.
     """
     return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
 
 def read_yaml(path: str | os.PathLike) -> dict:
-    """Parse a YAML file into a dict, refusing keys that occur twice.
+    """Parse a YAML file into a dict.
 
-    Raises ConfigError: one line with the file and the line in it that is at fault.
+    Raises ConfigError for a file that cannot be read, for invalid YAML and for a key that occurs
+    twice.  The message is one line with the file and the line number.
     """
     if "\0" in str(path):
-        raise ConfigError(f"{str(path)!r}: cannot be read: no name of a file")
+        raise ConfigError(f"{str(path)!r}: cannot be read: not the name of a file")
     try:
         content = content_of(path, MOST_BYTES)
     except OSError as error:
@@ -79,13 +81,13 @@ def read_yaml(path: str | os.PathLike) -> dict:
     if mapping is None:
         raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
-        said = f"{schema.shown(mapping)} is not a mapping; allowed: keys and values"
-        raise ConfigError(f"{path}: {said}")
+        message = f"{schema.shown(mapping)} is not a mapping; allowed: keys and values"
+        raise ConfigError(f"{path}: {message}")
     return mapping
 
 
 def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
-    """Bytes as a stream with a name; raises ConfigError for what is not UTF-8."""
+    """Decode a file to a text stream; raises ConfigError if it is not UTF-8."""
     try:
         text = io.StringIO(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -96,7 +98,7 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
         raise ConfigError(
             f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8{hint}"
         ) from None
-    text.name = str(path)  # the parser's name for it
+    text.name = str(path)  # for messages of the parser
     return text
 
 
@@ -106,10 +108,20 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
 def with_files_found(
     mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
 ) -> dict:
-    """A parsed configuration with its defaults and the paths of its files filled in.
+    """Fill in the defaults and the paths of files of a parsed configuration.
 
-    A job reads the result wherever it runs. Arguments as for `from_mapping`; strict: whether a
-    missing file is refused. Raises ConfigError.
+    A job can read the result in any folder.
+
+    Parameters
+    ----------
+    mapping, source, folders
+        As for `from_mapping`.
+    strict : bool
+        True: a missing file is refused.
+
+    Raises
+    ------
+    ConfigError
     """
     filled = _settings(mapping, source).model_dump(warnings=False)
     for key in ("extended", "drives"):
@@ -130,9 +142,9 @@ def _settings(mapping: dict, source: str) -> Root:
 
 
 def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
-    """The name of a pressure, with path and digest of the file that it names, if any.
+    """Add path and digest of its file to the name of a pressure, if it has a file.
 
-    Raises InputError for a file that is not there, unless not strict.
+    A missing file raises InputError if `strict`; otherwise the name is returned as it is.
     """
     if not named_files.speaks_of_file(pressure):
         return pressure
@@ -140,7 +152,7 @@ def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
         file = named_files.parsed(pressure)
         if not (file.digest and file.path):
             return named_files.found(pressure, folders)[0].placed
-        named_files.remember([pressure])  # found before
+        named_files.remember([pressure])
     except InputError:
         if strict:
             raise
@@ -149,7 +161,7 @@ def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
 
 @contextmanager
 def _errors_at(where: str) -> Iterator[None]:
-    """Raise ConfigError, one line that begins with `where`, for refused values."""
+    """Convert errors to ConfigError, one line that begins with `where`."""
     try:
         yield
     except ConfigError:
@@ -157,10 +169,10 @@ def _errors_at(where: str) -> Iterator[None]:
     except Refusal as error:
         key = f".{error.key}" if error.key else ""
         raise ConfigError(_one_line(f"{where}{key}: {error}")) from None
-    except InputError as error:  # its arguments have the names of the keys
+    except InputError as error:  # arguments of the solver and keys have the same names
         line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
         raise ConfigError(_one_line(line)) from None
-    except ValueError as error:  # readers of files have words of their own
+    except ValueError as error:  # from readers of files
         raise ConfigError(_one_line(f"{where}: {error}")) from None
 
 
@@ -174,12 +186,12 @@ def from_mapping(
     mapping : dict
         Parsed YAML.
     source : str
-        Name of the origin in messages, usually the file.
+        Origin of the configuration in messages, usually the file.
     ask_solver : bool
-        Whether motions, pressures and drives are checked by the solver, which takes half a second
-        to import, and whether files have to be there. The result does not depend on it.
+        True: the solver, which takes half a second to import, checks motions, pressures and drives,
+        and missing files are refused.  The result does not depend on it.
     folders : iterable of paths
-        Folders of files that the configuration names, before the working directory.
+        Folders in which files of pressures are searched before the working directory.
 
     Raises
     ------
@@ -187,7 +199,7 @@ def from_mapping(
         One line: source, key, value, what is allowed.
     """
     settings = _settings(mapping, source)
-    given: dict[str, SteadySweep] = {}
+    all_members: dict[str, SteadySweep] = {}
     families: dict[str, dict[str, Sweep]] = {}
     maps = {}
     for family in ("sweeps", "extended", "drives"):
@@ -197,7 +209,7 @@ def from_mapping(
         for name in (name for name in order if name in members):
             with _errors_at(f"{source}: {family}.{name}"):
                 if family != "sweeps":
-                    _refuse_taken(name, {*given} | ({*members} - {name}))
+                    _refuse_taken(name, {*all_members} | ({*members} - {name}))
                 sweep = _sweep(name, members[name], folders, ask_solver)
                 families[family][name] = sweep
                 if ask_solver and family != "sweeps":
@@ -207,7 +219,7 @@ def from_mapping(
                     maps[map_.name] = map_
                     if ask_solver:
                         certified.refuse_unsolvable(map_)
-        given |= members
+        all_members |= members
     with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))
     if ask_solver:
@@ -220,7 +232,8 @@ def from_mapping(
         results=settings.results,
         **families,
         points_per_job={
-            name: sweep.points_per_job or settings.points_per_job for name, sweep in given.items()
+            name: sweep.points_per_job or settings.points_per_job
+            for name, sweep in all_members.items()
         },
         histories={name: dict(run) for name, run in settings.histories},
         accuracy=settings.accuracy,
@@ -234,54 +247,61 @@ def from_mapping(
 # Sweeps
 
 
-def _sweep(name: str, given: Any, folders: Iterable, strict: bool) -> Sweep:
-    """The Sweep of settings; raises Refusal for settings that do not go together."""
+def _sweep(name: str, settings: Any, folders: Iterable, strict: bool) -> Sweep:
+    """Convert the settings of a sweep to a Sweep; raises Refusal for combinations that are not
+    allowed."""
     drives = tuple(
         (drive, tuple(axis), isinstance(axis.raw, list | dict))
         for drive in DRIVES
-        if (axis := getattr(given, drive, None)) is not None
+        if (axis := getattr(settings, drive, None)) is not None
     )
-    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(given, "amplitude", None)
+    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(settings, "amplitude", None)
     more: dict[str, Any] = {}
     if not of_paper:
-        if not drives and not hasattr(given, "group"):
+        if not drives and not hasattr(settings, "group"):
             raise Refusal("missing; required: force or stiffness")
-        pressure = _with_path(given.pressure, folders, strict)
-        more = {"title": given.title or name, "pressure": _by_content(pressure), "drives": drives}
-        more |= {key: getattr(given, key) for key in ("group", "contacts") if hasattr(given, key)}
+        pressure = _with_path(settings.pressure, folders, strict)
+        more = {
+            "title": settings.title or name,
+            "pressure": _by_content(pressure),
+            "drives": drives,
+        }
+        more |= {
+            key: getattr(settings, key) for key in ("group", "contacts") if hasattr(settings, key)
+        }
     sweep = Sweep(
         name=name,
-        motion=MOTION_OF_SWEEP[name] if of_paper else given.motion,
-        velocity=tuple(given.velocity or ()),
+        motion=MOTION_OF_SWEEP[name] if of_paper else settings.motion,
+        velocity=tuple(settings.velocity or ()),
         amplitude=None if amplitude is None else tuple(amplitude),
-        poisson=tuple(given.poisson),
-        poisson_is_axis=isinstance(given.poisson.raw, list),
-        model=given.model,
-        tolerance=None if given.tolerance is None else float(number(given.tolerance)),
-        cells=given.cells,
-        steps=given.steps,
+        poisson=tuple(settings.poisson),
+        poisson_is_axis=isinstance(settings.poisson.raw, list),
+        model=settings.model,
+        tolerance=None if settings.tolerance is None else float(number(settings.tolerance)),
+        cells=settings.cells,
+        steps=settings.steps,
         **more,
     )
     axes = [sweep.velocity or (None,), sweep.amplitude or (None,), sweep.poisson]
     refuse_crowd(math.prod(map(len, axes + [values for _, values, _ in drives])), MOST_POINTS)
     models = MODELS_OF_MOTION[sweep.motion] if of_paper else (sweep.model,)
     if sweep.model not in models:
-        said = f'"{sweep.model}" does not apply to {sweep.motion}; allowed: {", ".join(models)}'
-        raise Refusal(said, "model")
+        message = f'"{sweep.model}" does not apply to {sweep.motion}; allowed: {", ".join(models)}'
+        raise Refusal(message, "model")
     if of_paper and sweep.model == "radial" and sweep.poisson[-1] > 0:
-        said = f"{sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
-        raise Refusal(said, "poisson")
+        message = f"{sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
+        raise Refusal(message, "poisson")
     return sweep
 
 
 def _refuse_taken(name: str, others: Iterable[str]) -> None:
-    """Refuse the name of another result."""
-    if name in TAKEN or name in others or name.removeprefix("certified_") in others:
+    """Raise Refusal for the name of another result."""
+    if name in RESERVED or name in others or name.removeprefix("certified_") in others:
         raise Refusal("another result has this name; allowed: a new one")
 
 
 def _by_content(pressure: str) -> str:
-    """The name of a pressure, without the place of a file whose content is known."""
+    """Name of a pressure with the digest of its file in place of the path, if there is a digest."""
     if not named_files.speaks_of_file(pressure):
         return pressure
     file = named_files.parsed(pressure)
@@ -289,14 +309,14 @@ def _by_content(pressure: str) -> str:
 
 
 def _refuse_mixtures(sweeps: list[Sweep]) -> None:
-    """Refuse a group of sweeps that cannot be one figure."""
+    """Raise Refusal for a group of sweeps that does not fit on one figure."""
     for group in dict.fromkeys(sweep.group for sweep in sweeps):
         together = [sweep for sweep in sweeps if sweep.group == group]
         first, last = together[0], together[-1]
         for sweep in together:
             if sweep.drawn_over != first.drawn_over:
                 raise Refusal(
-                    f"{group} is drawn over {first.drawn_over}, as {first.name} asks, and this "
+                    f"{group} is drawn over {first.drawn_over} for {first.name}, and this sweep "
                     f"over {sweep.drawn_over}; allowed: another group",
                     f"{sweep.name}.group",
                 )

@@ -1,7 +1,7 @@
-"""Quantities under one name each: what datasets, figures and pages call them, and their units.
+"""Names, symbols and descriptions of quantities in datasets, figures and pages.
 
-All are dimensionless: ratios, which are written in plain text with the names of Greek letters, as a
-motion's record does it, too: "v0 / (omega u_lim)".
+All quantities are dimensionless.  Their definitions are ratios in plain text with the names of
+Greek letters, such as "v0 / (omega u_lim)".
 """
 
 from __future__ import annotations
@@ -11,21 +11,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity as text, as a formula and as a symbol.
+    """Names and symbols of a quantity.
 
     Attributes
     ----------
     name : str
         Name of the coordinate or the variable in a dataset.
     text : str
-        In words, for an axis.
+        Label of an axis.
     unit : str
-        The ratio that its symbol stands for, plain text, "" where the symbol shows it; see
-        report.figures.formulas for other ways to write it.
+        Definition as a ratio, in plain text; "" if the symbol is the ratio.
+        report.figures.formulas converts it to other notations.
     symbol, latex : str
-        Its symbol, plain and for LaTeX.
+        Symbol in plain text and in LaTeX.
     description : str
-        In a sentence, for datasets.
+        Description in datasets.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Quantity:
 
     @property
     def math(self) -> str:
-        """The symbol in mathtext."""
+        """Symbol in mathtext."""
         return f"${self.latex}$"
 
 
@@ -76,7 +76,7 @@ VELOCITY = {
         "forward velocity over rotational velocity of the contact's edge (Eq 13)",
     ),
 }
-"""The axis of velocities by motion, those of the paper."""
+"""Velocity by motion of the paper."""
 AMPLITUDE = {
     "transverse": Quantity(
         *("amplitude", "amplitude", "y0 / u_lim", "y~0", r"\tilde{y}_0"),
@@ -87,7 +87,7 @@ AMPLITUDE = {
         "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
     ),
 }
-"""The axis of amplitudes by motion; a steady one has none."""
+"""Amplitude by motion of the paper; the steady motion has none."""
 
 DRIVES = {
     "force": Quantity(

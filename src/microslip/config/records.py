@@ -1,28 +1,25 @@
-"""Records of a checked configuration: sweeps, studies and single runs.
+"""Records of a checked configuration: sweeps, certified maps, studies and single runs.
 
-`config` makes them from a file. Imports nothing heavy, since the workflow reads it whenever it is
-parsed.
+The module is imported whenever the workflow is parsed, so that it imports nothing slow.
 """
 
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-# Sweeps are named like their datasets, motions as on the command line.
 MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
-
-# The single runs, for figures, that a dataset carries besides its sweep.
+"""Motions of the paper, named as on the command line, by sweep, named as their datasets."""
 HISTORIES_OF_SWEEP = {
     "transverse": ("transverse",),
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
-# Names that no other sweep may have: of datasets, and of folders of batches.
-TAKEN = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
-TAKEN += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
-TAKEN += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
-TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
-TAKEN += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
-# What models.registry refuses, which takes too long to import here; a test keeps them the same.
+"""Single runs for figures that the dataset of a sweep contains."""
+RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
+RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
+RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
+RESERVED += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
+RESERVED += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
+"""Names of datasets and of folders of batches, which other sweeps may not have."""
 MODELS_OF_MOTION = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
@@ -30,21 +27,20 @@ MODELS_OF_MOTION = {
     "longitudinal": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
 }
-
-
+"""Models that apply to a motion, as in models.registry, which is slow to import."""
 LOOSEST_POINTS = 1e-2
-"""Largest tolerance of the points of a map. The refinement takes larger errors for curvature of the
-map and halves cells without need."""
+"""Largest tolerance of the points of a certified map: the refinement would take larger errors for
+curvature and halve cells without need."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
-"""Amplitudes up to which the maps of the paper show static friction, by motion."""
+"""Largest amplitude with static friction in the maps of the paper, by motion."""
 
 
 class ConfigError(ValueError):
-    """A configuration that cannot be used. The message is one line: file, key, value, allowed."""
+    """Invalid configuration; the message is one line with file, key, value and what is allowed."""
 
 
 class Refusal(ValueError):
-    """A value that is not allowed, in one line.
+    """A value that is not allowed; the message is one line.
 
     Attributes
     ----------
@@ -59,27 +55,27 @@ class Refusal(ValueError):
 
 @dataclass(frozen=True)
 class Sweep:
-    """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
+    """A grid of points; its axes are ascending tuples of floats, all dimensionless."""
 
     name: str
-    motion: str  # with numbers as they were given; extended.solver_names writes equal ones alike
+    motion: str  # as in the configuration; extended.solver_names returns the canonical name
     velocity: tuple
     amplitude: tuple | None  # None: the motion has no amplitude
     poisson: tuple
-    poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
+    poisson_is_axis: bool  # True: Poisson's ratio is a dimension of the dataset
     model: str
-    tolerance: float | None  # None: the resolution is imposed, and its error only told
+    tolerance: float | None  # None: the resolution is imposed
     cells: int | None
     steps: int | None
-    pressure: str = "hertz"  # as for motion
-    group: str | None = None  # of the figure that shows it, None for the paper's
-    title: str | None = None  # there
-    drives: tuple = ()  # (name, values, whether they are an axis) of what pulls, as for solve()
-    contacts: str | None = None  # of a body that several carry, as it was given
+    pressure: str = "hertz"  # as in the configuration
+    group: str | None = None  # figure that shows the sweep; None for sweeps of the paper
+    title: str | None = None  # title on that figure
+    drives: tuple = ()  # (argument of solve(), values, True for a dimension of the dataset)
+    contacts: str | None = None  # several contacts of one body, as in the configuration
 
     @property
     def spans_a_map(self) -> bool:
-        """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
+        """True for at least two amplitudes and two velocities above 0, which are drawn as a map."""
         positive = [velocity for velocity in self.velocity if velocity > 0]
         return len(self.amplitude or ()) > 1 and len(positive) > 1
 
@@ -93,16 +89,16 @@ class Sweep:
 
 @dataclass(frozen=True)
 class CertifiedMap:
-    """A map whose points are chosen so that an error holds everywhere. All is dimensionless."""
+    """A map with points chosen so that its error is bounded everywhere; all is dimensionless."""
 
     name: str
-    sweep: Sweep  # whose ranges and settings it has; its axes and tolerance do not count
+    sweep: Sweep  # with the ranges and settings of the map
     error: float
     tolerance: float  # of the points
 
     @property
     def velocity(self) -> tuple[float, ...]:
-        """The smallest velocity above 0, and the largest; () for a map of the static limit."""
+        """The smallest velocity above 0 and the largest; () for a map of the static limit."""
         positive = [velocity for velocity in self.sweep.velocity if velocity > 0]
         return (positive[0], positive[-1]) if self.sweep.spans_a_map else ()
 
@@ -114,37 +110,37 @@ class CertifiedMap:
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """The smallest and the largest Poisson's ratio; () for a map of one."""
+        """The smallest and the largest Poisson's ratio; () if there is only one."""
         ratios = self.sweep.poisson
         return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
 
     @property
     def force(self) -> float | None:
-        """The largest force of a map of the velocity that one gives; None: it is of friction."""
-        pulls = {name: values for name, values, _ in self.sweep.drives}
-        return pulls["force"][-1] if "force" in pulls else None
+        """The largest force of a map of drift; None for a map of friction."""
+        drives = {name: values for name, values, _ in self.sweep.drives}
+        return drives["force"][-1] if "force" in drives else None
 
     @property
     def settings(self) -> dict:
-        """All that its points depend on, as a dict for JSON."""
-        kept = ("motion", "pressure", "model")
-        found = {name: getattr(self.sweep, name) for name in kept}
-        found["poisson"] = self.poisson or self.sweep.poisson
+        """Settings on which the points depend, as a dict for JSON."""
+        names = ("motion", "pressure", "model")
+        settings = {name: getattr(self.sweep, name) for name in names}
+        settings["poisson"] = self.poisson or self.sweep.poisson
         ranges: dict = {"velocity": self.velocity, "amplitude": self.amplitude}
         if self.force is not None:
             ranges["force"] = self.force
-        return found | ranges | {"error": self.error, "tolerance": self.tolerance}
+        return settings | ranges | {"error": self.error, "tolerance": self.tolerance}
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """A checked configuration with its defaults filled in and its axes expanded."""
+    """A checked configuration with defaults and expanded axes."""
 
     results: str
     sweeps: dict  # name -> Sweep, in the order of MOTION_OF_SWEEP
     extended: dict  # name -> Sweep, of other motions and pressures
-    drives: dict  # name -> Sweep, of contacts that are pulled
-    points_per_job: dict  # name of a sweep -> int; no dataset depends on it
+    drives: dict  # name -> Sweep, of contacts under a force or a spring
+    points_per_job: dict  # name of a sweep -> int; datasets do not depend on it
     histories: dict  # transverse, field, transients -> dict of settings
     accuracy: Any  # settings.Accuracy, and so on
     stability: Any
@@ -154,7 +150,7 @@ class Configuration:
 
     @property
     def grids(self) -> dict[str, Sweep]:
-        """All sweeps by name, the paper's first."""
+        """All sweeps by name, those of the paper first."""
         return self.sweeps | self.extended | self.drives
 
     @property
@@ -167,10 +163,10 @@ class Configuration:
         }
 
     def of_sweep(self, name: str) -> dict:
-        """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
+        """Settings on which the dataset of a sweep depends, as a dict for JSON."""
         names = HISTORIES_OF_SWEEP.get(name, ())
         sweep = asdict(self.grids[name])
-        if not sweep["drives"]:  # which goes without saying, as it did before there were any
+        if not sweep["drives"]:  # older datasets have neither drives nor contacts
             del sweep["drives"]
         if sweep["contacts"] is None:
             del sweep["contacts"]

@@ -1,4 +1,4 @@
-"""The JSON schema of a configuration, and one line for what is wrong with one."""
+"""The JSON schema of a configuration, and one-line messages for invalid ones."""
 
 import difflib
 import json
@@ -19,13 +19,13 @@ UNKNOWN = ("extra_forbidden", "invalid_key")
 
 @cache
 def schema() -> dict:
-    """Return the JSON schema as a dict, shared by all callers: do not change it."""
+    """The JSON schema, a dict that is shared by all callers and must not be changed."""
     from pydantic.json_schema import GenerateJsonSchema
 
     from microslip.config.settings import Root
 
     class Generator(GenerateJsonSchema):
-        """Titles are those of the models; names of keys have a schema of their own."""
+        """Generator without titles of fields, and with a schema for the names of keys."""
 
         def field_title_should_be_set(self, schema: Any) -> bool:
             return False
@@ -42,7 +42,7 @@ def schema() -> dict:
 
 
 def options(rule: dict) -> list[dict]:
-    """Alternatives of a rule of the schema, without references."""
+    """Alternatives of a rule of the schema, with references resolved."""
     if "$ref" in rule:
         return options(schema()["$defs"][rule["$ref"].rpartition("/")[2]])
     alternatives = rule.get("anyOf") or rule.get("oneOf")
@@ -50,26 +50,26 @@ def options(rule: dict) -> list[dict]:
 
 
 def error_line(errors: Iterable["ErrorDetails"]) -> str:
-    """The first of pydantic's errors in one line: key, value, what is allowed.
+    """Message for one of the errors of pydantic: key, value, what is allowed.
 
-    A mistyped key is both unknown and missing; the unknown key comes first, since it helps more.
+    Unknown keys come first: a mistyped key is reported as unknown and not as missing.
     """
     return _line(min(errors, key=lambda e: (e["type"] not in UNKNOWN, _dotted(_keys(e["loc"])))))
 
 
 def near_miss(given: object, known: Iterable[str]) -> str:
-    """'did you mean this? ' if one of the known names is like what is given, else ''."""
+    """'did you mean NAME? ' for the known name that is similar to a given one, else ''."""
     near = difflib.get_close_matches(str(given), known, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
 def shown(value: object) -> str:
-    """Write a value as in JSON, cut to 60 characters."""
+    """Format a value as JSON, cut to 60 characters."""
     try:
         text = json.dumps(value, default=str, ensure_ascii=False)
-    except (ValueError, RecursionError):  # it contains itself
+    except (ValueError, RecursionError):  # the value contains itself
         text = repr(value)
-    text = text.encode("utf-8", "backslashreplace").decode()  # halves of a character, too
+    text = text.encode("utf-8", "backslashreplace").decode()  # escapes lone surrogates
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
@@ -103,7 +103,7 @@ def _line(error: "ErrorDetails") -> str:
 
 
 def _keys(location: tuple[int | str, ...]) -> list[int | str]:
-    """Keys and indices of a location, without the alternatives of unions and "[key]"."""
+    """Keys and indices of a location of pydantic, without the tags of unions and "[key]"."""
     return [key for key in location if key not in ("(list)", "(spacing)", "(number)", "[key]")]
 
 
@@ -131,16 +131,16 @@ def _as_number(text: str) -> str:
         return "allowed: a finite number"
     mantissa, _, exponent = text.lower().partition("e")
     if not exponent:
-        # YAML takes +.5 for text, and 010 for another number.
+        # YAML reads +.5 as text, and 010 as 8.
         plain = re.fullmatch(r"-?(0|[1-9][0-9]*)?(\.[0-9]*)?", text)
         return f"write the number without quotes: {text if plain else f'{value:.17g}'}"
-    # YAML 1.1 takes it for a number only with a point before and a sign after the e.
+    # YAML 1.1 reads a number only with a point before the e and a sign after it.
     mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
     return f"write {mantissa}e{int(exponent):+d}"
 
 
 def allowed_values(rules: list[dict]) -> str:
-    """Words for the values that one of the rules allows."""
+    """Description of the values that one of the rules allows."""
     kinds = [rule.get("type") for rule in rules]
     texts = ["or null" if rule.get("type") == "null" else _phrase(rule) for rule in rules]
     if kinds[:2] == ["number", "array"]:

@@ -1,7 +1,7 @@
 """Keys of a configuration: types, defaults, ranges and descriptions.
 
-Validation, the JSON schema and the tables in config/README.md follow from these models. An axis
-stays as it was written, so that the filled-in settings can be handed on and read again.
+Validation, the JSON schema and the tables in config/README.md follow from these models.  Axes are
+serialised as they were written, so that the settings with defaults can be read again.
 """
 
 import json
@@ -42,14 +42,15 @@ CONFIG = ConfigDict(
     defer_build=True,  # builds the validator of Root alone
 )
 PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
-"""For typed dicts, whose docstrings take long to extract."""
+"""Configuration of typed dicts, whose docstrings are slow to extract."""
 STUDIES: dict[str, dict] = json.loads(
     Path(__file__).with_name("study_defaults.json").read_text(encoding="utf-8")
 )
 POINTS, MOTIONS = STUDIES["accuracy"], STUDIES["propulsion"]
-"""Default points of the study of accuracy and default motions of that of propulsion, by name."""
+"""Default points of the study of accuracy and default motions of the study of propulsion, by
+name."""
 MOST_LINES, MOST_PANELS = 8, 4
-"""Lines of a panel of the propulsion figure, and its panels."""
+"""Largest number of lines in a panel of the propulsion figure, and of panels."""
 
 
 class Settings(BaseModel):
@@ -59,7 +60,7 @@ class Settings(BaseModel):
 
     @model_serializer(mode="wrap")
     def _without_unset(self, handler: Callable) -> dict[str, Any]:
-        """Leave out optional keys that were not given, so that the result can be read again."""
+        """Leave out optional keys that are not set, so that the result can be read again."""
         values = handler(self).items()
         return {k: v for k, v in values if v is not None or k in self.model_fields_set}
 
@@ -72,7 +73,8 @@ def _whole(value: Any) -> Any:
 
 
 def _kind(value: object) -> str | None:
-    """Alternative of a union that a value is checked by, as an element of an error's location."""
+    """Tag of the alternative of a union for a value, which pydantic adds to the location of
+    errors."""
     if isinstance(value, list | dict):
         return "(list)" if isinstance(value, list) else "(spacing)"
     return "(number)" if isinstance(value, int | float) else None
@@ -83,12 +85,12 @@ def _no_default(rule: dict[str, Any]) -> None:
 
 
 def _optional() -> Any:
-    """A key that may be left out but is not null."""
+    """A key that may be left out but not be null."""
     return Field(default=None, validate_default=False, json_schema_extra=_no_default)
 
 
 def _raw(value: Any) -> Any:
-    """A default as it would be written; it is validated like a given value."""
+    """A default as in YAML, which is validated."""
     return Field(default=value)
 
 
@@ -102,9 +104,9 @@ Cells = Annotated[int, Field(ge=4, le=LARGEST["cells"], multiple_of=2), WHOLE]
 Steps = Annotated[int, Field(ge=8, le=LARGEST["steps"], multiple_of=2), WHOLE]
 Points = Annotated[int, Field(ge=1, le=100_000), WHOLE]
 
-# A character that is no space; no control characters, line breaks and halves of pairs.
+# At least one character other than spaces; no control characters, line breaks and surrogates.
 WRITABLE = r"^(?=.*\S)[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]+$(?!\n)"
-# Also no pattern, and no place that other programs take for another one.
+# A folder without wildcards and without ~, $NAME and ://, which other programs expand.
 FOLDER = (
     r"^(?!~)(?!.*://)(?!.*\$[A-Za-z_])(?=.*\S)"
     r"[^{}*?\x00-\x1f\x7f\x85\u2028\u2029\ud800-\udfff]+$(?!\n)"
@@ -140,7 +142,7 @@ class Range(TypedDict):
 
 @with_config(PLAIN | ConfigDict(title="linear or log spacing"))
 class Spacing(TypedDict, total=False):
-    """One of the two spacings."""
+    """Evenly spaced coordinates."""
 
     linear: Annotated[Range, Field(description="Equal distances.")]
     log: Annotated[Range, Field(description="Equal ratios.")]
@@ -164,7 +166,7 @@ class Axis(tuple[float, ...]):
     Attributes
     ----------
     raw : list, dict or number
-        The axis as it was written.
+        The axis as in YAML.
     """
 
     raw: Any
@@ -172,7 +174,7 @@ class Axis(tuple[float, ...]):
 
     @classmethod
     def of(cls, raw: Any) -> Self:
-        """The axis that is written so; raises Refusal."""
+        """Convert an axis from YAML; raises Refusal."""
         axis = cls(coordinates(raw))
         axis.raw = raw
         return axis
@@ -226,14 +228,15 @@ MapAxis = Annotated[PositiveAxis, AfterValidator(_two)]
 
 
 class Adaptive(Settings):
-    """A further map over the same ranges, certified_NAME.nc, for `snakemake certified`."""
+    """A certified map over the ranges of the sweep: `snakemake certified` makes
+    certified_NAME.nc."""
 
     error: Annotated[float, Field(ge=1e-5, le=0.1)]
-    """Largest error of mu_macro anywhere in the ranges, absolute. Under a force: of the velocity v,
-    divided by sqrt(1 + v^2)."""
+    """Largest error of mu_macro anywhere in the ranges, absolute. Under a force: largest error of
+    the velocity v divided by sqrt(1 + v^2)."""
     tolerance: Annotated[float, Field(ge=1e-6, le=LOOSEST_POINTS)] | None = None
-    """Largest error of mu_macro at the points, below `error`. null: three tenths of it, at most
-    0.01."""
+    """Largest error of mu_macro at the points, below `error`. null: three tenths of `error`, at
+    most 0.01."""
 
     @model_validator(mode="after")
     def _refuse_loose_points(self) -> Self:
@@ -244,28 +247,28 @@ class Adaptive(Settings):
 
 
 class SteadySweep(Settings):
-    """Keys of `continuous_bore`, and of every other sweep."""
+    """Keys of every sweep."""
 
     velocity: Axis
-    """Forward velocity: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq 28) or v0/(omega a) (Eq 13),
-    as the motion has it. 0: static limit."""
+    """Forward velocity in the unit of the motion: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq
+    28) or v0/(omega a) (Eq 13). 0: static limit."""
     poisson: Poisson = _raw(0.0)
     """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
     model: Model = "auto"
-    """Contact model. auto takes the cheapest one that is exact for the motion."""
+    """Contact model. auto: the cheapest model that is exact for the motion."""
     tolerance: Tolerance | None = 1e-3
-    """Largest accepted error of mu_macro, absolute. null, with cells and steps imposed: a point
-    counts as converged once its runs have reached their periodic state."""
+    """Largest accepted error of mu_macro, absolute. null: cells and steps are imposed, and a point
+    has converged if its runs have reached their periodic state."""
     cells: Cells | None = None
     """Rings, or squares across the contact, even. null: chosen by the tolerance."""
     steps: Steps | None = None
     """Time steps of a period, even. null: chosen by the tolerance."""
     points_per_job: Points | None = None
-    """Points that one job of this sweep computes. null: the value of the top level."""
+    """Number of points that one job of this sweep computes. null: the value of the top level."""
 
     @model_validator(mode="after")
     def _refuse_no_tolerance(self) -> Self:
-        steady = getattr(self, "amplitude", None) is None  # takes no steps
+        steady = getattr(self, "amplitude", None) is None  # without time steps
         free = [name for name in ("cells", "steps") if getattr(self, name) is None]
         free = [name for name in free if not (steady and name == "steps")]
         if self.tolerance is None and free:
@@ -285,11 +288,11 @@ class Sweep(SteadySweep):
 
 class _NamedSweep(SteadySweep):
     motion: Text
-    """Motion; numbers may follow as in "elliptic:forward=0.5,phase=30"."""
+    """Motion, with parameters as in "elliptic:forward=0.5,phase=30"."""
     pressure: Text = "hertz"
-    """Normal pressure; numbers may follow as in "power:exponent=1"; or file:FILE."""
+    """Normal pressure, with parameters as in "power:exponent=1", or file:FILE."""
     title: Title | None = None
-    """Title in figures and of the dataset, drawn as it stands: $ and \\ begin no formula. null: the
+    """Title of the dataset and in figures, as plain text: $ and \\ have no meaning. null: the
     name."""
     amplitude: Axis = _optional()
     """Amplitude, in the unit of the motion. Required unless the motion is steady."""
@@ -300,24 +303,27 @@ class _NamedSweep(SteadySweep):
 
 
 class ExtendedSweep(_NamedSweep):
-    """A sweep of any motion under any pressure. Its group is drawn as maps if it has two amplitudes
-    and two velocities above 0 at least, else as lines: at most 12 maps, or 8 lines."""
+    """A sweep of any motion under any pressure. A group of sweeps with at least two amplitudes and
+    two velocities above 0 is drawn as maps, at most 12; other groups are drawn as lines, at most
+    8."""
 
     group: PlainName
-    """Figure that shows the sweep, extended_GROUP, with the others of its group: all of them maps,
-    or all of them lines."""
+    """Group of the sweep, which is drawn on the figure extended_GROUP. All sweeps of a group are
+    drawn as maps, or all as lines."""
 
 
 class DriveSweep(_NamedSweep):
-    """A sweep of a contact that a force or a spring drives. What is an axis is a dimension."""
+    """A sweep of a contact under a force or a spring. An axis is a dimension of the dataset."""
 
     velocity: Axis = _optional()
-    """Velocity of the far end of the spring, in the unit of the motion. Not with a force."""
+    """Velocity of the far end of the spring, in the unit of the motion; not allowed with a
+    force."""
     contacts: Text | None = None
-    """Contacts that carry the body, such as "phase=0;phase=180": load, phase in degrees and
-    amplitude of each. null: one."""
+    """Contacts of the body with load, phase in degrees and amplitude of each, such as
+    "phase=0;phase=180". null: one contact."""
     force: NumberOrAxis = _optional()
-    """Force in place of a velocity: P over mu times the mean normal load. Number or axis."""
+    """Prescribed force P over mu times the mean normal load, in place of a velocity. Number or
+    axis."""
     stiffness: NumberOrAxis = _optional()
     """Stiffness of the spring, over mu F_z / u_lim. Number or axis, above 0."""
     mass: NumberOrAxis = _optional()
@@ -328,7 +334,7 @@ class DriveSweep(_NamedSweep):
 
 @with_config(PLAIN)
 class Sweeps(TypedDict, total=False):
-    """Sweeps of the paper. One that is left out is not run."""
+    """Sweeps of the paper. A sweep that is left out is not run."""
 
     transverse: Annotated[Sweep, Field(description="Oscillation across the motion (Eq 1).")]
     bore: Annotated[Sweep, Field(description="Oscillating rotation (Eq 23).")]
@@ -376,7 +382,7 @@ class Transients(Settings):
 
 
 class Histories(Settings):
-    """Single runs that Figures 1, 3 and 5 show, stored in the dataset of their motion."""
+    """Single runs for Figures 1, 3 and 5, stored in the dataset of their motion."""
 
     transverse: ForceHistory = _raw({})
     """Forces over the first periods of a transverse oscillation (Figure 1)."""
@@ -438,7 +444,7 @@ class StudyPoint(Settings):
     """A point at which methods are compared."""
 
     motion: Literal["transverse", "longitudinal", "bore", "continuous-bore", "zigzag"]
-    """Motion."""
+    """Name of the motion."""
     velocity: Positive
     """Forward velocity, in the unit of the motion, above 0."""
     amplitude: Positive | None = None
@@ -446,14 +452,14 @@ class StudyPoint(Settings):
     poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     title: Title | None = None
-    """Title of the panel, drawn as it stands. null: the name of the point."""
+    """Title of the panel, as plain text. null: the name of the point."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
         steady, amplitude = self.motion == "continuous-bore", self.amplitude
         if steady and amplitude is not None:
-            said = f"{amplitude:g} is not allowed; {self.motion} has no amplitude"
-            raise Refusal(said, "amplitude")
+            message = f"{amplitude:g} is not allowed; {self.motion} has no amplitude"
+            raise Refusal(message, "amplitude")
         if not steady and amplitude is None:
             raise Refusal(f"missing; required for {self.motion}", "amplitude")
         return self
@@ -478,7 +484,7 @@ class _Grid(Settings):
 
 
 class ModelMap(_Grid):
-    """Grid of the maps that show the cheapest model within a tolerance, at Poisson's ratio 0."""
+    """Grid of the maps of the cheapest model within a tolerance, at Poisson's ratio 0."""
 
     velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
     """Forward velocities of both motions, above 0."""
@@ -487,23 +493,23 @@ class ModelMap(_Grid):
     amplitude_bore: MapAxis = _raw({"log": {"start": 0.1, "stop": 5, "count": 9}})
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0."""
     tolerance: Tolerances = _raw([0.01, 0.001])
-    """Errors of mu_macro, absolute; a map for each."""
+    """Tolerances on mu_macro, absolute, with a map for each."""
 
 
 class Accuracy(Settings):
     """Cost of accuracy: `snakemake accuracy` makes accuracy_cost.nc and its figures."""
 
     methods: Methods = _raw(None)
-    """Methods to compare: files of src/microslip/solver/methods with hyphens, and shipped, which is
-    microslip.solve. Numbers may follow: "admm:penalty=0.1". null: all."""
+    """Methods to compare: the files in src/microslip/solver/methods, with hyphens, and shipped, the
+    method of microslip.solve. Parameters as in "admm:penalty=0.1". null: all methods."""
     points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
-    """Points at which all methods and models run, by name; a panel each."""
+    """Points at which all methods and models run, by name, with a panel for each."""
     levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6
-    """Levels of the resolution ladders, from the coarsest on."""
+    """Number of resolutions of each method, from the coarsest on."""
     repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
-    """Readings of a time, of which the median counts."""
+    """Number of measurements of a time; the result is their median."""
     map: ModelMap = _raw({})
-    """Grid of the maps that show the cheapest model within a tolerance."""
+    """Grid of the maps of the cheapest model within a tolerance."""
 
 
 class Stability(Settings):
@@ -516,22 +522,22 @@ class Stability(Settings):
     axes: Annotated[
         Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_refuse_repeats)
     ] = None
-    """Blocks of the atlas; each varies one quantity. null: all."""
+    """Blocks of the atlas, each of which varies one quantity. null: all blocks."""
 
 
 class SelfPropelledMotion(Settings):
-    """A motion that may propel the contact."""
+    """A self-propelled motion."""
 
     motion: Text
-    """Motion, elliptic or normal with the numbers of its name."""
+    """Motion, elliptic or normal, with parameters."""
     amplitude: Positive
     """Amplitude, in the unit of the motion, above 0."""
     poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     panel: Title
-    """Heading of the panels that show it, together with others of the same heading."""
+    """Heading of the panels of this motion and of others with the same heading."""
     title: Title | None = None
-    """Title of the line, drawn as it stands. null: the name."""
+    """Title of the line, as plain text. null: the name."""
 
 
 class Propulsion(Settings):
@@ -540,9 +546,9 @@ class Propulsion(Settings):
     tolerance: Tolerance = 1e-3
     """Largest accepted error of a force, over mu times the mean normal load."""
     points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
-    """Points of a line from stall to no load, its ends included."""
+    """Number of points of a line from stall to no load, both included."""
     motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
-    """Motions by name, a line each."""
+    """Motions by name, with a line for each."""
 
     @model_validator(mode="after")
     def _refuse_crowd(self) -> Self:
@@ -560,20 +566,20 @@ class Propulsion(Settings):
 
 
 class Claims(_Grid):
-    """The statements of the paper, judged: `snakemake claims` makes claims.nc and its figures."""
+    """Test of the statements of the paper: `snakemake claims` makes claims.nc and its figures."""
 
     tolerance: Tolerance = 5e-4
     """Largest accepted error of mu_macro, absolute."""
     velocity: PositiveAxis = _raw([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
-    """Forward velocities of both motions, above 0. The smallest one of the paper, 0.005, is added
-    where a statement needs it."""
+    """Forward velocities of both motions, above 0. The smallest velocity of the paper, 0.005, is
+    added if a statement needs it."""
     amplitude_transverse: PositiveAxis = _raw([0.25, 0.5, 0.75, 1, 2, 3])
     """Amplitudes of the oscillation y0/u_lim, above 0; at least one up to 1."""
     amplitude_bore: PositiveAxis = _raw([0.5, 1, 2, 3, 5, 10])
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0; at least one up to 5."""
     cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
-    """Rings, and angular points on half the disc, of the periods seen from inside, even. Half as
-    many give the error."""
+    """Number of rings, and of angular points on half the disc, of the periods whose tractions are
+    evaluated, even. A run with half as many gives the error."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
@@ -581,8 +587,8 @@ class Claims(_Grid):
             largest = STATIC_AMPLITUDES[motion]
             if values[0] > largest:
                 allowed = f"at least one number up to {largest:g}, where there is static friction"
-                said = f"{list(values)} is not allowed; allowed: {allowed}"
-                raise Refusal(said, f"amplitude_{motion}")
+                message = f"{list(values)} is not allowed; allowed: {allowed}"
+                raise Refusal(message, f"amplitude_{motion}")
         return self
 
 
@@ -600,16 +606,16 @@ class Root(Settings):
     """Folder for all results, relative to the folder that the workflow runs in."""
     points_per_job: Points = 50
     """Mean number of points that one job computes one after another. A job takes about a second to
-    start; large jobs leave cores idle at the end. A sweep may have a value of its own."""
+    start; large jobs leave cores idle at the end. A sweep can have its own value."""
     sweeps: Annotated[Sweeps, Field(min_length=1)]
-    """Sweeps of the paper, one at least."""
+    """Sweeps of the paper, at least one."""
     extended: dict[PlainName, ExtendedSweep] = {}
-    """Sweeps of other motions and pressures, by name: `snakemake extended` makes a dataset of each
-    and a figure of each group."""
+    """Sweeps of other motions and pressures, by name: `snakemake extended` makes a dataset for each
+    and a figure for each group."""
     drives: dict[PlainName, DriveSweep] = {}
-    """Sweeps of contacts that a force or a spring drives, by name: `snakemake drives`."""
+    """Sweeps of contacts under a force or a spring, by name: `snakemake drives`."""
     histories: Histories = _raw({})
-    """Single runs that Figures 1, 3 and 5 show."""
+    """Single runs for Figures 1, 3 and 5."""
     accuracy: Accuracy = _raw({})
     """Cost of accuracy: `snakemake accuracy`."""
     stability: Stability = _raw({})
@@ -617,4 +623,4 @@ class Root(Settings):
     propulsion: Propulsion = _raw({})
     """Self-propelled motions: `snakemake propulsion`."""
     claims: Claims = _raw({})
-    """The statements of the paper, judged: `snakemake claims`."""
+    """Test of the statements of the paper: `snakemake claims`."""

@@ -1,7 +1,8 @@
-"""YAML that means what it shows: no key twice, and no number that people would read as another.
+"""A loader of YAML that refuses repeated keys and misleading numbers.
 
-YAML itself keeps the last of two equal keys, and takes 010 for 8, 1:30 for 90 and 1.0e-400 for 0,
-all without a word.  Imports nothing heavy, since the workflow reads it whenever it is parsed.
+YAML itself keeps the last of two equal keys, and reads 010 as 8, 1:30 as 90 and 1.0e-400 as 0,
+without a warning.  The module is imported whenever the workflow is parsed, so that it imports
+nothing slow.
 """
 
 import re
@@ -10,9 +11,8 @@ from typing import IO
 import yaml
 
 MOST_VALUES = 100_000
-"""Keys and values of a file after aliases are replaced by what they stand for.
-
-Checking that many takes a few seconds."""
+"""Largest number of keys and values of a file after expansion of aliases; checking so many takes a
+few seconds."""
 
 UNFINISHED = 0
 """Placeholder for the size of a node whose children are being counted."""
@@ -21,8 +21,8 @@ UNFINISHED = 0
 class StrictLoader(yaml.SafeLoader):
     """Loader of plain data, for yaml.load.
 
-    A key beside a merged mapping (<<) may replace one of it: that is what merging is for.  What is
-    refused raises yaml.constructor.ConstructorError.
+    A key beside a merged mapping (<<) may replace a key of it.  Refused content raises
+    yaml.constructor.ConstructorError.
     """
 
     def __init__(self, stream: str | bytes | IO):
@@ -30,16 +30,16 @@ class StrictLoader(yaml.SafeLoader):
         self._checked: list[yaml.Node] = []
 
     def get_single_node(self) -> yaml.Node | None:
-        """The document; refuses one whose aliases stand for too much, before anything is made."""
+        """Parse the document; refuse too many values before any of them is constructed."""
         node = super().get_single_node()
         if node is not None and _expanded_size(node, {}) > MOST_VALUES:
             raise yaml.constructor.ConstructorError(
-                None, None, f"more than {MOST_VALUES} values, aliases replaced by what they are for"
+                None, None, f"more than {MOST_VALUES} values after expansion of aliases"
             )
         return node
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        if not any(node is other for other in self._checked):  # afterwards it has what is merged
+        if not any(node is other for other in self._checked):  # before merging adds keys
             self._checked.append(node)
             self._refuse_twice(node)
         super().flatten_mapping(node)
@@ -50,33 +50,33 @@ class StrictLoader(yaml.SafeLoader):
             if key_node.tag == "tag:yaml.org,2002:merge":
                 continue
             key = self.construct_object(key_node, deep=True)
-            if any(key == other or str(key) == str(other) for other in seen):  # 1 and 1.0 are one
+            if any(key == other or str(key) == str(other) for other in seen):  # 1 equals 1.0
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key {key} occurs twice", key_node.start_mark
                 )
             seen.append(key)
 
     def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        """A whole number, unless YAML would read another one than the text shows to people."""
+        """Construct a whole number; refuse one that YAML reads to another base."""
         self._refuse_other_bases(node)
         return super().construct_yaml_int(node)
 
     def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
-        """A number, unless YAML would read another one than the text shows to people."""
+        """Construct a number; refuse one that YAML reads to another base or that underflows."""
         self._refuse_other_bases(node)
         value = super().construct_yaml_float(node)
         if value == 0.0 and re.search("[1-9]", re.split("[eE]", node.value)[0]):
-            raise ValueError(f"{node.value} is not allowed: nearer 0 than numbers can be; write 0")
+            raise ValueError(f"{node.value} is not allowed: nearer 0 than a float; write 0")
         return value
 
     def _refuse_other_bases(self, node: yaml.ScalarNode) -> None:
         """YAML 1.1 reads 010 as 8 and 1:30 as 90."""
         text = self.construct_scalar(node).lstrip("+-")
         if ":" in text:
-            raise ValueError(f"{node.value} is not allowed: to base 60 for YAML; write one number")
+            raise ValueError(f"{node.value} is not allowed: base 60 in YAML; write one number")
         if re.fullmatch("0[0-9_]+", text):
             raise ValueError(
-                f"{node.value} is not allowed: to base 8 for YAML; write it without the 0 in front"
+                f"{node.value} is not allowed: base 8 in YAML; write it without the leading 0"
             )
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
@@ -84,20 +84,21 @@ class StrictLoader(yaml.SafeLoader):
             return super().construct_object(node, deep)
         except (yaml.YAMLError, RecursionError):
             raise
-        except Exception as error:  # such as a date with month 13, or !!bool before a name
+        except Exception as error:  # for example a date with month 13
             raise yaml.constructor.ConstructorError(
                 None, None, f"{node.tag.rpartition(':')[2]}: {error}", node.start_mark
             ) from None
 
 
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
-    """Number of nodes in a tree that repeats what has several aliases; sizes: those known by id.
+    """Number of nodes of a tree after expansion of aliases.
 
-    Raises ConstructorError for a node that contains itself.
+    sizes: sizes of nodes by id, which are added.  Raises ConstructorError for a node that contains
+    itself.
     """
     if sizes.get(id(node)) == UNFINISHED:
         raise yaml.constructor.ConstructorError(
-            None, None, "a value that holds itself through an alias is not allowed", node.start_mark
+            None, None, "a value that contains itself is not allowed", node.start_mark
         )
     if id(node) not in sizes:
         sizes[id(node)] = UNFINISHED

@@ -1,1 +1,1 @@
-"""Records to xarray and netCDF, with the limits from theory; questions to datasets."""
+"""Datasets: from records to xarray and netCDF, with limits from theory; interpolation."""

@@ -1,12 +1,12 @@
-"""The dataset of a certified map: its points, and the cells that answer between them.
+"""The dataset of a certified map: its points, and the cells for interpolation between them.
 
     certified_transverse.nc     dims point, cell and node
 
-A cell is a box in the coordinates of sweeps.map_coordinates, and friction in it the polynomial
-through its points, 5 along the velocity and the amplitude and 3 along Poisson's ratio where that is
-a direction, too; cell_error is the bound of the error everywhere in it.  A map of drift is over
-force and amplitude, in the coordinates of sweeps.drift_coordinates, and what its cells interpolate
-is asinh(velocity).  The same answers give the same bytes.
+A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is the
+polynomial through its points: 5 along the velocity, 5 along the amplitude and 3 along Poisson's
+ratio if that is a direction.  cell_error bounds the error in the cell.  A map of drift is over
+force and amplitude, in the coordinates of sweeps.drift_coordinates; its cells interpolate
+asinh(velocity).  Equal records give equal bytes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 COORDINATES = "map_coordinates"
-"""Attribute that says how a map is cut, as JSON."""
+"""Attribute with the coordinates of a map as JSON."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
     "force": ("cell_left", "cell_right"),
@@ -106,13 +106,13 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
-    """Write the dataset to a netCDF-4 file, all of it or nothing; raises CacheError."""
+    """Write the dataset to a netCDF-4 file atomically; raises CacheError if that fails."""
     with writing_beside(path) as beside:
         netcdf.write(beside, dataset, {})
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Lines of text: how many points there are, what holds everywhere, and where it does not."""
+    """Lines of text: number of points, error bound of the map, cells with a larger error."""
     drifts = is_of_drift(dataset)
     values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
     failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
@@ -126,12 +126,12 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def is_of_drift(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is a certified map of the velocity under a force."""
+    """True for a certified map of the velocity under a force."""
     return COORDINATES in dataset.attrs and "force" in dataset.attrs.get("directions", "").split()
 
 
 def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
-    """How the map of a dataset is cut; raises KeyError and ValueError for one that does not say."""
+    """Coordinates of the map of a dataset; raises KeyError or ValueError if it has none."""
     kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
     return kind.from_json(dataset.attrs[COORDINATES])
 
@@ -156,10 +156,10 @@ def _bound_of(map_: CertifiedMap) -> str:
 
 def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:
     """Variables of the lower and upper ends of the cells, in scaled coordinates."""
-    ends, found = np.array(cells), {}  # ends: (cell, lower or upper, direction)
+    ends, borders = np.array(cells), {}  # ends: (cell, lower or upper, direction)
     for i, direction in enumerate(coordinates.directions):
         text = "Poisson's ratio" if direction == "poisson" else direction
         for j, verb in enumerate(("begins", "ends")):
             name = BORDERS[direction][j]
-            found[name] = variable("cell", ends[:, j, i], f"scaled {text} where the cell {verb}")
-    return found
+            borders[name] = variable("cell", ends[:, j, i], f"scaled {text} where the cell {verb}")
+    return borders

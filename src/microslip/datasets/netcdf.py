@@ -1,12 +1,12 @@
-"""Datasets to and from netCDF files: one tidy table at the root, the rest in groups.
+"""Datasets to and from netCDF files with groups.
 
-The root of a file holds variables over its own axes alone, so that a table, a plot or a join of
-several files needs nothing else. What has other axes, such as curves, single runs and lists, is in
-groups, each again a table of its own, opened by name:
+The root of a file holds the variables over the axes of the sweep, so that it converts to one table
+and joins with other files.  Variables over other axes, such as curves and single runs, are in
+groups, which are opened by name:
 
     xr.open_dataset(path)                    # the root
     xr.open_dataset(path, group="history")   # one of its groups
-    microslip.datasets.netcdf.whole(path)             # all of it as one dataset, for what draws it
+    microslip.datasets.netcdf.whole(path)             # root and groups as one dataset
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
 
 def divided(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Divide a dataset into that of the root and those of its groups.
+    """Divide a dataset into the dataset of the root and those of the groups.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         All variables.
     groups : mapping of str to (str, tuple of str)
-        Title and dims by the name of a group.  A variable goes to the first group that has all of
-        its dims.
+        Title and dimensions by the name of a group.  A variable goes to the first group that has
+        all its dimensions.
 
     Returns
     -------
     root : xarray.Dataset
-        What belongs to no group: numbers without dims, too.  It keeps all attributes.
+        Variables that fit no group or have no dimension, with all attributes of the dataset.
     parts : dict of xarray.Dataset
-        Those of `groups` that are not empty.
+        Datasets of the groups that are not empty, by name.
     """
     place = {}
     for name, variable in dataset.data_vars.items():
@@ -58,9 +58,9 @@ def divided(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, 
 
 
 def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset]) -> None:
-    """Write a root and its groups to a new netCDF-4 file; the same ones give the same bytes.
+    """Write a root and its groups to a new netCDF-4 file; equal datasets give equal bytes.
 
-    The file is not written atomically here: see files.writing_beside.
+    The file is not written atomically; files.writing_beside does that.
     """
     _append(root, path, mode="w")
     for group, part in parts.items():
@@ -77,22 +77,25 @@ def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
-        # Strings of variable length end Python with a segmentation fault when a file is opened
-        # again while it is open (HDF5 loses their type), so texts are arrays of characters.
+        # Texts are arrays of characters. With strings of variable length Python crashes when a file
+        # is opened again while it is open, since HDF5 loses their type.
         return {"dtype": "S1", "char_dim_name": characters_of(name)}
     return {}
 
 
 def characters_of(name: Hashable) -> str:
-    """Dimension of the characters of a text variable: its own, so that parts can be saved again."""
+    """Name of the dimension of characters of a text variable.
+
+    Each variable has its own, so that a selection of a dataset can be saved.
+    """
     return f"characters_of_{name}"
 
 
 def refuse_oversized(path: str | os.PathLike[str]) -> None:
     """Raise CacheError for a file that declares more values than it has bytes.
 
-    xarray reads coordinates into memory when it opens a file.  Every dataset of a sweep has numbers
-    of several bytes each in it, also where somebody has compressed it.
+    xarray reads coordinates into memory when it opens a file, so that a damaged file could fill the
+    memory.  The data of a sweep hardly compress, so that a whole file has more bytes than values.
     """
     size = os.stat(path).st_size
     with netCDF4.Dataset(path) as file:
@@ -106,27 +109,26 @@ def refuse_oversized(path: str | os.PathLike[str]) -> None:
                 if length > size:
                     raise CacheError(
                         f"{path}: {name} has {length} values in a file of {size} bytes; allowed: a "
-                        "dataset as the workflow makes it"
+                        "dataset of the workflow"
                     )
 
 
 def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
-    """Names of the groups of a file, in their order there."""
+    """Names of the groups of a file, in their order."""
     with netCDF4.Dataset(path) as file:
         return tuple(file.groups)
 
 
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
-    """All variables of a file as one dataset in memory, with the attributes of the root.
+    """Read root and groups of a file into one dataset in memory, with the attributes of the root.
 
-    A table of it would hold every combination of axes that have nothing to do with each other;
-    what draws and what judges picks variables by name.  Raises what xarray raises for a file that
-    is none, and CacheError for one that declares too much.
+    Raises CacheError for a file that declares more values than it has bytes, and the errors of
+    xarray for a file that is not netCDF.
     """
     refuse_oversized(path)
     with xr.open_dataset(path, engine="netcdf4") as file:
-        found = file.load()
+        dataset = file.load()
     for group in group_names(path):
         with xr.open_dataset(path, engine="netcdf4", group=group) as part:
-            found = found.merge(part.load(), compat="identical", join="exact")
-    return found
+            dataset = dataset.merge(part.load(), compat="identical", join="exact")
+    return dataset

@@ -1,4 +1,4 @@
-"""Single answers as datasets: a point, a history, a period, a line, a prediction."""
+"""Datasets of single results: points, histories, periods, propulsion lines, predictions."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ AXES: dict[type, tuple[str, ...]] = {
 }
 """Axes of the datasets of records, by class."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound")
-"""Arrays of a Period with a value for each point, if they have one axis."""
+"""Arrays of a Period that have one axis and are over its points."""
 
 
 def to_xarray(record: object) -> xr.Dataset:
-    """A record as a dataset: numbers and arrays as variables, texts as attributes.
+    """Convert a result to a dataset: numbers and arrays to variables, texts to attributes.
 
     Parameters
     ----------
     record : Result, Prediction, History, Period or PropulsionLine
-        What solve, predict, history, period and drive return.
+        Result of solve, predict, history, propulsion or period.
 
     Returns
     -------
     xarray.Dataset
-        History over `phase`, PropulsionLine over `velocity`, Period over `phase` and `point`, the
-        others without a dimension.  What a record does not have is left out.
+        History has the dimension `phase`, PropulsionLine `velocity`, and Period `phase` and
+        `point`; the others have none.  Fields that are None are left out.
 
     Raises
     ------
     InputError
-        For anything else.
+        For another type.
     """
     kind = next((kind for kind in AXES if isinstance(record, kind)), None)
     if kind is None:

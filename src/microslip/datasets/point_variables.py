@@ -1,6 +1,6 @@
-"""Results of the points of a sweep as variables of its dataset, written block by block.
+"""Variables of the points of a sweep, written to its dataset block by block.
 
-Memory does not grow with the number of points: at most BLOCK of them are held at a time.
+At most BLOCK points are in memory at a time.
 """
 
 from collections.abc import Iterable, Iterator
@@ -17,8 +17,6 @@ from microslip.datasets.netcdf import characters_of
 from microslip.datasets.variables import attributes, error_of
 from microslip.foundation.canonical import canonical_json
 
-# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply. A
-# long_name is short enough for the axis of a plot; what else there is to say is in DESCRIPTIONS.
 POINT_VARIABLES = {
     "mu_macro": (float, MU_MACRO.description),
     "mu_macro_error": (float, "estimated error of mu_macro"),
@@ -38,11 +36,16 @@ POINT_VARIABLES = {
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge"),
 }
+"""Variables over the axes of a sweep: name -> (type, long_name).
+
+A count that does not apply is 0.  A long_name is short enough for the axis of a plot; the attribute
+`description`, from DESCRIPTIONS, explains the others.
+"""
 VELOCITY_VARIABLES = {
     "velocity": (float, "mean forward velocity"),
     "velocity_error": (float, "estimated error of velocity"),
 }
-"""Variables of a sweep under a force, where mu_macro is that force."""
+"""Further variables of a sweep over forces, where mu_macro equals the force."""
 TORQUE = "torque over its value at velocity 0"
 TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
@@ -52,7 +55,8 @@ CHANGES = {
     "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest nu"),
     "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
 }
-"""Variables of a sweep over Poisson's ratios: name -> (of what, sign of the first, long_name)."""
+"""Further variables of a sweep over Poisson's ratios, relative to the smallest ratio:
+name -> (variable, factor of its value at the smallest ratio, long_name)."""
 DESCRIPTIONS = {
     "error_resolution": "part of mu_macro_error from cells, angles and time steps",
     "error_periodicity": "part of mu_macro_error from the distance to the periodic state",
@@ -68,19 +72,41 @@ DESCRIPTIONS = {
     "mu_torque": TORQUE_OF.description,
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
-"""All of what a variable is, where its long_name does not say that: the attribute `description`."""
+"""Attribute `description` of variables whose long_name is not sufficient."""
 MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 WIDTHS = {"model": 32, "reason": 256}
-"""Bytes that a text is given in a dataset; what is longer is cut, see `_text`."""
+"""Number of bytes of a text in a dataset; longer texts are cut, see `_text`."""
 BLOCK = 4096
-"""Points that are held at a time when a dataset is written, and a chunk of larger ones."""
+"""Number of points that are written together, and of a chunk of larger datasets."""
 Box = tuple[slice, ...]
-"""A block of a grid, by axis."""
+"""A block of a grid: a slice for each axis."""
 
 
 def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) -> set[str]:
-    """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
+    """Write the variables of the points of a sweep to an open file.
+
+    Parameters
+    ----------
+    file : netCDF4.Dataset
+        File with the dimensions and coordinates of the sweep.
+    sweep : records.Sweep
+        The sweep.
+    axes : dict
+        Coordinates by dimension, in the order of the dimensions of the variables.
+    points : iterable of dict
+        Records in the order of the grid.
+
+    Returns
+    -------
+    set of str
+        Versions of the libraries that computed the records, as JSON.
+
+    Raises
+    ------
+    ValueError
+        If the number of records differs from that of the points.
+    """
     table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
     if not sweep.velocity:
         table = VELOCITY_VARIABLES | POINT_VARIABLES
@@ -111,10 +137,7 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
 
 
 def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
-    """Add the change of mu_macro from the smallest Poisson's ratio, and the sum of both errors.
-
-    One ratio is written at a time.
-    """
+    """Write CHANGES: the change of mu_macro from the smallest Poisson's ratio, and its error."""
     file.set_auto_mask(False)
     for name, (source, sign, long_name) in CHANGES.items():
         _create(file, name, float, long_name, dims, box)
@@ -125,10 +148,10 @@ def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) 
 
 
 def _boxes(shape: tuple[int, ...]) -> Iterator[Box]:
-    """Boxes of at most BLOCK points, as tuples of slices, that fill a grid in the order of C."""
+    """Blocks of at most BLOCK points that fill a grid in C order."""
     whole = len(shape)
     while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
-        whole -= 1  # axes from here on are not cut
+        whole -= 1  # the axes from `whole` on are not cut
     if whole == 0:
         yield tuple(slice(0, n) for n in shape)
         return
@@ -149,7 +172,7 @@ def _create(
     dims: tuple[str, ...],
     box: Box | None,
 ) -> None:
-    """An empty variable; box: one of those that its chunks are to be, None for a single one."""
+    """Create an empty variable; box: a block of the size of its chunks, None for no chunks."""
     stored: Any = {bool: np.int8, str: "S1"}.get(kind, kind)
     chunks = None if box is None else tuple(part.stop - part.start for part in box)
     more: dict[str, Any] = {}
@@ -157,7 +180,7 @@ def _create(
         width = WIDTHS[name]
         file.createDimension(characters_of(name), width)
         dims = (*dims, characters_of(name))
-        if chunks is not None:  # that is, where the size of the file matters
+        if chunks is not None:  # large datasets are compressed
             chunks, more = (*chunks, width), {"compression": "zlib", "complevel": 1}
     variable = file.createVariable(name, stored, dims, chunksizes=chunks, fill_value=False, **more)
     flags = "not_converged converged" if name == "converged" else "no yes"
@@ -165,14 +188,14 @@ def _create(
     if name in DESCRIPTIONS:
         variable.setncattr("description", DESCRIPTIONS[name])
     if kind is bool:
-        variable.setncattr("dtype", "bool")  # what xarray writes and reads
+        variable.setncattr("dtype", "bool")  # as xarray does
     if kind is str:
-        variable.setncattr("_Encoding", "utf-8")  # so that all who read it join the characters
+        variable.setncattr("_Encoding", "utf-8")  # readers join the characters to texts
         variable.set_auto_chartostring(False)
 
 
 def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
-    """A value of every record, as an array; of texts the bytes, along a further axis."""
+    """Values of a variable in records, as an array; texts become bytes along a further axis."""
     values = [record["result"].get(name) for record in block]
     filled = [MISSING[kind] if value is None else value for value in values]
     if kind is str:
@@ -182,7 +205,7 @@ def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
 
 
 def _text(value: str, width: int) -> bytes:
-    """A text as at most so many bytes; of a longer one the beginning, and dots."""
+    """Encode a text in at most `width` bytes; a longer text is cut and ends with dots."""
     coded = value.encode()
     if len(coded) <= width:
         return coded

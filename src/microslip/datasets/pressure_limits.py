@@ -1,7 +1,7 @@
-"""The limits from theory under another pressure than Hertz's, for datasets.
+"""Closed forms for other pressures than Hertz's, as in theory.catalogue.
 
-Closed forms as in theory.catalogue: what holds for any pressure (Eqs 6 and 7), what is known of
-axisymmetric indenters, and what an elliptic Hertz contact has in common with a circular one.
+There are closed forms for any pressure (Eqs 6 and 7), for axisymmetric indenters, and for elliptic
+Hertz contacts, which share some with circular ones.
 """
 
 from collections.abc import Callable
@@ -24,30 +24,30 @@ ZONE = replace(
 
 
 def formulas_under(motion: str, name: str) -> dict:
-    """Closed forms of a motion under the pressure of this name: dict of ClosedForm by name."""
+    """Closed forms of a motion under a pressure, both by name: dict of ClosedForm by name."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     if motion == "continuous-bore" and pressure.is_round:
         return _steady(pressure, of_sphere)
     if motion == "longitudinal" and pressure.loading is not None:
         return _along(pressure.loading, of_sphere)
-    found = {key: form for key, form in of_sphere.items() if form.any_pressure}
+    forms = {key: form for key, form in of_sphere.items() if form.any_pressure}
     if STATIC not in of_sphere:
-        return found
+        return forms
     exact = of_sphere[STATIC]
     if pressure.is_indenter:
         zone, left = _of_indenter(motion, pressure)
         exact = replace(exact, function=_each(left))
     elif pressure.hertzian and motion != "bore":
-        zone = paper.static_transverse  # an ellipse of the same shape carries as much
+        zone = paper.static_transverse  # an elliptic stick zone carries the same share of the load
         exact = replace(exact, function=_each(exact.function))
     else:
-        return found
+        return forms
     whole = replace(ZONE, motion=motion, function=_each(zone))
-    return found | {whole.name: whole, STATIC: exact}
+    return forms | {whole.name: whole, STATIC: exact}
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
-    """Static friction of the whole stick zone, and the exact one, as functions of the amplitude."""
+    """Static friction of an indenter, of the whole stick zone and exact: functions of amplitude."""
     if motion == "bore":
 
         def stick_radius(amplitude: float) -> float:
@@ -83,11 +83,11 @@ def _load_inside(pressure: Pressure, radius: float) -> float:
 
 
 def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
-    """Eqs 17 and 18 in the place of 21 and 22."""
-    found = {}
+    """Closed forms of the steady bore: Eqs 17 and 18 in place of Eqs 21 and 22."""
+    forms = {}
     for part, (name, form) in enumerate(of_sphere.items()):
         equation, what = (("Eq 17", "mu_macro"), ("Eq 18", "mu_torque"))[part]
-        found[name] = replace(
+        forms[name] = replace(
             form,
             function=lambda velocity, part=part: axisymmetric.bore_of(pressure.bound, velocity)[
                 part
@@ -96,4 +96,4 @@ def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, C
             long_name=f"steady {what} ({equation})",
             description=f"steady {what} as an integral over the pressure ({equation})",
         )
-    return found
+    return forms

@@ -1,9 +1,9 @@
-"""Results of a sweep as an xarray Dataset, and onto disk.
+"""The dataset of a sweep, an xarray Dataset in a netCDF file.
 
-Every dataset follows the CF conventions, holds the paper's limits as variables of their own and
-says what made it. The root of a file is the map alone; finer curves and single runs are in groups
-(see `netcdf`). All quantities are dimensionless. The same results give the same bytes: nothing in a
-file depends on when, where or in how many jobs it was made.
+Every dataset follows the CF conventions.  It holds the limits from theory as variables, and its
+attributes record its provenance.  The root of a file is the map; finer curves and single runs are
+in groups (see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes: a file
+does not depend on the time, the computer or the number of jobs.
 """
 
 import os
@@ -33,20 +33,19 @@ PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566
 def write_sweep(
     path: str | os.PathLike, sweep: Sweep, points: Iterable, histories: list, settings: dict
 ) -> None:
-    """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
+    """Write the dataset of a sweep to a netCDF-4 file, atomically.
 
-    The root has dims (amplitude, velocity), those of them that the motion has, and poisson before
-    them if that is an axis; what has other axes is in GROUPS. The same results give the same bytes.
+    The root has the dimensions (poisson, amplitude, velocity), without amplitude for a steady
+    motion and without poisson unless that is an axis.  Variables over other axes are in GROUPS.
 
     Parameters
     ----------
     path : str or path
         Path of the file.
     sweep : records.Sweep
-        Whose dataset it is.
+        The sweep.
     points : iterable of dict
-        Records in the order of batches.PointRequests; they are read a block at a time, so that
-        memory does not grow with their number.
+        Records in the order of batches.PointRequests, read in blocks.
     histories : list of dict
         Records in the order of batches.history_requests.
     settings : dict
@@ -55,9 +54,9 @@ def write_sweep(
     Raises
     ------
     ValueError
-        If there are not as many points as the grid has.
+        If the number of records differs from that of the points.
     CacheError
-        As for `write`.
+        If the file cannot be written.
     """
     axes = _axes(sweep)
     motion, pressure = solver_names(sweep)
@@ -91,11 +90,11 @@ GROUPS = {
     "field": "Tractions all over the contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
-"""Groups in the file of a sweep, as far as its motion has them, and their titles."""
+"""Titles of the groups in the file of a sweep; a motion has some of them."""
 
 
 def _root(sweep: Sweep) -> xr.Dataset:
-    """Dataset of the axes and the limits on them, without the points."""
+    """Dataset of the axes and the limits from theory, without the points."""
     coords: dict[str, tuple] = {
         name: (name, np.array(values)) for name, values in _axes(sweep).items()
     }
@@ -108,19 +107,30 @@ def _root(sweep: Sweep) -> xr.Dataset:
 
 
 def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
-    """Datasets of GROUPS by name, those that have anything."""
-    found = theory_limits.curves(sweep) | _single_runs(sweep, histories)
+    """Datasets of the GROUPS that a sweep has, by name."""
+    variables = theory_limits.curves(sweep) | _single_runs(sweep, histories)
     about = {"motion": solver_names(sweep)[0]}
     return {
-        name: xr.Dataset(found[name], attrs={"title": title} | about)
+        name: xr.Dataset(variables[name], attrs={"title": title} | about)
         for name, title in GROUPS.items()
-        if name in found
+        if name in variables
     }
 
 
 def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
-    """Attributes that say what made a dataset; settings: dict, kept as JSON; versions: set of
-    texts, those of the libraries behind its results."""
+    """Attributes with the provenance of a dataset.
+
+    Parameters
+    ----------
+    title : str
+        Title of the dataset.
+    settings : dict
+        Settings of the configuration, stored as JSON.
+    versions : set of str
+        Versions of the libraries that computed the results.
+    **more : object
+        Further attributes.
+    """
     return {
         "Conventions": CONVENTIONS,
         "title": title,
@@ -134,20 +144,19 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
 
 
 def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
-    """Write a Dataset to the netCDF-4 file `path`, all of it or nothing.
+    """Write a dataset to a netCDF-4 file, atomically.
 
-    groups: those of its dims that are to be in groups of the file, as for `netcdf.divided`.  The
-    same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a full
-    disk, a read-only folder and the like.
+    groups: groups of the file, as for `netcdf.divided`.  Equal datasets give equal bytes.  Raises
+    CacheError if the file cannot be written; its one line recommends a remedy.
     """
     with writing_beside(path) as beside:
         netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
 
 
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
-    """Lines of text: how many points there are and, one each, those that did not converge.
+    """Lines of text: the number of points, and a line for each point that did not converge.
 
-    name: of the sweep, that of its motion unless told.
+    name: name of the sweep; the motion by default.
     """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
@@ -162,31 +171,31 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
 
 
 def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
-    pulls = {name: values for name, values, is_axis in sweep.drives if is_axis}
-    force = pulls.pop("force", None)
-    axes = pulls | ({"poisson": sweep.poisson} if sweep.poisson_is_axis else {})
+    drives = {name: values for name, values, is_axis in sweep.drives if is_axis}
+    force = drives.pop("force", None)
+    axes = drives | ({"poisson": sweep.poisson} if sweep.poisson_is_axis else {})
     if sweep.amplitude is not None:
         axes["amplitude"] = sweep.amplitude
     return axes | ({"velocity": sweep.velocity} if sweep.velocity else {"force": force})
 
 
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
-    """Name the axes; `formula` is what a coordinate is, in the words of the motion."""
+    """Set the attributes of the axes; `formula` is the definition of a coordinate."""
     motion = motion_named(sweep.motion)
     axes = [(VELOCITY, motion.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
         axes.append((AMPLITUDE, motion.amplitude_label))
     for of_paper, formula in axes:
-        quantity = of_paper["transverse"]  # all have the same name and words
-        said = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
+        quantity = of_paper["transverse"]  # name and text are the same for all motions
+        about = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
         if motion.name in of_paper:
-            said["description"] = of_paper[motion.name].description
-        dataset[quantity.name].attrs = said
+            about["description"] = of_paper[motion.name].description
+        dataset[quantity.name].attrs = about
     for name, _, _ in sweep.drives:
         quantity = DRIVES[name]
-        said = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}
-        said |= {"formula": quantity.unit, "description": quantity.description}
-        dataset[name].attrs = said
+        about = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}
+        about |= {"formula": quantity.unit, "description": quantity.description}
+        dataset[name].attrs = about
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
 
 
@@ -194,9 +203,9 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
 
 
 def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
-    """Variables of the groups of single runs, a dict of dicts."""
+    """Variables of the groups of single runs: dict by group of dict by variable."""
     if not records or any(record["result"].get("crashed") for record in records):
-        return {}  # see `report`
+        return {}  # `report` lists failed runs
     if sweep.motion == "transverse":
         return {"history": _force_history(records[0])}
     fields = [record for record in records if record["request"]["kind"] == "field"]

@@ -1,4 +1,4 @@
-"""Variables of datasets with their attributes, after the CF conventions."""
+"""Variables of datasets with the attributes of the CF conventions."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
-"""Attribute of a value that names the variable with its error."""
+"""Attribute of a variable with the name of the variable of its error."""
 
 
 def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
-    """Attributes of a variable with values of type `kind`; flags: meanings of False and True."""
+    """Attributes of a variable of type `kind`; flags: meanings of False and True."""
     if kind is str:
         return {"long_name": long_name}
     if kind is bool:
-        # Stored as bytes with these meanings; xarray gives them back as bool.
+        # Stored as bytes, which xarray reads as bool.
         values = np.array([0, 1], np.int8)
         return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
     return {"long_name": long_name, "units": units}
@@ -31,7 +31,7 @@ def variable(
     units: str = "1",
     **more: str,
 ) -> tuple:
-    """A variable as xarray.Dataset takes it; kind: type of its values; more: attributes."""
+    """A variable as a tuple for xarray.Dataset; kind: type of the values; more: attributes."""
     values = np.array(values).astype(object if kind is str else kind)
     return dims, values, attributes(kind, long_name, units) | more
 
@@ -39,7 +39,7 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """A variable of codes, indices of `meanings`, as xarray.Dataset takes it."""
+    """A variable of codes, indices of `meanings`, as a tuple for xarray.Dataset."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 
 
@@ -51,14 +51,14 @@ def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
 
 
 def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
-    """The attribute that links a variable to its error, if that is among the names."""
+    """Attribute that links a variable to its error, if the error is among the names; else {}."""
     error = f"{name}_error"
     return {ANCILLARY: error} if error in names else {}
 
 
 def link_errors(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with every variable link_errors to its error."""
-    found = dataset.copy()
-    for name in found.variables:
-        found[name].attrs |= error_of(name, found.variables)
-    return found
+    """Copy of a dataset in which every variable is linked to its error."""
+    linked = dataset.copy()
+    for name in linked.variables:
+        linked[name].attrs |= error_of(name, linked.variables)
+    return linked

@@ -1,1 +1,1 @@
-"""Requests to the solver, their names, their answers and where these are kept."""
+"""Requests of sweeps, their results, and the store of results."""

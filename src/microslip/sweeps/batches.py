@@ -1,8 +1,8 @@
-"""From a configuration to results: requests, batches of them, and their answers from the store.
+"""Requests of a configuration, batches of requests, and their results.
 
-A request is a plain dict that says what to compute, with numbers as canonical strings; together
-with the digest of the solver it names a result. A job gets a batch of requests and computes those
-that the store does not hold, so how points are cut into batches never decides what is computed.
+A request is a dict of what to compute, with numbers as canonical strings.  The hash of the request
+and the digest of the solver is the key of its result.  A job computes the requests of its batch
+whose results are not in the store, so that the division into batches does not affect the results.
 """
 
 import functools
@@ -29,7 +29,8 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Raised when the content of a record changes without any change in the solver."""
+"""Version of the content of records, to be increased if it changes without a change of the
+solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states of Figure 5."""
@@ -46,14 +47,14 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
-"""Folders of the store by kind of request.  Those of trials and scaling hold measured times."""
+"""Folders of the store by kind of request.  Results in trials and scaling have measured times."""
 
 
 class PointRequests:
-    """Requests for all points of a records.Sweep, each made when it is asked for.
+    """Requests for all points of a records.Sweep, a sequence that is not stored.
 
-    The order is that of the dataset: what pulls, Poisson's ratio, amplitude, velocity, the last one
-    fastest; a force stands in the place of the velocity.
+    The order is that of the dataset: drive, Poisson's ratio, amplitude, velocity; the last axis
+    changes fastest.  A force takes the place of the velocity.
     """
 
     def __init__(self, sweep: Sweep):
@@ -66,21 +67,21 @@ class PointRequests:
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
-        if pressure != "hertz":  # which goes without saying, as it did before there were others
+        if pressure != "hertz":  # older requests have no pressure
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
             self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
         amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
-        pulls = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
+        drives = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
         last: dict[str, list] = {"velocity": [number(velocity) for velocity in sweep.velocity]}
         if not sweep.velocity:
-            last = {"force": pulls.pop("force")}
+            last = {"force": drives.pop("force")}
             self._common["velocity"] = None
         rest: dict[str, list] = {
             "poisson": [number(nu) for nu in sweep.poisson],
             "amplitude": amplitudes,
         }
-        self._axes = pulls | rest | last
+        self._axes = drives | rest | last
 
     def __len__(self) -> int:
         return math.prod(map(len, self._axes.values()))
@@ -103,50 +104,49 @@ class PointRequests:
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
-    """List the requests for the single runs that go into the dataset of the sweep `name`; none for
-    one of `extended`."""
+    """Requests for the single runs in the dataset of the sweep `name`, a list; empty for sweeps of
+    `extended`."""
     steady = {"motion": "continuous-bore"}
     kinds: dict[str, list[dict]] = {
         "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
         "field": [{"kind": "field"} | steady],
         "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
     }
-    counts, found = ("cells", "steps", "periods"), []
+    counts, requests = ("cells", "steps", "periods"), []
     for run in HISTORIES_OF_SWEEP.get(name, ()):
         settings = configuration.histories[run]
         numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-        found += [kind | settings | numbers for kind in kinds[run]]
-    return found
+        requests += [kind | settings | numbers for kind in kinds[run]]
+    return requests
 
 
 def key_of(request: dict) -> str:
-    """Name of the result that answers a request with the code that is running."""
+    """Key of the result of a request, computed by the present code."""
     return result_key(request, source_digest.of_request(request))
 
 
 def result_key(request: dict, digest: str) -> str:
-    """Name of the result that answers a request with the code that has this digest.
+    """Key of the result of a request, computed by code with a digest.
 
-    It is a hash of the physics, the tolerance, the model and resolution asked for, and the digest.
-    The versions of NumPy, SciPy and Numba are not part of it: they change results by rounding
-    errors, and each result records them.
+    The key is a hash of the request and the digest.  It does not contain the versions of NumPy,
+    SciPy and Numba, which change results by rounding errors; each result records them.
     """
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
     return sha256(canonical_json(content))
 
 
-# Batches: what a job answers
+# Batches, the requests of jobs
 
 
 class Batch(NamedTuple):
-    """Requests of a job: each row at each value of the axis along it.
+    """Requests of a job: each row at each value of an axis.
 
     Attributes
     ----------
     rows : list of dict
         Requests without the axis, or whole requests where there is none.
     axis : str
-        Key of the axis; empty if there is none.
+        Key of the axis; empty if there is no axis.
     values : sequence of str
         Values along it.
     """
@@ -164,15 +164,15 @@ class Batch(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Name that follows from the requests and the code that answers them."""
+        """Hash of the requests and of the code that computes them."""
         code = sorted({source_digest.of_request(row) for row in self.rows})
         return fingerprint(code, self._asdict(), RECORD_FORMAT)[:20]
 
 
 def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
-    """Batches of whole rows, or of parts of rows longer than a job, in the order of the points.
+    """Divide points into batches of whole rows, or of parts of rows that are longer than a batch.
 
-    size: mean number of points in a batch.
+    size: mean number of points in a batch.  The order of the points is retained.
     """
     axis, values = requests.last
     parts = _cut(values, size) if len(values) > size else [values]
@@ -181,14 +181,14 @@ def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
 
 
 def batches_of_requests(requests: Sequence[dict], size: int) -> list[Batch]:
-    """Batches of single requests in their order; size: mean number in a batch."""
+    """Divide requests into batches; size: mean number of requests in a batch."""
     return [Batch(part) for part in _cut(requests, size)]
 
 
 def _cut(items: Sequence, mean: int) -> list[list]:
-    """Lists of `mean` items on average.
+    """Divide a sequence into lists with `mean` items on average.
 
-    Each cut depends on the item after it alone, so that an item more changes one list.
+    A cut depends only on the item after it, so that a further item changes one list.
     """
     parts: list[list] = []
     for item in items:
@@ -199,18 +199,35 @@ def _cut(items: Sequence, mean: int) -> list[list]:
 
 
 def group(request: dict) -> str:
-    """Name the subfolder of the store that a request's result goes to."""
+    """Subfolder of the store for the result of a request."""
     motion = request["motion"] if "motion" in request else request["model"]
     return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # numbers apart
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
-    """Record that answers a request, and the CPU seconds that the solver took for it.
+    """Read the result of a request from the store, or compute and store it.
 
-    It comes from the store if that has it (0 seconds), else it is computed and stored.  A record
-    has key, request, result and versions.  A result that is not final, see evaluate.is_final, is
-    not stored.  time_limit: of a point, as for microslip.solve.  Raises CacheError if the record
-    cannot be stored.
+    Parameters
+    ----------
+    request : dict
+        The request.
+    store : Store
+        Store of results.
+    time_limit : float, optional
+        Time limit of a point, as for microslip.solve.
+
+    Returns
+    -------
+    record : dict
+        key, request, result and versions.
+    seconds : float
+        CPU time of the solver; 0 for a stored result.
+
+    Raises
+    ------
+    CacheError
+        If the record cannot be stored.  A result that is not final (see evaluate.is_final) is not
+        stored.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -220,7 +237,6 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
     started = time.process_time()
     result = evaluate.computed(request, time_limit)
     seconds = time.process_time() - started
-    # Times are left out, so that equal requests have equal records, except where they ask for one.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
     edited = source_digest.LOADED.edited()
     if edited:
@@ -231,41 +247,38 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
 
 
 class SourcesEdited(CacheError):
-    """The code on disk is no longer the one that is running.
+    """The code on disk was edited after it was loaded.
 
-    A result may then be of either code, so it is not kept under the name of one.
+    A result may be of the code before or after the edit, so that it is not stored.
 
     Attributes
     ----------
     record : dict
-        What was computed, by code that was loaded before the edit or after it.
+        The record that was not stored.
     """
 
     def __init__(self, file: str, record: dict | None = None):
-        super().__init__(file, record)  # as processes hand it on
+        super().__init__(file, record)  # for pickling between processes
         self.record = record
 
     def __str__(self) -> str:
         return (
-            f"{self.args[0]} was edited while its code was running, so what it computes is not "
-            "kept; run again: finished points are kept"
+            f"{self.args[0]} was edited while its code was running, so that the result is not "
+            "stored; run again: finished points are stored"
         )
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Records that answer the requests, and `statistics` of them.
-
-    The records depend on the requests and the solver alone.
-    """
+    """Records of requests, and their `statistics`."""
     answers = [answer(request, store) for request in requests]
     records = [record for record, _ in answers]
     return records, statistics(records, [took for _, took in answers])
 
 
 def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Counts, CPU seconds and finality of answers; logs points that did not converge.
+    """Counts of records, sum of the CPU seconds, and True under `final` if all are final.
 
-    Raises SolverError where the solver failed at all of them.
+    Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
     """
     results = [record["result"] for record in records]
     for record, result in zip(records, results, strict=True):
@@ -280,28 +293,28 @@ def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
-    """Records in the files of batches, one by one in their order; raises CacheError."""
+    """Iterate over the records in the files of batches; raises CacheError for a damaged file."""
     for path in paths:
         yield from read(path)
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """A function that finds the record that answers a request among these."""
-    found = {record["key"]: record for record in records}
-    return lambda request: found[key_of(request)]
+    """Return a function from a request to its record."""
+    by_key = {record["key"]: record for record in records}
+    return lambda request: by_key[key_of(request)]
 
 
 def label(request: dict) -> str:
-    """Describe a request in a few words, for messages."""
+    """Short description of a request, for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
-    given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
-    return f"{request.get('motion', request['kind'])} at {given}"
+    values = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
+    return f"{request.get('motion', request['kind'])} at {values}"
 
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the numerical libraries that compute a result, as a dict."""
-    found = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
-    return {"python": platform.python_version(), **found}
+    """Versions of Python and of the numerical libraries, as a dict."""
+    libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
+    return {"python": platform.python_version(), **libraries}

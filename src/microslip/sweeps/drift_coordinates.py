@@ -1,13 +1,13 @@
-"""Coordinates in which the velocity under a force is even: from the threshold to the largest force.
+"""Scaled coordinates of a map of drift: force and amplitude.
 
-Below the static limit of its amplitude a contact stays where it is, which needs no map.  From there
-on it drifts, about as the power 3/2 of what the force is above that threshold, as friction comes
-close to its static limit about as the power 2/3 of the velocity, and at the force 1 it runs away,
-as the power -1/2 of what the force is below 1 if it is rigid.  So forces are even in t, where
-tanh(t)^2 is their share of the way from the threshold to 1, and amplitudes gather where the
-threshold comes down to the largest force and where it is gone.  Where the velocity is large, what
-counts is its share: cells interpolate its area hyperbolic sine, whose error is that of the velocity
-where this is small, and its relative error where it is large.
+Below the threshold of the force, the static limit at its amplitude, a contact stays and needs no
+map. Above it the contact drifts.  The drift velocity is about proportional to the power 3/2 of the
+force above the threshold, since friction approaches its static limit as the power 2/3 of the
+velocity.  At the force 1 the contact runs away; there the velocity of a rigid contact is
+proportional to the power -1/2 of 1 less the force.  The scaled force t is therefore defined by
+tanh(t)^2 = (force - threshold) / (1 - threshold).  Amplitudes gather where the threshold equals the
+largest force and where it vanishes. Cells interpolate asinh(velocity): its error is the absolute
+error of a small velocity and the relative error of a large one.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ from microslip.theory.kinks import Kinks, kinks_of
 
 
 class DriftCoordinates(NamedTuple):
-    """The range of a map of drift, and where it is cut; all dimensionless.
+    """Range and patches of a map of drift; all dimensionless.
 
     Attributes
     ----------
     motion : str
-        Whose static limit is the threshold.
+        Motion of the contact; its static limit is the threshold.
     force : float
-        The largest one, below 1.
+        Largest force, below 1.
     amplitude : tuple of float
-        Smallest and largest, >= 0; the map begins where a force of its range moves the contact.
+        Smallest and largest amplitude, at least 0.  The map begins at the amplitude from which the
+        largest force moves the contact.
     """
 
     motion: str
@@ -42,7 +43,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Names of the quantities that the map is over, in the order of scaled coordinates."""
+        """Names of the axes of the map, in the order of scaled coordinates."""
         return "force", "amplitude"
 
     @property
@@ -52,7 +53,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """Poisson's ratio is no direction of such a map."""
+        """Empty: Poisson's ratio is not a direction of such a map."""
         return ()
 
     @property
@@ -62,25 +63,25 @@ class DriftCoordinates(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str) -> DriftCoordinates:
-        """The coordinates from a text that `to_json` made."""
-        given = json.loads(text)
-        return cls(given["motion"], given["force"], tuple(given["amplitude"]))
+        """Read the coordinates from the JSON text of `to_json`."""
+        values = json.loads(text)
+        return cls(values["motion"], values["force"], tuple(values["amplitude"]))
 
     def to_json(self) -> str:
-        """The coordinates as a text, for the attribute of a dataset."""
+        """The coordinates as JSON, for the attribute of a dataset."""
         return canonical_json(self._asdict())
 
     def scaled(
         self, force: np.ndarray, amplitude: np.ndarray, least: np.ndarray | None = None
     ) -> np.ndarray:
-        """Scaled coordinates, shape (n, 2), of places that drift, in the range, shape (n,) each.
+        """Scaled coordinates, shape (n, 2), of forces and amplitudes in the range, shape (n,).
 
-        least: the threshold at these amplitudes, where it is known already; it takes a while.
+        least: thresholds at the amplitudes; computed, which is slow, if None.
         """
         force, amplitude = (np.asarray(part, float) for part in (force, amplitude))
-        known = threshold(self.motion, amplitude) if least is None else least
-        ends = _stretched(self.force, known)
-        share = np.clip(_stretched(force, known) / np.where(ends > 0.0, ends, 1.0), 0.0, 1.0)
+        thresholds = threshold(self.motion, amplitude) if least is None else least
+        ends = _stretched(self.force, thresholds)
+        share = np.clip(_stretched(force, thresholds) / np.where(ends > 0.0, ends, 1.0), 0.0, 1.0)
         return np.column_stack([share, self._rows.scaled(amplitude)])
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
@@ -94,7 +95,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def _rows(self) -> MapCoordinates:
-        """The amplitudes, cut as in a map of the static limit."""
+        """Coordinates of the amplitude, as in a map of the static limit."""
         low, high = self.amplitude
         first = first_amplitude(self.motion, self.force)
         kinks = kinks_of(self.motion).amplitudes
@@ -104,19 +105,21 @@ class DriftCoordinates(NamedTuple):
 
 
 def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarray:
-    """0 at the threshold, infinite at 1."""
+    """The scaled force t: 0 at the threshold, infinite at the force 1."""
     return np.arctanh(np.sqrt(np.clip((force - least) / (1.0 - least), 0.0, 1.0)))
 
 
 def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
-    """The values that a map of drift interpolates: asinh of the velocity, and its error bound."""
+    """asinh of a velocity, which a map of drift interpolates, and its error bound."""
     low, middle, high = np.arcsinh([velocity - error, velocity, velocity + error]).tolist()
     return middle, max(high - middle, middle - low)
 
 
 def velocity_of(scaled: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The inverse, of arrays: velocities, which are not below 0, and bounds of their errors,
-    infinite where a velocity is not known."""
+    """Velocities, at least 0, and error bounds from arrays of asinh(velocity) and its errors.
+
+    The bound of an unknown velocity is infinite.
+    """
     velocity = np.sinh(np.maximum(scaled, 0.0))
     low = np.sinh(np.maximum(scaled - error, 0.0))
     with np.errstate(over="ignore"):

@@ -1,6 +1,6 @@
-"""The answer to a request: ask the solver, and turn what it says into plain values.
+"""Computation of the result of a request, as plain values.
 
-See microslip.sweeps.batches for what a request is. The solver is imported only when it is asked.
+microslip.sweeps.batches defines requests.  Functions import the solver when they need it.
 """
 
 import logging
@@ -20,18 +20,18 @@ Answer = TypeVar("Answer")
 log = logging.getLogger(__name__)
 
 SHORTEST = 0.02
-"""CPU seconds that are worth a reading of the clock; shorter runs are read together."""
+"""Shortest measured CPU time, in seconds; shorter runs are repeated and measured together."""
 LONG_ENOUGH = 2.0
-"""CPU seconds of readings after which no more are taken."""
+"""CPU time of all readings, in seconds, after which no further reading is taken."""
 
 
 def computed(request: dict, time_limit: float | None = None) -> dict:
-    """Ask the solver; the result as a dict of values that JSON can hold.
+    """Compute the result of a request, a dict of values that JSON can represent.
 
-    time_limit: of a point, as for microslip.solve. Where the solver fails (SolverError) or refuses
-    the request (InputError) the result is not converged and `crashed`, with the error as its reason
-    in one line: a gap in the dataset. Any other exception propagates: it is an error of the code or
-    of the machine.
+    time_limit: time limit of a point, as for microslip.solve.  If the solver raises SolverError or
+    InputError, the result is a gap in the dataset: not `converged`, `crashed`, with the error as
+    its reason in one line.  Any other exception is an error of the code or the machine and
+    propagates.
     """
     try:
         limits = {} if time_limit is None else {"time_limit": time_limit}
@@ -43,19 +43,16 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
 
 
 def is_final(result: dict) -> bool:
-    """Whether equal requests have this result for ever.
-
-    False for a point that ran out of time or at which the solver failed: it is computed again.
-    """
+    """True unless the solver failed or ran out of time, so that the point is computed again."""
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
 def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
-    """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
+    """Call a function repeatedly; return its result and the CPU seconds of a call.
 
-    The first call is never timed, since it may compile. The seconds are the median of `repeats`
-    readings, or fewer if they take long. CPU time does not count what other processes do on the
-    same cores meanwhile.
+    The first call is not timed, since it may compile.  The seconds are the median of `repeats`
+    readings, or fewer if they take longer than LONG_ENOUGH.  CPU time does not contain the time of
+    other processes.
     """
     result = run()
     readings: list[float] = []
@@ -91,14 +88,14 @@ def _field(request: dict) -> dict:
 
 
 def _period(request: dict) -> dict:
-    """A period of the periodic state in few bytes, see microslip.sweeps.period_codec."""
+    """A period of the periodic state, packed by microslip.sweeps.period_codec."""
     from microslip.sweeps.period_codec import packed
 
     return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
 
 
 def _trial(request: dict) -> dict:
-    """One run at one resolution; `applies` is False where there is nothing to run."""
+    """A timed run at one resolution; `applies` is False if the method cannot be used."""
     from microslip.adaptive import single_run
 
     place = _place(request)
@@ -108,7 +105,7 @@ def _trial(request: dict) -> dict:
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
     settings |= {"cells": request["cells"], "angles": request["angles"]}
-    settings["steps"] = request["steps"] or 2  # a steady motion takes any number, and none
+    settings["steps"] = request["steps"] or 2  # a steady motion ignores the number
     settings["tolerance"] = float(request["tolerance"])
 
     def run() -> dict:
@@ -123,7 +120,7 @@ def _choice(request: dict) -> dict:
 
 
 def _probe(request: dict) -> dict:
-    """A certified solve with another method; `applies` is False where it cannot be used."""
+    """A solve with another method; `applies` is False if the method cannot be used."""
     from microslip.adaptive import single_run
     from microslip.adaptive.checks import checked_problem
     from microslip.adaptive.choice import choose_model
@@ -147,7 +144,7 @@ def _scaling(request: dict) -> dict:
 
 
 def _run(request: dict) -> dict:
-    """One run at one resolution, with nothing timed: equal requests have equal results."""
+    """A run at one resolution without measured times, so that equal requests have equal results."""
     from microslip.adaptive import single_run
 
     names = ("model", "method", "cells", "angles", "steps")
@@ -164,7 +161,7 @@ def _patches(request: dict) -> dict:
 
 
 def _propulsion(request: dict) -> dict:
-    """The line of a self-propelled motion."""
+    """The line of a self-propelled motion, from stall to no load."""
     given = {name: float(request[name]) for name in ("poisson", "tolerance")}
     amplitude = float(request["amplitude"])
     line = microslip.propulsion(
@@ -189,7 +186,7 @@ _KINDS = {
 }
 
 
-# What they share
+# Shared functions
 
 
 def _place(request: dict) -> dict:
@@ -233,7 +230,7 @@ def _at(request: dict) -> dict:
 
 
 def _found(look: Callable[[], dict]) -> dict:
-    """The result of `look` at a period, or the reason why there is no period."""
+    """Call a function that needs a period; return the reason if there is no periodic state."""
     from microslip.adaptive.period import NoPeriodicState
 
     try:
@@ -248,7 +245,7 @@ def _timed(run: Callable[[], dict], repeats: int) -> dict:
 
 
 def plain(value: object) -> Any:
-    """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
+    """Convert NumPy values, also in dicts and lists, to values for JSON; NaN becomes None."""
     if isinstance(value, dict):
         return {str(name): plain(item) for name, item in value.items()}
     if isinstance(value, list | tuple):

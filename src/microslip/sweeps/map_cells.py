@@ -1,14 +1,13 @@
-"""Cells of a map, and where they have to be split: from what is known to what is asked next.
+"""Adaptive refinement of a map into cells.
 
-A cell is a box in scaled coordinates (map_coordinates) with nodes at equal distances, 5 along the
-velocity and the amplitude and 3 along Poisson's ratio; within it friction is the polynomial through
-them.  How wrong that may be is seen in the nodes themselves: the highest differences along a
-direction are what one degree less would miss, and a share of them, calibrated on points that were
-never used, is what this degree does.  A cell that may be too wrong is halved across the direction
-that is worst, and all of its nodes are nodes of the halves.
+A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
+velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is the polynomial
+through its nodes.  The surplus, the largest differences of the highest order along a direction, is
+the error of a polynomial of one degree less.  The error of the polynomial is a fraction of the
+surplus, calibrated on other points.  A cell with too large an error is halved along the direction
+with the largest surplus; its nodes are nodes of the halves.
 
-All is a function of the answers alone, so that whoever asks in whatever order, stops and goes on,
-comes to the same cells.
+The cells are a function of the answers alone and do not depend on the order of the requests.
 """
 
 from __future__ import annotations
@@ -26,20 +25,23 @@ if TYPE_CHECKING:
     from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
-"""Error of the polynomial in a cell over the surplus.  Measured by benchmarks/certified.py."""
+"""Error of the polynomial in a cell divided by the surplus; calibrated by
+benchmarks/certified.py."""
 LOWER_ORDER = 0.35
-"""Factor on third differences, which count where fourth ones happen to cancel."""
+"""Factor of third differences in the surplus, for cells in which fourth differences cancel by
+chance."""
 LOW_DEGREE = 2.0
-"""Factor of second differences: of degree 2 a polynomial misses a larger share of what it adds."""
+"""Factor of second differences in the surplus: polynomials of degree 2 have a larger error relative
+to the surplus."""
 RESOLVED = 0.05
-"""Largest surplus that says how wrong a cell may be.  Of a larger one, which only a loose error
-would accept, the share that is missed can be a multiple of SHARE, so the cell is halved anyway."""
+"""Largest surplus of a cell that is not halved.  For a larger surplus the error can be a multiple
+of SHARE times the surplus."""
 SMALLEST = 2.0**-9
-"""Width of a cell, in patches, that is not halved again."""
+"""Smallest width of a cell, in patches."""
 
 Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]
-"""Friction and its error by the scaled coordinates of a node; NaN: it did not converge."""
+"""Friction and its error by node; NaN: the point did not converge."""
 
 
 class Cell(NamedTuple):
@@ -48,19 +50,19 @@ class Cell(NamedTuple):
     Attributes
     ----------
     begin, end : tuple of float
-        Its lower and its upper ends by direction: velocity, amplitude and perhaps Poisson's ratio.
+        Lower and upper ends by direction: velocity, amplitude and perhaps Poisson's ratio.
     """
 
     begin: tuple[float, ...]
     end: tuple[float, ...]
 
     def nodes(self, degrees: tuple[int, ...]) -> list[Node]:
-        """Its nodes, the last direction fastest."""
+        """Nodes of the cell, the last direction fastest."""
         ends = zip(self.begin, self.end, degrees, strict=True)
         return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
 
     def halves(self, direction: int) -> tuple[Cell, Cell]:
-        """Both halves of the cell along a direction, an index."""
+        """Halves of the cell along a direction, given by its index."""
         middle = 0.5 * (self.begin[direction] + self.end[direction])
         return (
             self._replace(end=_with(self.end, direction, middle)),
@@ -70,16 +72,16 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Refinement:
-    """The state of a refinement: cells, their errors, and the points that are missing.
+    """State of a refinement.
 
     Attributes
     ----------
     cells : tuple of Cell
-        All that cover the map; those that cannot be judged yet among them.
+        Cells that cover the map, also those with missing nodes.
     errors : tuple of float
-        Bounds of the error in each, of interpolation and nodes; infinite where it is not known.
+        Error bound of each cell, from interpolation and nodes; infinite if unknown.
     missing : tuple of Node
-        Places to be solved next, ascending; none of them: the map is done.
+        Nodes to be solved next, ascending; empty if the map is finished.
     """
 
     cells: tuple[Cell, ...]
@@ -95,18 +97,18 @@ def first_cells(coordinates: MapCoordinates | DriftCoordinates) -> list[Cell]:
 def refined(
     coordinates: MapCoordinates | DriftCoordinates, known: Answers, error: float
 ) -> Refinement:
-    """Cells that the answers so far lead to, and what has to be asked next.
+    """Refine a map as far as the answers allow.
 
     Parameters
     ----------
     coordinates : MapCoordinates or DriftCoordinates
         Coordinates of the map.
     known : mapping of Node to (float, float)
-        All answers so far.
+        Friction and its error at the solved nodes.
     error : float
-        That is to hold all over the map, nodes' errors included.
+        Largest accepted error, including the errors of the nodes.
     """
-    pending, done, missing = first_cells(coordinates)[::-1], [], set()
+    pending, finished, missing = first_cells(coordinates)[::-1], [], set()
     degrees = coordinates.degrees
     while pending:
         cell = pending.pop()
@@ -114,7 +116,7 @@ def refined(
         unknown = [node for node in nodes if node not in known]
         if unknown:
             missing.update(unknown)
-            done.append((cell, np.inf))
+            finished.append((cell, np.inf))
             continue
         values, errors = np.array([known[node] for node in nodes]).T
         surpluses = surpluses_of(values.reshape([n + 1 for n in degrees]))
@@ -124,14 +126,14 @@ def refined(
         if not is_good and worst is not None:
             pending.extend(cell.halves(worst)[::-1])
         else:
-            done.append((cell, float(bound) if np.isfinite(bound) else np.inf))
-    done.sort()
-    cells, bounds = zip(*done, strict=True)
+            finished.append((cell, float(bound) if np.isfinite(bound) else np.inf))
+    finished.sort()
+    cells, bounds = zip(*finished, strict=True)
     return Refinement(cells, bounds, tuple(sorted(missing)))
 
 
 def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
-    """Error of polynomials of one degree less, by direction; values: 5 along each, or 3."""
+    """Surplus by direction, the error of a polynomial of one degree less, from values at nodes."""
     return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 
@@ -146,8 +148,7 @@ def _surplus(values: np.ndarray, axis: int) -> float:
 
 
 def _worst(cell: Cell, surpluses: tuple[float, ...]) -> int | None:
-    """The direction to halve a cell along; None: not at all, where it is small enough, or where
-    friction is not known."""
+    """Direction with the largest surplus; None for the smallest cells and for unknown friction."""
     if not np.all(np.isfinite(surpluses)):
         return None
     wide = [

@@ -1,11 +1,11 @@
-"""Coordinates in which a map is even: kinks at borders of patches, velocities by their powers.
+"""Scaled coordinates of a map of friction.
 
-A map over velocity and amplitude, and perhaps Poisson's ratio, is cut into patches at the kinks
-that its motion is known to have (theory.kinks); one of the static limit has no velocity.  In the
-scaled coordinates patches are boxes.  Where velocities are slower than the kink they are even in
-the power 1/3, half of that with which friction comes close to its static limit, and amplitudes are
-cut at their kinks and gather there.  Where they are faster, velocities are even in the logarithm,
-and amplitudes, whose kinks are gone, in that of 1 + 2 A, as they are wherever no kink is near.
+A map is over velocity and amplitude, and perhaps Poisson's ratio; a map of the static limit has no
+velocity.  It is divided into patches at the known kinks of its motion (theory.kinks).  Patches are
+boxes in scaled coordinates.  Below the kink of the velocity the scaled velocity is the power 1/3,
+half the power with which friction approaches its static limit, and amplitudes are divided at their
+kinks and gather there.  Above it the scaled velocity is the logarithm.  Amplitudes without kinks
+are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -20,21 +20,23 @@ from microslip.foundation.canonical import canonical_json
 from microslip.theory.kinks import Kinks, kink_velocity
 
 DIGITS = 9
-"""Significant digits of the quantities at a node."""
+"""Number of significant digits of the coordinates of a node."""
 CLEAR = 2.0
-"""A kink of the velocity is a border where it is this factor within the range."""
+"""Smallest factor between a kink of the velocity and the ends of the range; otherwise it is not a
+border."""
 SLOW_POWER = 1.0 / 3.0
-"""Power of the velocity in the scaled coordinate, below its kink."""
+"""Power of the velocity in its scaled coordinate, below the kink."""
 FAST = 2.0
-"""Scaled velocity where what is faster than the kink begins: 1 is where what is slower ends."""
+"""Scaled velocity just above the kink; just below the kink it is 1."""
 FAST_PATCHES = 2
-"""Into which that is cut along the velocity: friction may rise too steeply for fewer nodes."""
+"""Number of patches above the kink, along the velocity; with fewer, friction may rise too steeply
+for the nodes."""
 AT_KINKS = 2.0
-"""Power with which places gather at kinks of the amplitude."""
+"""Power with which nodes gather at kinks of the amplitude."""
 SPREAD = 2.0
 """Amplitudes without kinks are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
-"""Degrees of the polynomials in a cell; friction is nearly straight over Poisson's ratio."""
+"""Degrees of the polynomials in a cell; friction is nearly linear in Poisson's ratio."""
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a box in scaled coordinates, by direction."""
@@ -43,18 +45,18 @@ Ends = Sequence | np.ndarray
 
 
 class MapCoordinates(NamedTuple):
-    """The range of a map, and where it is cut; all dimensionless.
+    """Range and patches of a map; all dimensionless.
 
     Attributes
     ----------
     velocity : tuple of float
-        Smallest and largest, above 0; () for the static limit, where it is no direction of the map.
+        Smallest and largest velocity, above 0; () for a map of the static limit.
     amplitude : tuple of float
-        Smallest and largest, >= 0.
+        Smallest and largest amplitude, at least 0.
     kinks : theory.kinks.Kinks
         Kinks of the motion.
     poisson : tuple of float
-        Smallest and largest Poisson's ratio; () where it is no direction of the map.
+        Smallest and largest Poisson's ratio; () if it is not a direction of the map.
     """
 
     velocity: tuple[float, ...]
@@ -64,7 +66,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Names of the quantities that the map is over, in the order of scaled coordinates."""
+        """Names of the axes of the map, in the order of scaled coordinates."""
         return tuple(name for name in DEGREES if getattr(self, name))
 
     @property
@@ -74,7 +76,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def patches(self) -> list[Box]:
-        """Boxes in scaled coordinates that cover the map, those of slow velocities first."""
+        """Boxes in scaled coordinates that cover the map, slow velocities first."""
         flat: list[Box] = [((float(i),), (i + 1.0,)) for i in range(len(self._borders) - 1)]
         if self.velocity:
             flat = [((0.0, *low), (1.0, *high)) for low, high in flat]
@@ -86,22 +88,22 @@ class MapCoordinates(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str) -> MapCoordinates:
-        """The coordinates from a text that `to_json` made."""
-        given = json.loads(text)
-        kinks = Kinks(*(tuple(given[name]) for name in ("kink_amplitudes", "kink_velocity")))
-        low, high = given["amplitude"]
-        return cls(tuple(given["velocity"]), (low, high), kinks, tuple(given["poisson"]))
+        """Read the coordinates from the JSON text of `to_json`."""
+        values = json.loads(text)
+        kinks = Kinks(*(tuple(values[name]) for name in ("kink_amplitudes", "kink_velocity")))
+        low, high = values["amplitude"]
+        return cls(tuple(values["velocity"]), (low, high), kinks, tuple(values["poisson"]))
 
     def to_json(self) -> str:
-        """The coordinates as a text, for the attribute of a dataset."""
+        """The coordinates as JSON, for the attribute of a dataset."""
         ranges = {name: getattr(self, name) for name in DEGREES}
         kinks = {"kink_amplitudes": self.kinks.amplitudes, "kink_velocity": self.kinks.velocity}
         return canonical_json(ranges | kinks)
 
     def scaled(self, *places: np.ndarray) -> np.ndarray:
-        """Scaled coordinates, shape (n, directions), of places in the range.
+        """Scaled coordinates, shape (n, directions), of points in the range.
 
-        places: by direction, velocities first, shape (n,) each.
+        places: values of the points by direction, velocities first, shape (n,) each.
         """
         values = [np.asarray(part, float) for part in places]
         deep = [_share(values.pop(), self.poisson)] if self.poisson else []
@@ -119,14 +121,14 @@ class MapCoordinates(NamedTuple):
         return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """The values of the directions at scaled coordinates, rounded to DIGITS digits."""
+        """Point at scaled coordinates: its values by direction, rounded to DIGITS digits."""
         *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
         return tuple(rounded(value) for value in (*flat, *deep))
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
-        """Velocity and amplitude."""
+        """Velocity and amplitude at scaled coordinates."""
         slow, fast = self.velocity
         if self._is_cut and x >= FAST:
             amplitude = _at_spread_share(y, self.amplitude)
@@ -161,7 +163,7 @@ class MapCoordinates(NamedTuple):
         return np.clip(kink_velocity(self.kinks, amplitude), CLEAR * slow, fast / CLEAR)
 
     def _rows(self, amplitude: np.ndarray) -> np.ndarray:
-        """Scaled amplitudes where the map is cut at kinks."""
+        """Scaled amplitudes in a map that is divided at kinks."""
         y = np.empty_like(amplitude)
         for row, (low, high) in enumerate(zip(self._borders, self._borders[1:], strict=False)):
             here = (amplitude >= low) & (amplitude <= high)
@@ -169,7 +171,7 @@ class MapCoordinates(NamedTuple):
         return y
 
     def _amplitude_at(self, y: float) -> float:
-        """The inverse of _rows."""
+        """Amplitude at a scaled amplitude, the inverse of _rows."""
         row = min(int(y), len(self._borders) - 2)
         ends, share = self._borders[row : row + 2], y - row
         below, above = self._gathers_at(ends)
@@ -180,7 +182,7 @@ class MapCoordinates(NamedTuple):
         return _between(share**AT_KINKS if below else 1.0 - (1.0 - share) ** AT_KINKS, ends)
 
     def _even(self, amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-        """The inverse of that in one patch, 0 to 1."""
+        """Scaled amplitudes in one patch, 0 to 1."""
         below, above = self._gathers_at(ends)
         share, power = _share(amplitude, ends), 1.0 / AT_KINKS
         if below and above:
@@ -190,14 +192,16 @@ class MapCoordinates(NamedTuple):
         return share**power if below else 1.0 - (1.0 - share) ** power
 
     def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """Whether places gather at the lower and at the upper end of a patch: at kinks, and, below
-        one, at the amplitude 0, where the oscillation sets in."""
+        """True for the lower and the upper end of a patch if nodes gather there.
+
+        They gather at kinks and, in a patch below a kink, at the amplitude 0.
+        """
         below, above = (end in self.kinks.amplitudes for end in ends)
         return below or (above and ends[0] == 0.0), above
 
 
 def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
-    """Position of a value between two ends, clipped to 0 to 1 against rounding."""
+    """Position of values between two ends, clipped to 0 to 1."""
     return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 
@@ -206,17 +210,17 @@ def _between(share: float, ends: Ends) -> float:
 
 
 def _spread_share(amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-    """Position of an amplitude between two ends in log(1 + SPREAD A), 0 to 1."""
+    """Position of amplitudes between two ends in log(1 + SPREAD A), 0 to 1."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return _share(np.log1p(SPREAD * amplitude), (low, high))
 
 
 def _at_spread_share(share: float, ends: Ends) -> float:
-    """The inverse of _spread_share."""
+    """Amplitude at a position, the inverse of _spread_share."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return np.expm1(_between(share, (low, high))) / SPREAD
 
 
 def rounded(value: float) -> float:
-    """A number in DIGITS digits."""
+    """Round a number to DIGITS significant digits."""
     return float(f"{value:.{DIGITS}g}")

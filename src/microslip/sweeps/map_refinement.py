@@ -1,4 +1,4 @@
-"""The points of a certified map: each round of them follows from the answers so far."""
+"""Solution of the points of a certified map, in rounds of refinement."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from microslip.theory.kinks import kinks_of
 
 
 def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
-    """The coordinates that a certified map is cut in."""
+    """Scaled coordinates of a certified map."""
     motion, pressure = solver_names(map_.sweep)
     if map_.force is not None:
         return DriftCoordinates(motion, map_.force, map_.amplitude)
@@ -63,7 +63,7 @@ def refine(
 def _request(
     map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
 ) -> dict:
-    """The request for a node, as of a sweep that has it."""
+    """Request for a node, equal to that of a sweep with this point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point: dict = {"velocity": (0.0,)}
     if "force" in place:
@@ -87,20 +87,27 @@ def solved(
     processes: int,
     progress: Callable[[Iterable, int], Iterable],
 ) -> tuple[list[dict], list[float]]:
-    """Records of all points of a map, and the CPU seconds that each took.
+    """Solve all points of a map in several processes.
 
-    The points of a round are solved by several processes; each is stored as soon as it is solved.
+    Each point is stored as soon as it is solved.
 
     Parameters
     ----------
     map_ : CertifiedMap
         The map.
     store : Store
-        Where points are looked up and stored.
+        Store of results.
     processes : int
         Number of processes.
     progress : callable
         Called with an iterable and its length for each round; yields the items of the iterable.
+
+    Returns
+    -------
+    records : list of dict
+        Records of all points.
+    seconds : list of float
+        CPU times of the solver.
     """
     answers: dict[str, tuple[dict, float]] = {}
     with ProcessPoolExecutor(
@@ -108,8 +115,8 @@ def solved(
     ) as pool:
 
         def ask(requests: list[dict]) -> Iterator[dict]:
-            done = pool.map(partial(answer, store=store), requests)
-            for record, seconds in progress(done, len(requests)):
+            results = pool.map(partial(answer, store=store), requests)
+            for record, seconds in progress(results, len(requests)):
                 answers[record["key"]] = record, seconds
                 yield record
 
@@ -119,13 +126,13 @@ def solved(
 
 
 def _begin(pressure: str) -> None:
-    """Prepare a process of the pool; it ends when the process that started it ends."""
+    """Prepare a process of the pool to read files of pressures and to end with its parent."""
     named_files.remember([pressure])
     Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _end_with_parent() -> None:
     parent = parent_process()
-    assert parent is not None  # as in every process of a pool
+    assert parent is not None  # processes of a pool have a parent
     parent.join()
     os._exit(1)

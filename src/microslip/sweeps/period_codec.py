@@ -1,8 +1,8 @@
-"""A period of the periodic state in few bytes, and back.
+"""Compact storage of a period of the periodic state.
 
-Half the disc and half the period are enough: the rest follows from symmetry. Tractions are kept as
-shares of the friction bound in steps of 1/127, which is what a drawing can show; forces keep seven
-decimals, and which points slip is exact.
+Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
+as fractions of the friction bound in steps of 1/127, the resolution of a drawing.  Forces have
+seven decimals.  Slip flags are exact.
 """
 
 from __future__ import annotations
@@ -18,22 +18,33 @@ if TYPE_CHECKING:
     from microslip.adaptive.period import Period
 
 SHARES = 127
-"""Steps of a traction from 0 to the friction bound; kept ones are off by half a step at most."""
+"""Number of steps of a stored traction from 0 to the friction bound."""
 DECIMALS = 7
 """Decimals of forces and displacements."""
 HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lateral", "torque")
 
 
 def packed(period: Period, angles: int) -> dict:
-    """A period.Period as a dict of plain values and texts; angles: points on half a ring.
+    """Pack a period whose second half is the mirror image of the first.
 
-    The second half of the period has to be the mirror image of the first.
+    Parameters
+    ----------
+    period : Period
+        The period, on whole rings.
+    angles : int
+        Number of points on half a ring.
 
-    radius, bound: of the rings, lists of (cells,); the names in HISTORIES: lists of (steps + 1,);
-    tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, over bound/127;
-    slips: base64 of bits, (steps/2 + 1, angles, cells); turned: whether the other half of the disc
-    is this one turned by half a turn (translations), else it is the mirror image across the lateral
-    axis; mu_macro, converged, reason as in the Period.
+    Returns
+    -------
+    dict
+        radius, bound: lists over rings, (cells,).
+        The names in HISTORIES: lists over time, (steps + 1,).
+        tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
+        bound/127.
+        slips: base64 of bits, (steps/2 + 1, angles, cells).
+        turned: True if the other half of the disc is this half rotated by half a turn, as in
+        translations; False if it is the mirror image across the lateral axis.
+        mu_macro, converged, reason: as in the Period.
     """
     frames, half = (len(period.phase) + 1) // 2, period.bound.size // 2
     bound = period.bound[:half]
@@ -56,9 +67,10 @@ def packed(period: Period, angles: int) -> dict:
 
 
 def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Tractions in steps of bound/127 (int8) and slips (bool) as kept: half the disc and period.
+    """Unpack tractions and slips on half the disc over half the period.
 
-    Shapes (steps/2 + 1, 2, angles, cells), forward and lateral, and (steps/2 + 1, angles, cells).
+    Returns tractions in steps of bound/127, int8, (steps/2 + 1, 2, angles, cells), forward and
+    lateral, and slips, bool, (steps/2 + 1, angles, cells).
     """
     frames = (len(result["phase"]) + 1) // 2
     shape = frames, result["angles"], len(result["radius"])
@@ -68,12 +80,12 @@ def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
 
 
 def text_of(values: np.ndarray) -> str:
-    """The bytes of an array as base64; little end first, whatever the machine."""
+    """Encode an array as base64 of its little-endian bytes."""
     ordered = np.ascontiguousarray(values)
     ordered = ordered.astype(ordered.dtype.newbyteorder("<"), copy=False)
     return base64.b64encode(ordered.tobytes()).decode("ascii")
 
 
 def values_of(text: str, kind: DTypeLike) -> np.ndarray:
-    """The array that `text_of` made a text of, flat; kind: its type."""
+    """Decode the text of `text_of` to a flat array of type `kind`."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

@@ -1,4 +1,4 @@
-"""One point as `microslip.solve` answers it, kept among the results of sweeps."""
+"""`microslip.solve` for one point, with the stored results of sweeps."""
 
 from __future__ import annotations
 
@@ -45,32 +45,33 @@ def solve_stored(
     steps: int | None = None,
     time_limit: float | None = None,
 ) -> Result:
-    """Friction at one point, from a folder of results if it is there, else computed and kept there.
+    """Friction at one point, read from a folder of results, or computed and stored there.
 
-    A result is named by the physics, the tolerance and the sources of the solver, so that a sweep,
-    the command line and this function find what any of them has computed.  Numbers are rounded to
-    12 digits first, as those of sweeps are.  What ran into the time limit, or raised, is not kept.
+    The key of a result is a hash of the point, the tolerance and the code of the solver, so that
+    sweeps, the command line and this function share results.  Numbers are rounded to 12 digits, as
+    in sweeps.  A result after a time limit or a failure of the solver is not stored.
 
     Parameters
     ----------
     results : str or path
-        Folder, that of a sweep or a new one; the rest as for `microslip.solve`.
+        Folder of results, which is created if needed.  The other arguments are as for
+        `microslip.solve`.
 
     Returns
     -------
     Result
-        Its solve_time_s is that of this call.
+        solve_time_s is the time of this call.
 
     Raises
     ------
     InputError
-        As `solve` does.
+        As `microslip.solve`.
     CacheError
         If the folder cannot be used.
     """
     started = time.perf_counter()
     if isinstance(motion, Problem):
-        raise InputError("motion", str(motion), "allowed is a text, by which results are named")
+        raise InputError("motion", str(motion), "allowed is a text, as in the keys of results")
     if not isinstance(results, str | os.PathLike):
         raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     drive = {"force": force, "stiffness": stiffness, "mass": mass, "damping": damping}
@@ -89,7 +90,7 @@ def solve_stored(
     if problem.drive is not None:
         refuse_drive(problem, chosen)
     if tolerance is None:
-        from microslip.adaptive.moved import refuse_choice  # only now: it loads compiled code
+        from microslip.adaptive.moved import refuse_choice  # loads compiled code
 
         moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
         refuse_choice(moving, model, cells, steps)
@@ -119,13 +120,13 @@ def solve_stored(
             raise
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
-    given = {"pressure": pressure} | request | record["result"]
+    values = {"pressure": pressure} | request | record["result"]
     numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
-    given |= {k: float(given[k]) for k in numbers if given.get(k) is not None}
-    return Result.from_dict(given | {"solve_time_s": time.perf_counter() - started})
+    values |= {k: float(values[k]) for k in numbers if values.get(k) is not None}
+    return Result.from_dict(values | {"solve_time_s": time.perf_counter() - started})
 
 
-def _drives(**given: float | None) -> tuple:
-    """The drive in the format of a Sweep."""
-    values = ((name, given[name]) for name in DRIVES)
-    return tuple((name, (float(value),), False) for name, value in values if value is not None)
+def _drives(**values: float | None) -> tuple:
+    """The drive as an attribute of Sweep."""
+    pairs = ((name, values[name]) for name in DRIVES)
+    return tuple((name, (float(value),), False) for name, value in pairs if value is not None)

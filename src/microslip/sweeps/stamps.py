@@ -1,7 +1,7 @@
-"""Stamps of products: what a dataset, page or figure was made of, and the checksums of its files.
+"""Stamps of products: the inputs of a dataset, page or figure, and the checksums of its files.
 
-A product has plain names that do not change with its content, so its stamp, `.made/NAME.json` in
-the folder of results, says whether it is the right one.  The stamp is written last.
+The names of a product do not depend on its content.  Its stamp, `.made/NAME.json` in the folder of
+results, tells whether it is up to date.  The stamp is written last.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ log = logging.getLogger(__name__)
 
 FOLDER = ".made"
 AGAIN = ".again"
-"""Name of a file in the folder of results that is newer than what has to be made again."""
+"""Name of a file in the folder of results that is newer than all products to be made again."""
 WHEN = 1_000_000_000
-"""Date (s since 1970, in 2001) of AGAIN; what has to be made again is dated one second before."""
+"""Date of AGAIN, in seconds since 1970; products to be made again are dated one second earlier."""
 BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-"""How a whole file begins, for files without a stamp."""
+"""First bytes of an undamaged file, by suffix; checked for files without a stamp."""
 
 
 def stamp_of(product: str) -> str:
@@ -35,13 +35,13 @@ def stamp_of(product: str) -> str:
 
 
 def write(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> None:
-    """Write a stamp; made_of: what the outputs were made of, see app.plan."""
+    """Write a stamp; made_of: inputs of the outputs as a text, see app.plan."""
     sums = {Path(file).name: _checksum(file) for file in outputs}
     files.write_atomically(Path(stamp), canonical_json({"made_of": made_of, "sums": sums}).encode())
 
 
 def read(stamp: str | Path) -> dict:
-    """Content of a stamp: made_of and sums; empty where there is none or it is damaged."""
+    """Content of a stamp, made_of and sums; {} if it is missing or damaged."""
     try:
         content = json.loads(Path(stamp).read_bytes())
     except (OSError, ValueError):
@@ -50,7 +50,7 @@ def read(stamp: str | Path) -> dict:
 
 
 def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool:
-    """Whether the outputs are there, whole, and made of this."""
+    """True if the outputs exist, are undamaged and have these inputs."""
     content = read(stamp)
     if content.get("made_of") != made_of:
         return False
@@ -61,10 +61,9 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
 
 
 def is_damaged(path: str | Path) -> bool:
-    """Whether a file is another one than its stamp says, or without a stamp than its name says.
+    """True if a dataset, page or figure differs from its stamp, or without a stamp from its format.
 
-    path: of a dataset, page or figure; False where there is no file.  Raises CacheError if it
-    cannot be read.
+    False for a missing file.  Raises CacheError if the file cannot be read.
     """
     path = Path(path)
     try:
@@ -81,20 +80,19 @@ def is_damaged(path: str | Path) -> bool:
 
 
 def set_aside(outputs: Iterable[str | Path]) -> None:
-    """Rename files that are damaged, or that the workflow did not make, before others are written
-    in their place: they may be of use to someone."""
+    """Rename damaged files and files of the user, so that the outputs do not overwrite them."""
     for path in map(Path, outputs):
         if path.is_file() and _checksum(path) != _stamped(path):
             aside = path.with_name(f"{path.name}.damaged")
             os.replace(path, aside)
-            log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
+            log.warning("%s differs from the output of the workflow: renamed to %s", path, aside)
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
-    """Date files back that have to be made again, and to now what has a date in the future.
+    """Set the dates of files for Snakemake, which makes a file again if it is older than AGAIN.
 
-    Snakemake makes again what is older than its input AGAIN, and refuses what is older than its
-    inputs, ancient or not.
+    right: False dates the files before AGAIN; True dates files from the future to now, since
+    Snakemake refuses a file that is older than its inputs.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -104,14 +102,14 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
 
 
 def write_again(path: str | Path, dated: bool) -> None:
-    """Write the file AGAIN with new content: Snakemake trusts its date only if that differs."""
+    """Write the file AGAIN with new content, without which Snakemake ignores its date."""
     files.write_atomically(Path(path), os.urandom(16).hex().encode())
     if dated:
         os.utime(path, (WHEN, WHEN))
 
 
 def _stamped(path: Path) -> str | None:
-    """Checksum of a file according to its stamp; None if it has none."""
+    """Checksum of a file in its stamp; None without a stamp."""
     folder, inner = (path.parent, "")
     if path.parent.name in ("figures", "summaries"):
         folder, inner = path.parent.parent, "figures/" * (path.parent.name == "figures")

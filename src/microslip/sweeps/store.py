@@ -1,8 +1,8 @@
-"""Records on disk: one file for each result, and files of many.
+"""Files of records: one for each result, and one for each batch.
 
-A file holds records as lines of JSON, then a line with the checksum of all these.  It is written
-beside its place, flushed to disk and renamed, so that a reader finds all of it or nothing.  A file
-that does not fit its checksum counts as absent.
+A file has a line of JSON for each record and a last line with their checksum.  It is written under
+another name, flushed to disk and renamed, so that readers never see a part of it.  A file with a
+wrong checksum counts as missing.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from microslip.foundation.errors import CacheError
 log = logging.getLogger(__name__)
 
 NOT_FINAL = b" not final\n"
-"""How the checksum line ends if equal requests may get other results, see evaluate.is_final."""
+"""End of the checksum line if some records are not final, see evaluate.is_final."""
 
 
 def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None:
-    """Write records, dicts of plain JSON values without NaN, to a file: all of them or nothing.
+    """Write records, dicts of JSON values without NaN, to a file, atomically.
 
-    Raises CacheError where the system refuses.
+    Raises CacheError if the file cannot be written.
     """
     content = "".join(f"{canonical_json(record)}\n" for record in records).encode()
     checksum = hashlib.sha256(content).hexdigest().encode()
@@ -34,7 +34,7 @@ def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None
 
 
 def read(path: str | Path) -> list[dict]:
-    """Records of a file in their order; raises CacheError, one line, if it cannot be used."""
+    """Read the records of a file; raises CacheError, one line, for a missing or damaged file."""
     content = _checked(path)
     if content is None:
         raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
@@ -42,7 +42,7 @@ def read(path: str | Path) -> list[dict]:
 
 
 def is_final(path: str | Path) -> bool:
-    """Whether a file is whole and its records are final; False where there is none."""
+    """True if a file is undamaged and its records are final; False for a missing file."""
     try:
         content = _checked(path)
     except CacheError:
@@ -51,7 +51,7 @@ def is_final(path: str | Path) -> bool:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool] | None:
-    """Lines of a file without that of the checksum, and whether it is final; None if damaged."""
+    """Lines of a file without the checksum, and True if they are final; None if damaged."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:
@@ -63,22 +63,22 @@ def _checked(path: str | Path) -> tuple[bytes, bool] | None:
 
 
 class Store:
-    """Results under one folder.  Several processes may read and write it at the same time."""
+    """Results in a folder, which several processes may read and write at the same time."""
 
     def __init__(self, folder: str | Path):
-        """folder: it is made when the first result is written."""
+        """folder: created when the first result is written."""
         files.refuse_no_folder(folder)
         self.folder = Path(folder)
         self._tried = False
 
     def path(self, group: str, key: str) -> Path:
-        """Path of the result `key`; group is a subfolder that keeps motions apart."""
+        """Path of the result `key` in the subfolder `group`."""
         return self.folder / group / key[:2] / f"{key}.json"
 
     def read(self, group: str, key: str) -> dict | None:
-        """The record stored under `key`; None if there is none, or none that is whole.
+        """Read the record `key`; None if it is missing or damaged.
 
-        A damaged file is reported through logging.  Raises CacheError if reading is not allowed.
+        A damaged file is logged.  Raises CacheError if the file cannot be read.
         """
         path = self.path(group, key)
         try:
@@ -94,11 +94,11 @@ class Store:
         return records[0]
 
     def write(self, group: str, key: str, record: dict) -> None:
-        """Store `record`; raises CacheError where the system refuses."""
+        """Write a record; raises CacheError if it cannot be written."""
         write(self.path(group, key), [{**record, "key": key}])
 
     def try_writing(self) -> None:
-        """Raise CacheError where nothing can be stored, before work is put into it; tries once."""
+        """Raise CacheError if the folder cannot be written; checks once."""
         if not self._tried:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)

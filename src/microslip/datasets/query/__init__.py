@@ -1,1 +1,1 @@
-"""Questions to a map, between and beyond its nodes."""
+"""Interpolation between the nodes of a map, and estimates outside its range."""

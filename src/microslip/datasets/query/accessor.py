@@ -1,4 +1,5 @@
-"""`dataset.microslip.at(...)`: certified answers from the dataset of a sweep."""
+"""`dataset.microslip.at(...)`: friction between and beyond the points of a sweep, with a bound of
+its error."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ from microslip.datasets.query.cells import CellNodes, Map
 from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
 from microslip.datasets.query.drift import Drift
 from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_values
-from microslip.datasets.query.solver import pulled_by, solved
+from microslip.datasets.query.solver import drive_of, solved
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
@@ -38,18 +39,19 @@ from microslip.motions.by_name import motion_named
 from microslip.theory.catalogue import FORMS
 
 Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Friction, its error and codes of SOURCES, shape (n,) each."""
+"""Friction, its error bound and codes of SOURCES, shape (n,) each."""
 
 
 def accessor(dataset: xr.Dataset) -> Friction | Drift:
-    """The accessor `dataset.microslip`: Drift for certified maps over forces, else Friction."""
+    """Return the accessor `dataset.microslip`: Drift for certified maps over forces, else
+    Friction."""
     return Drift(dataset) if certified_map.is_of_drift(dataset) else Friction(dataset)
 
 
 class Friction:
-    """Friction at any point of a motion, from a dataset of one of its sweeps.
+    """Friction at any velocity and amplitude of a motion, from the dataset of a sweep.
 
-    Raises ValueError where the dataset is none of a sweep.
+    Raises ValueError for another dataset.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -57,20 +59,19 @@ class Friction:
             motion = motion_named(dataset.attrs.get("motion"))
         except ValueError:
             raise ValueError(
-                "no motion of microslip: allowed is the dataset of a sweep, with its attributes"
+                "no motion of microslip in the attributes: allowed is the dataset of a sweep"
             ) from None
         if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
-                "the contact of this dataset is pulled by a force, which is friction itself: "
-                "allowed is one that is moved at a velocity or by a spring; here microslip.at of a "
-                "certified map, and sel and interp"
+                "a dataset over a prescribed force has no friction map: allowed is one over a "
+                "velocity or a spring; use microslip.at of a certified map, sel or interp"
             )
         self._dataset = dataset
-        # Not the motion itself: it holds functions without a name, which cannot be pickled.
+        # The name is stored in place of the motion, which holds lambdas that cannot be pickled.
         self._motion, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
-        self._limits_known = beyond.known_of(dataset)
-        self._known: tuple[tuple, Nodes | CellNodes] | None = None
+        self._has_limits = beyond.has_limits(dataset)
+        self._read: tuple[tuple, Nodes | CellNodes] | None = None
         self._tables: dict[tuple[float, bool], Map | None] = {}
 
     def at(
@@ -81,42 +82,48 @@ class Friction:
         poisson: float | None = None,
         tolerance: float | None = None,
     ) -> xr.Dataset:
-        """Friction and a bound of its error, whatever the point.
+        """Friction and a bound of its error at any point.
 
-        Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,
-        between Poisson's ratios `nodes`) and what the nodes themselves may be off; that of a
-        certified map is the bound of its cell (see `cells`).  Beyond the map see `beyond`.  Next to
-        a point that did not converge mu_macro is NaN, or its error infinite.
+        Between the nodes of a map the error is the sum of the interpolation error (see
+        `interpolation`; between Poisson's ratios see `nodes`) and the errors of the nodes.  In a
+        certified map it is the bound of the cell (see `cells`), and outside the tabulated range the
+        bound of a bracket (see `beyond`).  Next to a point that did not converge mu_macro is NaN or
+        its error is infinite.
 
-        The dataset may be a part of one, chosen or joined by xarray, lazy or not, as long as it has
-        mu_macro, mu_macro_error, their coordinates and its attributes.  Without `converged`, nodes
-        with an error above the attribute `tolerance` count as not converged.
+        The dataset may be a selection or a join of datasets, in memory or in chunks of dask.  It
+        needs mu_macro, mu_macro_error, their coordinates and the attributes.  Without the variable
+        `converged`, nodes with an error above the attribute `tolerance` count as not converged.
 
         Parameters
         ----------
         velocity, amplitude : number, sequence or DataArray
-            >= 0, no amplitude for continuous-bore.  A sequence becomes a dimension of the answer;
-            DataArrays broadcast by their dimensions.  Where one is in chunks of dask, so is the
-            answer, and what is asked is looked at when it is computed.
+            Dimensionless, at least 0; no amplitude for continuous-bore.  A sequence becomes a
+            dimension of the answer; DataArrays broadcast by their dimensions.  If one of them is in
+            chunks of dask, the answer is in chunks, too, and the values are checked when it is
+            computed.
         poisson : number, optional
-            Within the range of the dataset's; its only one unless told.
+            Poisson's ratio in the range of the dataset; may be left out if the dataset has only
+            one.
         tolerance : number, optional
-            Where the bound is larger, the solver is asked.  Results are kept beside the dataset if
-            it came from `open_map`; where nothing can be written, for as long as Python runs.
+            Points with a larger error bound are solved.  The results are stored beside the dataset
+            if `open_map` opened it.  Where nothing can be written they are stored until Python
+            ends.
 
         Returns
         -------
         xarray.Dataset
             mu_macro, mu_macro_error and source, an index into SOURCES with its meanings in
             flag_meanings.  The attribute `note` counts the points outside the tabulated range whose
-            error estimate is larger than that of the map, and names the remedy, `tolerance`.
+            error bound is larger than the error of the map, and recommends a `tolerance`.
 
         Raises
         ------
         InputError
-            Naming the argument, for what is no such number, for what the dataset has lost, and for
-            what no limit is proved for: of other motions and pressures than the paper's, all beyond
-            the map, unless there is a tolerance.
+            For an argument that is not allowed and for a dataset without a variable that is needed;
+            it names the argument or the variable.
+        ValueError
+            For a point outside the tabulated range without a tolerance, for motions, pressures and
+            drives without proved limits.
         """
         coordinates = self._coordinates(velocity, amplitude)
         nodes = self._nodes(poisson)
@@ -137,31 +144,31 @@ class Friction:
     def on_grid(
         self, velocity: object = 49, amplitude: object = 49, **settings: float | None
     ) -> xr.Dataset:
-        """Friction and a bound of its error on a regular grid, for figures and plain xarray.
+        """Friction and a bound of its error on a regular grid.
 
         Parameters
         ----------
         velocity, amplitude : int or sequence
-            How many of them, over the range of the map, velocities in equal ratios and amplitudes
-            in equal steps; or which ones.  No amplitude counts for continuous-bore, and no velocity
-            for a certified map of the static limit.
+            Number of coordinates over the range of the map, velocities in equal ratios and
+            amplitudes in equal steps; or the coordinates.  The amplitude is ignored for
+            continuous-bore, the velocity for a certified map of the static limit.
         **settings
             poisson and tolerance, as for `at`.
 
         Returns
         -------
         xarray.Dataset
-            As `at` gives it, dims (amplitude, velocity).
+            Result of `at`, dims (amplitude, velocity).
 
         Raises
         ------
         InputError
-            As `at` does, and for less than two of them.
+            For a number of coordinates below 2, and as `at`.
         """
-        wanted = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
+        axes = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._periodic:
-            wanted["amplitude"] = amplitude
-        return self.at(**grid_axes(self._dataset, wanted), **settings)
+            axes["amplitude"] = amplitude
+        return self.at(**grid_axes(self._dataset, axes), **settings)
 
     def solve_for(
         self,
@@ -172,12 +179,12 @@ class Friction:
         poisson: float | None = None,
         within: tuple[float, float] | None = None,
     ) -> xr.Dataset:
-        """Amplitude or velocity at which friction is the wanted one, with its interval.
+        """Amplitude or velocity at which friction has a wanted value, with its interval.
 
         Parameters
         ----------
         wanted : number, sequence or DataArray
-            The wanted friction mu_macro, at least 0; a sequence becomes a dimension of this name.
+            Wanted mu_macro, at least 0; a sequence becomes the dimension `wanted`.
         velocity, amplitude : number, sequence or DataArray
             The known coordinate; the other one is searched.  continuous-bore has no amplitude, and
             its velocity is searched.
@@ -189,38 +196,39 @@ class Friction:
         Returns
         -------
         xarray.Dataset
-            Over the dimensions of the arguments and `root`: the place where the map has this
-            friction (NaN: none), and its `_low` and `_high`, between which friction is the wanted
-            one to within the error of the map; `bounded`, whether both ends lie inside the range.
-            Without `root`: `outcome`, an index into OUTCOMES.
+            Over the dimensions of the arguments and `root`: the searched coordinate at which the
+            map has the wanted friction (NaN: nowhere); with the suffixes `_low` and `_high` the
+            interval in which it has it to within its error; and `bounded`, True if both ends of the
+            interval lie inside the range.  Over the dimensions of the arguments alone: `outcome`,
+            an index into OUTCOMES.
 
         Raises
         ------
         InputError
             For both or neither of velocity and amplitude, and as `at`.
         """
-        known = {"velocity": velocity, "amplitude": amplitude}
-        known = {name: value for name, value in known.items() if value is not None}
-        if len(known) != (1 if self._periodic else 0):
-            allowed = "one of velocity and amplitude, the other one is looked for"
-            allowed = allowed if self._periodic else "none, the velocity is looked for"
-            raise InputError("solve_for", sorted(known), f"allowed is {allowed}")
-        name = "velocity" if "velocity" not in known else "amplitude"
+        others = {"velocity": velocity, "amplitude": amplitude}
+        others = {name: value for name, value in others.items() if value is not None}
+        if len(others) != (1 if self._periodic else 0):
+            allowed = "one of velocity and amplitude, and the other one is searched"
+            allowed = allowed if self._periodic else "none, and the velocity is searched"
+            raise InputError("solve_for", sorted(others), f"allowed is {allowed}")
+        name = "velocity" if "velocity" not in others else "amplitude"
         ends = inverse.ends_of(self._dataset, name, within)
         nodes = self._nodes(poisson)
         nu = poisson_within(nodes.poisson, poisson)
 
         def at(place: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            points = {name: place} | dict.fromkeys(known, other)
+            points = {name: place} | dict.fromkeys(others, other)
             value, error, _ = self._friction(nodes, nu, None, **points)
             return value, error
 
         parts = [labelled("wanted", wanted)]
-        parts += [labelled(name, value) for name, value in known.items()]
+        parts += [labelled(name, value) for name, value in others.items()]
         parts = xr.broadcast(*parts)
         values, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
-        found = inverse.search(at, values, other, ends)
-        return inverse.answer(name, parts[0], *found, self._motion)
+        intervals, outcome = inverse.search(at, values, other, ends)
+        return inverse.answer(name, parts[0], intervals, outcome, self._motion)
 
     # The map
 
@@ -246,7 +254,7 @@ class Friction:
         steady = amplitude is None
         if amplitude is None:
             amplitude = np.full(len(velocity), np.nan)
-        if not self._limits_known or cells.is_static(self._dataset):
+        if not self._has_limits or cells.is_static(self._dataset):
             answer = self._map_alone(nodes, velocity, amplitude, nu, tolerance)
         elif (table := self._table(nodes, nu)) is None:
             raise InputError("velocity", 0.0, "microslip.at needs nodes above 0 in the dataset")
@@ -261,24 +269,24 @@ class Friction:
         return value, error, source
 
     def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
-        """The points of the map, read once for as long as the dataset stays the same.
+        """The nodes of the map, read again only if the dataset has changed.
 
-        Reading them takes ten times as long as interpolating, and a dataset may be changed in
-        place, so the digest of all data is compared.
+        Reading them takes ten times as long as interpolating.  A dataset may be changed in place,
+        so that digests of all its data are compared.
         """
         digest = (_digest(self._dataset), poisson)
-        if digest[0] is None or self._known is None or self._known[0] != digest:
+        if digest[0] is None or self._read is None or self._read[0] != digest:
             nodes: Nodes | CellNodes
             if cells.is_certified(self._dataset):
                 nodes = cells.cells_of(self._dataset)
             else:
                 nodes = nodes_of(self._dataset, periodic=self._periodic, poisson=poisson)
-            refuse_values(nodes, 0.0 if self._limits_known else -1.0)
-            self._known, self._tables = (digest, nodes), {}
-        return self._known[1]
+            refuse_values(nodes, 0.0 if self._has_limits else -1.0)
+            self._read, self._tables = (digest, nodes), {}
+        return self._read[1]
 
     def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
-        """The map for one Poisson's ratio, see Nodes.table."""
+        """The map at one Poisson's ratio, see Nodes.table."""
         if (nu, still) not in self._tables:
             self._tables[nu, still] = nodes.table(nu, still=still)
         return self._tables[nu, still]
@@ -293,15 +301,19 @@ class Friction:
         nu: float,
         tolerance: float | None,
     ) -> Answer:
-        """The map alone: NaN and an infinite error outside of it, or InputError."""
+        """Friction from the map.
+
+        A point outside the map has the value NaN and an infinite error.  Without a tolerance it is
+        refused by ValueError.
+        """
         value, error = np.full(len(velocity), np.nan), np.full(len(velocity), np.inf)
         rows, outside = np.nan_to_num(amplitude), np.ones(len(velocity), bool)
         table, still = self._table(nodes, nu), self._table(nodes, nu, still=True)
         for part, chosen in ((table, velocity > 0.0), (still, velocity == 0.0)):
             if part is not None:
-                held = chosen & part.rows.holds(rows) & part.columns.holds(velocity)
-                value[held], error[held] = part.at(rows[held], velocity[held])
-                outside &= ~held
+                inside = chosen & part.rows.holds(rows) & part.columns.holds(velocity)
+                value[inside], error[inside] = part.at(rows[inside], velocity[inside])
+                outside &= ~inside
         if tolerance is None and outside.any():
             first = int(np.flatnonzero(outside)[0])
             part = still if velocity[first] == 0.0 else table
@@ -309,20 +321,21 @@ class Friction:
         return value, error, np.full(len(value), MAP)
 
     def _refuse_outside(self, part: Map | None, velocity: float, amplitude: float) -> None:
-        what = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
+        case = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
         if not beyond.is_alone(self._dataset):
-            what = f"{what} under a spring or of several contacts"
-        advice = f"no limit of {what} is known: with a tolerance the solver is asked"
+            case = f"{case} under a spring or of several contacts"
+        advice = f"no limit of {case} is known: give a tolerance, and the solver computes the point"
         if part is None:
-            raise ValueError(f"velocity = {velocity:g}: the map has none such; {advice}")
+            raise ValueError(f"velocity = {velocity:g}: the map has no such velocity; {advice}")
         axes = (("velocity", part.columns, velocity), ("amplitude", part.rows, amplitude))
-        for name, axis, given in axes:
-            if not axis.holds(np.array(given)):
+        for name, axis, value in axes:
+            if not axis.holds(np.array(value)):
                 low, high = axis.values[[0, -1]]
-                raise ValueError(f"{name} = {given:g}: allowed is {low:g} to {high:g}; {advice}")
+                raise ValueError(f"{name} = {value:g}: allowed is {low:g} to {high:g}; {advice}")
 
     def _note(self, error: np.ndarray, source: np.ndarray) -> dict[str, str]:
-        """{"note": text} where points outside the tabulated range have a larger error estimate."""
+        """{"note": text} if points outside the tabulated range have a larger error bound than the
+        map, else {}."""
         about = self._dataset.attrs
         try:
             usual = float(about.get("error", about.get("tolerance", 0.0)))
@@ -354,8 +367,8 @@ class Friction:
         limits = beyond.LIMITS[self._motion]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
-        # Outward from the nearest point on the edge of the map; above it, first down to where the
-        # limit for large amplitudes is the same.
+        # A point outside the map starts from the nearest point on its edge. A point above the map
+        # starts from the velocity at which the edge has the same limit for large amplitudes.
         wide = amplitude > widest
         below = np.where(
             wide, limits.same_limit(velocity, np.fmax(amplitude, widest), widest), velocity
@@ -364,14 +377,14 @@ class Friction:
             np.clip(amplitude, narrowest, widest), np.clip(below, slowest, fastest)
         )
         source = np.full(len(value), MAP)
-        held, ratio = np.fmin(amplitude, widest), np.full_like(value, nu)
+        row, ratio = np.fmin(amplitude, widest), np.full_like(value, nu)
         far = np.zeros_like(value)
         edge = table.columns.values, *table.last_row
         far[wide] = beyond.distances(limits, *edge, below[wide], widest)
         rules: tuple[tuple[np.ndarray, int, Callable, tuple, float], ...] = (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
-            (below < slowest, SLOWER, beyond.slower, (below, held, ratio), slowest),
-            (below > fastest, FASTER, beyond.faster, (below, held), fastest),
+            (below < slowest, SLOWER, beyond.slower, (below, row, ratio), slowest),
+            (below > fastest, FASTER, beyond.faster, (below, row), fastest),
             (wide, WIDER, beyond.wider, (far, velocity, amplitude), widest),
         )
         for where, code, rule, coordinates, end in rules:
@@ -394,33 +407,33 @@ class Friction:
     def _solve(
         self, answer: Answer, point: tuple[np.ndarray, ...], nu: float, tolerance: float
     ) -> None:
-        """Replace what is not good enough by what the solver says."""
+        """Replace answers with an error above the tolerance by solver results, in place."""
         value, error, source = answer
         path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
-        settings |= pulled_by(self._dataset)
+        settings |= drive_of(self._dataset)
         folder = str(Path(path).parent) if path else "results"
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            found = solved(folder, self._motion, velocity, size, **settings)
+            result = solved(folder, self._motion, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
-            if found.converged:
-                value[k], error[k] = found.mu_macro, found.mu_macro_error
+            if result.converged:
+                value[k], error[k] = result.mu_macro, result.mu_macro_error
 
 
 READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
-"""Variables that a map of nodes is made of; those of a certified map begin with "cell_"."""
+"""Variables of a map of nodes.  The variables of a certified map begin with "cell_"."""
 
 
 def _digest(dataset: xr.Dataset) -> bytes | None:
-    """Digest of what a map is made of; None if its numbers are not in memory."""
-    found = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
+    """Digest of the attributes and variables of a map; None if they are in chunks of dask."""
+    digest = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
     for name, part in dataset.variables.items():
         if name in READ or str(name).startswith("cell_"):
             if part.chunks:
                 return None
-            found.update(f"|{name} {part.dims} {part.dtype} {part.shape}|".encode())
-            found.update(part.values.tobytes())
-    return found.digest()
+            digest.update(f"|{name} {part.dims} {part.dtype} {part.shape}|".encode())
+            digest.update(part.values.tobytes())
+    return digest.digest()

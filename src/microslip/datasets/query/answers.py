@@ -1,4 +1,4 @@
-"""Answers of a map as a dataset: friction, a bound of its error, and the source of each value."""
+"""Variables and sources of an answer from a map."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ SLOW_EXPONENT = 2.0 / 3.0
 FAST_EXPONENT = 2.0
 """Power of 1 / velocity with which friction approaches 1 in fast sliding (Eqs 6 and 29)."""
 NARROW_EXPONENT = 1.0
-"""Power of the amplitude with which friction departs from 1."""
+"""Power of the amplitude to which 1 - mu_macro is proportional for small amplitudes."""
 WIDE_EXPONENT = 1.0
 """Power of 1 / amplitude with which friction approaches its limit for large amplitudes."""
 STEEPEST = 2.0
@@ -69,7 +69,8 @@ class Limits:
     large : callable
         Limit for large amplitudes.
     same_limit : callable
-        Velocity at which another amplitude has the same one (velocity, amplitude, other amplitude).
+        Velocity at which another amplitude has the same limit for large amplitudes, from velocity,
+        amplitude and other amplitude.
     drop : callable
         Upper bound of 1 - mu_macro.
     """
@@ -107,19 +108,19 @@ LIMITS = {
 
 
 def is_known(motion: str, pressure: str) -> bool:
-    """Whether limits of a motion under a pressure are proved."""
+    """True if limits of a motion under a pressure are proved."""
     return pressure == "hertz" and (motion in LIMITS or motion == "continuous-bore")
 
 
-def known_of(dataset: xr.Dataset) -> bool:
-    """Whether limits are proved for what a dataset holds: for one contact, at a given velocity."""
+def has_limits(dataset: xr.Dataset) -> bool:
+    """True if limits are proved for a dataset: one contact, prescribed velocity, known motion."""
     if not is_alone(dataset):
         return False
     return is_known(dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz"))
 
 
 def is_alone(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is of one contact that is moved at a velocity."""
+    """True for a dataset of one contact at a prescribed velocity."""
     return not {"drive", "contacts"} & set(dataset.attrs)
 
 
@@ -187,12 +188,23 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Largest distance from the limit for large amplitudes within a decade of velocities, (n,).
+    """Largest distance of friction from its limit for large amplitudes, at the edge of a map.
 
-    nodes, values, errors: the edge of a map at its largest amplitude, (m,); velocity: (n,).
+    Parameters
+    ----------
+    nodes, values, errors : numpy.ndarray, shape (m,)
+        Velocities, friction and its errors along the largest amplitude of the map.
+    velocity : numpy.ndarray, shape (n,)
+        Velocities; the nodes within a decade of each count.
+    widest : float
+        Largest amplitude of the map.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n,)
     """
     if not velocity.size:
-        return velocity  # the limit of the bore takes a while
+        return velocity  # the limit of the bore is expensive
     off = np.abs(values - limits.large(nodes, np.full_like(nodes, widest))) + errors
     away = np.abs(np.log10(np.clip(velocity, nodes[0], nodes[-1])[:, None] / nodes))
     near = (away <= 1.0) | (away == away.min(axis=1, keepdims=True))
@@ -218,7 +230,7 @@ def within_the_balance(
     velocity: np.ndarray,
     amplitude: np.ndarray,
 ) -> tuple:
-    """Any value and error, no worse than the energy balance allows; NaN stays what it is."""
+    """Clip values and errors to the bounds from the energy balance; NaN remains NaN."""
     low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
     value = np.clip(value, low, 1.0)
     reach = np.maximum(1.0 - value, value - low) + ROUNDING
@@ -226,6 +238,6 @@ def within_the_balance(
 
 
 def _within(low: np.ndarray, high: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A guess brought into its bracket, and how far the bracket reaches from there."""
+    """Clip a guess to its bracket; return it with its largest distance from the ends."""
     value = np.clip(guess, low, high)
     return value, np.maximum(high - value, value - low) + ROUNDING

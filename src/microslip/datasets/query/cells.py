@@ -1,4 +1,4 @@
-"""Answers from the cells of a certified map, in the shape in which a map of nodes gives them."""
+"""Interpolation in the cells of a certified map."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
-"""Velocities at which the edge of a map is looked at, for what lies beyond it."""
+"""Number of velocities at which the upper edge of a map is evaluated, for larger amplitudes."""
 
 
 def is_certified(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is one of a certified map."""
+    """True for the dataset of a certified map."""
     return certified_map.COORDINATES in dataset.attrs
 
 
 def is_static(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is a certified map of the static limit."""
+    """True for the dataset of a certified map of the static limit."""
     return is_certified(dataset) and "velocity" not in dataset.attrs.get("directions", "").split()
 
 
 @dataclass(frozen=True, eq=False)
 class CellTable:
-    """Friction in the cells of a map: what interpolation.Table is for a map of nodes.
+    """Friction in the cells of a certified map; has the methods of interpolation.Table.
 
     Attributes
     ----------
     coordinates : MapCoordinates or DriftCoordinates
     borders : numpy.ndarray, shape (k, directions, 2)
-        Where cells begin and end, scaled.
+        Lower and upper ends of the cells, in scaled coordinates.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
-        Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio; asinh of the
-        velocity of drift.
+        Friction at the nodes of the cells, over velocity, amplitude and perhaps Poisson's ratio;
+        in a map of drift asinh of the velocity.
     bounds : numpy.ndarray, shape (k,)
         Bound of the error in each cell.
     poisson : float, optional
@@ -66,12 +66,12 @@ class CellTable:
 
     @property
     def is_static(self) -> bool:
-        """Whether the map is of the static limit, where the velocity is no direction."""
+        """True for a map of the static limit, which has no direction of velocity."""
         return not self._velocity
 
     @cached_property
     def columns(self) -> Axis:
-        """The range of the velocity, in even ratios; 0 alone of the static limit."""
+        """Velocities over the range of the map, in even ratios; 0 for the static limit."""
         if not self._velocity:
             return Axis(np.zeros(1))
         slow, fast = self._velocity
@@ -85,15 +85,17 @@ class CellTable:
         return self.at(np.full_like(velocity, self.rows.values[-1]), velocity)
 
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and bounds of their errors at points inside, amplitudes and velocities of shape
-        (n,) each; NaN and infinity where a point that counts is not known."""
+        """Values and error bounds at amplitudes and velocities inside the map, shape (n,) each.
+
+        They are NaN and infinity in a cell with an unknown node.
+        """
         place = [column, row] if self._velocity else [row]
         if self.coordinates.poisson:
             place.append(np.full(len(row), self.poisson))
         return self.at_scaled(self.coordinates.scaled(*place))
 
     def at_scaled(self, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and bounds of their errors at scaled coordinates, shape (n, directions)."""
+        """Values and error bounds at scaled coordinates, shape (n, directions)."""
         value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
         for (begin, end), nodes, bound in zip(
             self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
@@ -122,14 +124,14 @@ Map = Table | CellTable
 
 @dataclass(frozen=True, eq=False)
 class CellNodes:
-    """The points of a certified map; what nodes.Nodes is for a map of nodes.
+    """Points and cells of a certified map; has the method `table` of nodes.Nodes.
 
     Attributes
     ----------
     poisson : numpy.ndarray, shape (1,) or (2,)
-        The only one, or the smallest and the largest.
+        The only Poisson's ratio, or the smallest and the largest.
     values, errors : numpy.ndarray, shape (n,)
-        mu_macro at the points and the bounds of its error; NaN and infinite: not known.
+        mu_macro at the points and its errors; NaN and infinity if unknown.
     cells : CellTable
     """
 
@@ -139,29 +141,33 @@ class CellNodes:
     cells: CellTable
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
+        """The map at a Poisson's ratio, for velocities above 0 or, with `still`, for velocity 0;
+        None if there is no such map."""
         if still != self.cells.is_static:
             return None
         return replace(self.cells, poisson=poisson)
 
 
 def cells_of(dataset: xr.Dataset) -> CellNodes:
-    """The map in the dataset of a certified map; raises InputError for what it has lost."""
+    """Read the dataset of a certified map.
+
+    Raises InputError with the name of a variable that is missing.
+    """
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
     drifts = certified_map.is_of_drift(dataset)
-    solved = ("velocity", "velocity_error") if drifts else ("mu_macro", "mu_macro_error")
-    wanted = (*solved, "poisson", "cell_node", "cell_error")
-    for name in (*wanted, *sum(names, ())):
+    quantity = ("velocity", "velocity_error") if drifts else ("mu_macro", "mu_macro_error")
+    names_needed = (*quantity, "poisson", "cell_node", "cell_error")
+    for name in (*names_needed, *sum(names, ())):
         if name not in dataset.variables:
             raise InputError(name, None, LOST)
-    values, errors = (dataset[name].values for name in solved)
-    picked = dataset["cell_node"].values.astype(int)
-    if picked.max() >= len(values):
-        raise InputError("point", len(values), "an answer needs all points of the dataset")
+    values, errors = (dataset[name].values for name in quantity)
+    cell_nodes = dataset["cell_node"].values.astype(int)
+    if cell_nodes.max() >= len(values):
+        raise InputError("point", len(values), "allowed are all points of the dataset")
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
     interpolated = np.arcsinh(values) if drifts else values
-    nodes = interpolated[picked].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    nodes = interpolated[cell_nodes].reshape(-1, *(n + 1 for n in coordinates.degrees))
     bounds = dataset["cell_error"].values
     cells = CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds)
     poisson = coordinates.poisson or np.atleast_1d(dataset["poisson"].values)
@@ -172,6 +178,6 @@ def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     try:
         return certified_map.coordinates_in(dataset)
     except (KeyError, TypeError, ValueError):
-        given = dataset.attrs[certified_map.COORDINATES]
-        allowed = "is none of this version's; allowed: a certified map that it made: make it again"
-        raise InputError(certified_map.COORDINATES, given, allowed) from None
+        text = dataset.attrs[certified_map.COORDINATES]
+        allowed = "is of another version; allowed: a certified map of this version: make it again"
+        raise InputError(certified_map.COORDINATES, text, allowed) from None

@@ -15,25 +15,28 @@ from microslip.theory import hertz
 
 ALLOWED = "allowed is a finite number >= 0, or several"
 DIGITS = 6
-"""Significant digits of evenly spaced coordinates, as in a configuration."""
+"""Number of significant digits of evenly spaced coordinates, as in a configuration."""
 
 
-def labelled(name: str, given: object) -> xr.DataArray:
-    """A DataArray of numbers >= 0; sequences get a dimension of their name."""
-    array = given if isinstance(given, xr.DataArray) else _array(name, given)
+def labelled(name: str, value: object) -> xr.DataArray:
+    """Convert an argument to a DataArray of numbers >= 0; a sequence becomes the dimension `name`.
+
+    Values in chunks of dask are not checked.
+    """
+    array = value if isinstance(value, xr.DataArray) else _array(name, value)
     if array.dtype.kind not in "iuf":
-        raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
+        raise InputError(name, value, f"{ALLOWED}, not of type {array.dtype}")
     if isinstance(array, xr.DataArray) and array.chunks is not None:
-        return array  # its numbers are checked when they are computed
+        return array
     try:
         hertz.checked(name, np.asarray(array, float))
     except ValueError:
-        raise InputError(name, given, ALLOWED) from None
+        raise InputError(name, value, ALLOWED) from None
     if isinstance(array, xr.DataArray):
         return array
     if array.ndim > 1:
         allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
-        raise InputError(name, given, allowed)
+        raise InputError(name, value, allowed)
     dims = (name,) * array.ndim
     return xr.DataArray(array, dims=dims, coords={name: array} if dims else {})
 
@@ -78,21 +81,21 @@ def evaluate(
     )
 
 
-def _array(name: str, given: Any) -> np.ndarray:
-    """An argument as an array, of floats if all of its values are plain numbers.
+def _array(name: str, value: Any) -> np.ndarray:
+    """Convert an argument to an array, of floats if all its values are plain numbers.
 
-    NumPy also converts texts, times, masked values and quantities to floats without a warning.
+    NumPy would convert texts, times, masked values and quantities without a warning.
     """
-    if hasattr(given, "units"):
-        raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")
-    if np.ma.is_masked(given):
-        raise InputError(name, given, f"{ALLOWED}, none of them masked")
+    if hasattr(value, "units"):
+        raise InputError(name, value, f"{ALLOWED}, dimensionless, without a unit")
+    if np.ma.is_masked(value):
+        raise InputError(name, value, f"{ALLOWED}, none of them masked")
     try:
-        array = np.asarray(given)
-        if array.dtype.kind in "iuf" or all(_is_plain(one) for one in array.flat):
+        array = np.asarray(value)
+        if array.dtype.kind in "iuf" or all(_is_plain(entry) for entry in array.flat):
             return array.astype(float)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(name, given, ALLOWED) from None
+        raise InputError(name, value, ALLOWED) from None
     return array
 
 
@@ -101,21 +104,36 @@ def _is_plain(value: object) -> bool:
 
 
 def grid_axes(dataset: xr.Dataset, request: dict[str, Any]) -> dict[str, Any]:
-    """Coordinates of a regular grid; request: by name their number, or the coordinates themselves.
+    """Coordinates of a regular grid over the range of a dataset.
 
-    Velocities have equal ratios, other axes equal steps. Raises InputError for a number below 2.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset with the coordinates.
+    request : dict
+        Number of coordinates, or the coordinates, by name.  Velocities get equal ratios, other axes
+        equal steps.
+
+    Raises
+    ------
+    InputError
+        For a number below 2.
     """
     return {
-        name: _spaced(dataset, name, int(given)) if _is_count(name, given) else given
-        for name, given in request.items()
+        name: _spaced(dataset, name, int(value)) if _is_count(name, value) else value
+        for name, value in request.items()
     }
 
 
-def _is_count(name: str, given: object) -> bool:
-    if not isinstance(given, Integral) or isinstance(given, bool):
+def _is_count(name: str, value: object) -> bool:
+    if not isinstance(value, Integral) or isinstance(value, bool):
         return False
-    if given < 2:
-        raise InputError(name, given, "allowed is how many, 2 or more, or a sequence of which ones")
+    if value < 2:
+        raise InputError(
+            name,
+            value,
+            "allowed is a number of 2 or more, or a sequence of coordinates",
+        )
     return True
 
 

@@ -17,8 +17,10 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
 
 STATES = ("stays", "drifts", "undecided", "runs away")
-"""States of a contact, by their code in the variable `state`; undecided: the force equals the
-threshold within the error of the threshold."""
+"""States of a contact, by their code in the variable `state`.
+
+undecided: the force equals the threshold to within the error of the threshold.
+"""
 (STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
 DRIFT = {
     "velocity": attributes(float, "mean forward velocity"),
@@ -28,7 +30,7 @@ DRIFT = {
 }
 """Attributes of the variables of an answer."""
 THRESHOLD_ERROR = 1e-12
-"""Error of the closed forms for thresholds."""
+"""Rounding error of the closed forms of the thresholds."""
 
 
 class Drift:
@@ -40,37 +42,39 @@ class Drift:
     def __init__(self, dataset: xr.Dataset):
         if not certified_map.is_of_drift(dataset):
             raise ValueError(
-                "no certified map of drift: allowed is certified_NAME of a sweep over forces that "
-                "says adaptive"
+                "no certified map of drift: allowed is certified_NAME of a sweep over forces "
+                "with the key adaptive"
             )
         self._dataset = dataset
 
     def at(self, force: object, amplitude: object) -> xr.Dataset:
         """Mean velocity under a force and a bound of its error.
 
-        The map answers where the contact drifts.  Below the threshold it stays where it is, and
-        from the force 1 on it runs away, whatever the map.
+        The velocity is 0 below the threshold of the force and infinite from the force 1 on.
+        Between them the contact drifts, and the velocity comes from the map.
 
         Parameters
         ----------
         force, amplitude : number, sequence or DataArray
-            >= 0.  A sequence becomes a dimension of the answer; DataArrays broadcast by their
-            dimensions.  Where one is in chunks of dask, so is the answer.
+            Dimensionless, at least 0.  A sequence becomes a dimension of the answer; DataArrays
+            broadcast by their dimensions.  If one of them is in chunks of dask, the answer is in
+            chunks, too.
 
         Returns
         -------
         xarray.Dataset
-            velocity, velocity_error, threshold of the force, and state, an index into STATES with
-            its meanings in flag_meanings.
+            velocity, velocity_error, threshold (the force up to which the contact stays), and
+            state, an index into STATES with its meanings in flag_meanings.
 
         Raises
         ------
         InputError
-            Naming the argument, for what is no such number, for what the dataset has lost, and for
-            what drifts beyond the largest force or the amplitudes of the map.
+            For an argument that is not allowed, for a dataset without a variable that is needed,
+            and for a contact that drifts outside the range of the map.  It names the argument or
+            the variable.
         """
         table = cells_of(self._dataset).cells
-        # An outer product has the order of the datasets.
+        # An outer product has the order of dimensions of the datasets.
         coordinates = {
             "amplitude": labelled("amplitude", amplitude),
             "force": labelled("force", force),
@@ -81,22 +85,22 @@ class Drift:
         return dataset_of(parts, DRIFT, motion, poisson)
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
-        """Velocity and a bound of its error on a regular grid, for figures and plain xarray.
+        """Mean velocity and a bound of its error on a regular grid.
 
         Parameters
         ----------
         force, amplitude : int or sequence
-            How many of them, in equal steps over the range of the map; or which ones.
+            Number of coordinates, in equal steps over the range of the map; or the coordinates.
 
         Returns
         -------
         xarray.Dataset
-            As `at` gives it, dims (amplitude, force).
+            Result of `at`, dims (amplitude, force).
 
         Raises
         ------
         InputError
-            As `at` does, and for less than two of them.
+            For a number of coordinates below 2, and as `at`.
         """
         return self.at(**grid_axes(self._dataset, {"force": force, "amplitude": amplitude}))
 
@@ -111,7 +115,7 @@ def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[
     state[(force < least - THRESHOLD_ERROR) | (force == 0.0)] = STAYS
     state[force >= 1.0] = RUNS_AWAY
     moves = (state == DRIFTS) | (state == UNDECIDED)
-    _refuse_beyond(coordinates, force[moves], amplitude[moves])
+    _refuse_outside(coordinates, force[moves], amplitude[moves])
     velocity, error = np.zeros((2, len(force)))
     velocity[state == RUNS_AWAY] = np.inf
     scaled = coordinates.scaled(force[moves], amplitude[moves], least[moves])
@@ -119,18 +123,20 @@ def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[
     return velocity, error, least, state
 
 
-def _refuse_beyond(coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:
-    """Raise InputError, naming the argument, for the first place beyond the map that drifts."""
+def _refuse_outside(
+    coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray
+) -> None:
+    """Raise InputError with the name of the argument for the first point outside the map."""
     low, high = coordinates.amplitude
     for name, values, ends in (
         ("force", force, (0.0, coordinates.force)),
         ("amplitude", amplitude, (low, high)),
     ):
-        beyond = values[(values < ends[0]) | (values > ends[1])]
-        if beyond.size:
+        outside = values[(values < ends[0]) | (values > ends[1])]
+        if outside.size:
             raise InputError(
                 name,
-                float(beyond[0]),
-                f"allowed is {ends[0]:g} to {ends[1]:g} where the contact drifts: the map ends "
-                "there, and microslip.solve goes on",
+                float(outside[0]),
+                f"allowed is {ends[0]:g} to {ends[1]:g}, the range of the map, where the contact "
+                "drifts; microslip.solve computes other points",
             )

@@ -36,7 +36,7 @@ AT_A_TIME = 1000
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
 Friction = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Friction and its error at places along the searched axis and other coordinates, shape (n,)."""
+"""Function of the searched and the other coordinate, shape (n,) each: friction and its error."""
 
 
 def ends_of(
@@ -103,7 +103,8 @@ def _search(
     inside = ~(np.abs(off) > error)  # an unknown value may be the requested one
     crosses = np.sign(off[:, :-1]) * np.sign(off[:, 1:]) < 0.0
     # A run of cells may hold the requested friction: two cells belong together where the node
-    # between them is inside. The nodes at the ends of a run are outside, except at `places[0, -1]`.
+    # between them is inside. The nodes at the ends of a run are outside, except at the ends of the
+    # range.
     touched = inside[:, :-1] | inside[:, 1:] | crosses
     row, first = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (1, 0))))
     last = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (0, 1))))[1] + 1
@@ -136,16 +137,16 @@ def _search(
         neighbour = np.clip(node + step, 0, len(places) - 1)
         inner = np.where(inside[row, neighbour], places[neighbour], place)
         end = np.where(inside[row, node] | np.isnan(inner), places[node], inner)
-        sought = ~inside[row, node]
-        pair = np.sort([places[node][sought], end[sought]], axis=0)
-        root, success = _roots(excess, *pair, points, sought)
-        end[sought] = np.where(success, root, end[sought])  # an error of 0 leaves no room
+        open_end = ~inside[row, node]
+        pair = np.sort([places[node][open_end], end[open_end]], axis=0)
+        root, success = _roots(excess, *pair, points, open_end)
+        end[open_end] = np.where(success, root, end[open_end])  # an error of 0 leaves no room
         ends.append(end)
     bounded = ~inside[row, first] & ~inside[row, last]
     number = np.bincount(row, minlength=count)
-    known = np.bincount(row, np.isfinite(place), count) > 0
+    crosses_map = np.bincount(row, np.isfinite(place), count) > 0
     outcome = np.select(
-        [known & (number > 1), known, number > 0, off[:, 0] > 0.0],
+        [crosses_map & (number > 1), crosses_map, number > 0, off[:, 0] > 0.0],
         [SEVERAL, FOUND, POSSIBLE, LARGER],
         SMALLER,
     )

@@ -1,8 +1,9 @@
-"""The nodes of a map: what a dataset, or a part of one, knows, as a table for a Poisson's ratio.
+"""The nodes of a map, from the dataset of a sweep or a selection of it.
 
-Between two Poisson's ratios every node is interpolated as along the other axes: by a cubic through
-the nearest ratios, or what fewer of them allow.  Its error holds those of the nodes and the largest
-miss when ratios are left out, of two ratios how far their values are apart.
+Between two Poisson's ratios every node is interpolated as along the other axes, by a cubic through
+the nearest ratios, or a polynomial of lower degree if there are fewer than four.  The error is the
+sum of the errors of the nodes and the largest difference from leaving ratios out (see
+`interpolation`), or from one ratio to the other if there are two.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ if TYPE_CHECKING:
     from microslip.datasets.query.cells import CellNodes
 
 SAME = 1e-12
-"""Poisson's ratios that differ by less are one."""
+"""Difference below which two Poisson's ratios, or two values of friction, count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Values and their errors at the nodes of a map; NaN: not known.
+    """Values and their errors at the nodes of a map; NaN: unknown.
 
     Attributes
     ----------
@@ -44,7 +45,8 @@ class Nodes:
     errors: np.ndarray
 
     def table(self, poisson: float, *, still: bool = False) -> Table | None:
-        """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
+        """The map at a Poisson's ratio, for velocities above 0 or, with `still`, for velocity 0;
+        None if there is no such map."""
         chosen = self.velocity == 0.0 if still else self.velocity > 0.0
         if not chosen.any():
             return None
@@ -62,31 +64,31 @@ class Nodes:
         value = np.tensordot(weights, self.values[index], 1)
         flat = self.values.reshape(len(self.poisson), -1)
         misses = axis.misses(flat).reshape(self.values.shape)
-        # the misses of the nodes around the cell, as along the other axes
+        # the nodes around the cell, as along the other axes
         around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
-        left = 4.0 * share * (1.0 - share) * largest_around(around)
-        return value, self.errors[index].max(axis=0) + left
+        error = 4.0 * share * (1.0 - share) * largest_around(around)
+        return value, self.errors[index].max(axis=0) + error
 
 
 def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> Nodes:
-    """The nodes that a dataset of a sweep, or a part of one, knows.
+    """Read the nodes of the dataset of a sweep, or of a selection of it.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        mu_macro and mu_macro_error over velocity, amplitude if the motion is periodic, and poisson;
-        one of a single value may be a coordinate without a dimension.  Nodes that did not converge
-        are not known; without `converged` these are those whose error is above the `tolerance` of
-        the dataset's attributes.
+        mu_macro and mu_macro_error over velocity, poisson and, if the motion is periodic,
+        amplitude; an axis of one value may be a coordinate without a dimension.  Nodes that did not
+        converge are unknown; without the variable `converged` these are the nodes with an error
+        above the attribute `tolerance`.
     periodic : bool
-        Whether the motion has an amplitude.
+        True if the motion has an amplitude.
     poisson : float, optional
-        What to take for Poisson's ratio where the dataset has lost it.
+        Poisson's ratio of a dataset without this coordinate.
 
     Raises
     ------
     InputError
-        With the name of what the dataset has lost, or of a dimension too many.
+        With the name of a variable that is missing, or of a dimension that is not allowed.
     """
     axes = ("poisson", "amplitude", "velocity") if periodic else ("poisson", "velocity")
     if "poisson" not in dataset.coords and poisson is not None:
@@ -97,12 +99,12 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
         if dataset[name].dtype.kind not in "iuf":
             raise InputError(name, f"of type {dataset[name].dtype}", f"{NEEDS} numbers there")
     if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
-        given = f"over {dataset['poisson'].dims}"
-        raise InputError("poisson", given, f"{NEEDS} one, or an axis of them")
-    chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset)).compute()
+        dims = f"over {dataset['poisson'].dims}"
+        raise InputError("poisson", dims, f"{NEEDS} one, or an axis of them")
+    chosen = dataset[["mu_macro", "mu_macro_error"]].assign(is_known=_converged(dataset)).compute()
     for extra in (dim for dim in chosen.dims if dim not in axes):
-        given = f"{chosen.sizes[extra]} entries"
-        raise InputError(str(extra), given, f"{NEEDS} one of them: select it")
+        entries = f"{chosen.sizes[extra]} entries"
+        raise InputError(str(extra), entries, f"{NEEDS} one of them: select it")
     for dim in axes:
         if dim not in chosen.dims:
             chosen = chosen.expand_dims(dim)
@@ -111,7 +113,7 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     _refuse_contradictions(chosen, axes)
     chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
     values, errors = (
-        chosen[name].where(chosen["known"]).values.astype(float)
+        chosen[name].where(chosen["is_known"]).values.astype(float)
         for name in ("mu_macro", "mu_macro_error")
     )
     if not periodic:
@@ -124,18 +126,21 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
 
 
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
-    """Raise InputError for equal nodes, as after a join, with mu_macro beyond their errors."""
-    value, error = (chosen[name].where(chosen["known"]) for name in ("mu_macro", "mu_macro_error"))
+    """Raise InputError for two nodes at the same place whose mu_macro differ by more than their
+    errors, as after a join."""
+    value, error = (
+        chosen[name].where(chosen["is_known"]) for name in ("mu_macro", "mu_macro_error")
+    )
     for axis in (axis for axis in axes if chosen.indexes[axis].has_duplicates):
         low, high = (value - error).groupby(axis).max(), (value + error).groupby(axis).min()
         apart = (low > high).any([dim for dim in low.dims if dim != axis])
         if apart.any():
-            said = "is there twice with mu_macro that differ by more than their errors"
-            raise InputError(axis, float(low[axis][apart][0]), f"{said}: keep one")
+            allowed = "is there twice with mu_macro that differ by more than their errors: keep one"
+            raise InputError(axis, float(low[axis][apart][0]), allowed)
 
 
 def _refuse_impossible(nodes: Nodes) -> None:
-    """Coordinates, or values by more than their errors, that no sweep can have."""
+    """Raise InputError for coordinates and errors outside their ranges."""
     for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
         axis = getattr(nodes, name)
         wrong = axis[~(np.isfinite(axis) & (axis >= 0.0) & (axis <= top))]
@@ -159,10 +164,10 @@ def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
         raise InputError("mu_macro", float(nodes.values[off][0]), allowed)
 
 
-def _known(dataset: xr.Dataset) -> xr.DataArray:
-    """Which nodes converged."""
+def _converged(dataset: xr.Dataset) -> xr.DataArray:
+    """True for the nodes that converged."""
     if "converged" in dataset:
-        return dataset["converged"] == 1  # not what a join has filled in
+        return dataset["converged"] == 1  # a join fills gaps with NaN
     if "tolerance" not in dataset.attrs:
         raise InputError("converged", None, LOST)
     tolerance = dataset.attrs["tolerance"]
@@ -173,9 +178,17 @@ def _known(dataset: xr.Dataset) -> xr.DataArray:
         raise InputError("tolerance", tolerance, allowed) from None
 
 
-def poisson_within(known: np.ndarray, poisson: float | None) -> float:
-    """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
-    low, high = float(known[0]), float(known[-1])
+def poisson_within(ratios: np.ndarray, poisson: float | None) -> float:
+    """Check a Poisson's ratio against the range of a map.
+
+    Parameters
+    ----------
+    ratios : numpy.ndarray
+        Poisson's ratios of the map, ascending.
+    poisson : float, optional
+        The argument; None: the only ratio of the map.
+    """
+    low, high = float(ratios[0]), float(ratios[-1])
     many = high > low
     allowed = f"allowed is {low:g}" + (f" to {high:g}" if many else ", the dataset's only one")
     if poisson is None and many:

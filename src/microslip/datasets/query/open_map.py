@@ -1,12 +1,9 @@
-"""Questions to a finished sweep.
+"""Opening of the datasets of sweeps.
 
-    friction = microslip.open_map("transverse")
-    friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
-    friction.microslip.at(velocity=0.05, amplitude=0.8)       # a value and a bound of its error
-    microslip.open_map("transverse", group="history")         # what has axes of its own
-
-`interpolation` holds the rule and its error, `beyond` what is known where a map ends, `accessor`
-asks both.
+friction = microslip.open_map("transverse")
+friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
+friction.microslip.at(velocity=0.05, amplitude=0.8)       # interpolated, with an error bound
+microslip.open_map("transverse", group="history")         # a group with axes of its own
 """
 
 from __future__ import annotations
@@ -25,7 +22,7 @@ from microslip.foundation.files import refuse_no_folder
 from microslip.sweeps.stamps import is_damaged
 
 SOLVED = {"mu_macro", "velocity_error"}
-"""Variables of which the dataset of a sweep has one at least."""
+"""Variables of a sweep.  Its dataset has at least one of them."""
 
 
 def open_map(
@@ -35,33 +32,33 @@ def open_map(
     *,
     group: str | None = None,
 ) -> xr.Dataset:
-    """Open the dataset of a sweep, with the accessor `microslip` for certified answers.
+    """Open the dataset of a sweep, which has the accessor `microslip`.
 
     Parameters
     ----------
     name : str or path
-        transverse, bore, continuous_bore or another sweep of the configuration, or the path of such
-        a dataset.
+        transverse, bore, continuous_bore or another sweep of the configuration, or the path of its
+        dataset.
     results : str or path
-        Folder that the workflow wrote to.
+        Folder with the results of the workflow.
     chunks : as for xarray.open_dataset
-        {} for dask.
+        {} for arrays of dask.
     group : str, optional
-        Part of the file with axes of its own, instead of the map: velocity_curves and
-        amplitude_curves (limits from theory on fine axes), history (Figure 1), field (Figure 3),
-        transients (Figure 5), as far as the sweep has them.
+        Group of the file to open in place of the map: velocity_curves and amplitude_curves (limits
+        from theory on fine axes), history (Figure 1), field (Figure 3) or transients (Figure 5).  A
+        sweep may have some of them.
 
     Returns
     -------
     xarray.Dataset
-        Dimensionless; a group has the attributes of the map besides its own title.
+        Dimensionless.  A group has the attributes of the map and a title of its own.
 
     Raises
     ------
     InputError
-        For another name or group.
+        For an unknown name or group.
     CacheError
-        One line, for a file that is missing, damaged, or not from a sweep.
+        For a file that is missing, damaged or not the dataset of a sweep; the message is one line.
     """
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")
@@ -71,7 +68,7 @@ def open_map(
     if os.path.exists(results) and not os.path.isdir(results):
         raise InputError("results", results, "is not a folder; allowed: the name of a folder")
     try:
-        return _found(name, results, chunks, group)
+        return _dataset(name, results, chunks, group)
     except OSError as error:  # damage inside a file, or a name that no file can have
         why = " ".join((error.strerror or str(error)).split())[:120]
         raise CacheError(
@@ -80,7 +77,7 @@ def open_map(
         ) from None
 
 
-def _found(
+def _dataset(
     name: str | os.PathLike[str], results: str | os.PathLike[str], chunks: object, group: str | None
 ) -> xr.Dataset:
     path = Path(name)
@@ -89,7 +86,7 @@ def _found(
         if str(name) not in MOTION_OF_SWEEP and not path.is_file():
             allowed = (
                 f"{near_miss(name, MOTION_OF_SWEEP)}allowed is {', '.join(MOTION_OF_SWEEP)}, "
-                f"another sweep of which {results} has the dataset, or a path that ends in .nc"
+                f"another sweep with a dataset in {results}, or a path that ends in .nc"
             )
             raise InputError("name", name, allowed)
     if not path.is_file():

@@ -1,4 +1,4 @@
-"""Solver results where a map is not accurate enough, stored next to the map if possible."""
+"""Solver results for points at which a map is not accurate enough."""
 
 from __future__ import annotations
 
@@ -16,23 +16,25 @@ from microslip.sweeps.solve_stored import solve_stored
 
 
 def solved(folder: str, *point: Any, **settings: Any) -> Result:
-    """The result of solve_stored, kept in the folder, or in a temporary one if that fails."""
+    """Call solve_stored with a folder of results, or a temporary folder if that cannot be
+    written."""
     try:
         return solve_stored(*point, results=folder, **settings)
     except CacheError as error:
-        warnings.warn(f"answers are not kept: {error}", stacklevel=4)
+        warnings.warn(f"results are not stored: {error}", stacklevel=4)
         return solve_stored(*point, results=_spare_folder().name, **settings)
 
 
-def pulled_by(dataset: xr.Dataset) -> dict[str, object]:
-    """The drive and the contacts of a dataset, as for microslip.solve; {} for a velocity.
+def drive_of(dataset: xr.Dataset) -> dict[str, object]:
+    """Drive and contacts of a dataset, as arguments of microslip.solve; {} for one contact at a
+    prescribed velocity.
 
-    Raises InputError if the dataset has none or several values of an argument of its drive.
+    Raises InputError if the dataset has no value or several values of an argument of its drive.
     """
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
     for name in names:
         if name not in dataset.coords or dataset[name].ndim:
-            allowed = "microslip.at needs one to ask the solver: keep it as a coordinate"
+            allowed = "microslip.at needs one value to call the solver: keep it as a coordinate"
             raise InputError(name, None, allowed)
     contacts = {"contacts": dataset.attrs["contacts"]} if "contacts" in dataset.attrs else {}
     return {name: float(dataset[name]) for name in names} | contacts
@@ -40,5 +42,5 @@ def pulled_by(dataset: xr.Dataset) -> dict[str, object]:
 
 @cache
 def _spare_folder() -> TemporaryDirectory:
-    """A folder that is gone when Python ends."""
+    """A folder that exists until Python ends."""
     return TemporaryDirectory(prefix="microslip-")

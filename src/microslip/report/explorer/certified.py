@@ -59,7 +59,7 @@ def packed(dataset: xr.Dataset) -> dict:
         "cells": plain(dataset["cell_node"].values.ravel().astype(int)),
         "borders": plain(np.asarray(table.borders).ravel()),
         "bounds": plain(table.bounds),
-        "has_limits": beyond.known_of(dataset),
+        "has_limits": beyond.has_limits(dataset),
         "edge": plain(table.columns.values),
         "rule": gauss_rule(),
     }
