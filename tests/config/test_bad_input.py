@@ -1,4 +1,4 @@
-"""Bad input: one line that says what is wrong with what, before any work starts."""
+"""Bad input of the command line and configurations: one line, before any work starts."""
 
 import os
 import re
@@ -21,7 +21,7 @@ SOURCE = str(Path(microslip.__file__).parent.parent)
 
 @pytest.fixture
 def nothing_runs(monkeypatch):
-    """Whatever would compute an answer fails the test."""
+    """Functions of the solver that fail the test."""
 
     def work(*_, **__):
         raise AssertionError("work has started")
@@ -33,7 +33,7 @@ def nothing_runs(monkeypatch):
 
 @pytest.fixture
 def there(tmp_path, monkeypatch):
-    """The folder that commands run in, with what bad input may point to; nothing may be added."""
+    """The working directory, with targets of bad input; commands must not change it."""
     (tmp_path / "a-file").write_text("kept\n")
     (tmp_path / "lost-link").symlink_to("nowhere/at/all")
     monkeypatch.chdir(tmp_path)
@@ -44,7 +44,7 @@ def there(tmp_path, monkeypatch):
 
 
 def refused(arguments):
-    """Exit code of the command line, called in this process."""
+    """Exit code of a command line, run in this process."""
     try:
         return cli.main(shlex.split(arguments))
     except SystemExit as error:
@@ -61,7 +61,7 @@ def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, c
 
 
 def test_every_option_is_given_a_bad_value():
-    """A new option needs bad input of its own."""
+    """Every option occurs in COMMAND_LINES."""
     motion = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
     motion = motion._subparsers._group_actions[0].choices["transverse"]
     options = {name for name in motion._option_string_actions if name.startswith("--")}
@@ -142,7 +142,7 @@ MERGED = "a0: &a0 {x: 1}\n" + "".join(
 
 @pytest.mark.parametrize("text", [BOMB, MERGED], ids=["lists", "merged"])
 def test_aliases_that_stand_for_millions_of_values_are_refused(text, tmp_path, monkeypatch):
-    """... before anything is made of them."""
+    """The values are refused before they are constructed."""
     monkeypatch.setattr(
         StrictLoader, "construct_document", lambda *args: pytest.fail("it was constructed")
     )

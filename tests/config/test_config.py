@@ -63,7 +63,7 @@ extended:
 
 
 def test_mappings_are_merged_as_yaml_says(tmp_path):
-    """Keys beside << replace what is merged, in a mapping that is merged again, too."""
+    """Keys beside << replace merged keys, also in a mapping that is merged again."""
     found = load(saved(tmp_path, MERGED))
     assert found.sweeps["bore"].velocity == (2.0,)
     assert found.sweeps["bore"].amplitude == (0.0, 1.0)
@@ -75,7 +75,7 @@ def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
     text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
     found = load(saved(tmp_path, text))
     assert found.points_per_job == dict.fromkeys(found.sweeps, 3) | {"transverse": 7}
-    # No dataset depends on it.
+    # Datasets do not depend on it.
     plain = load(saved(tmp_path, GOOD))
     assert found.of_sweep("transverse") == plain.of_sweep("transverse")
 
@@ -110,10 +110,10 @@ def test_the_default_configuration_is_that_of_the_paper():
         assert (sweep.amplitude[0], sweep.amplitude[-1]) == (0.0, top)
         assert (sweep.velocity[0], sweep.velocity[-1]) == (1e-3, 10.0)
     assert {0.1, 1.0, 10.0} <= set(found.sweeps["continuous_bore"].velocity)
-    # It names every method that can be run; two of them cannot be varied.
+    # It names all methods; the atlas cannot vary two of them.
     assert set(found.accuracy.methods) == set(method_names.names())
     assert set(found.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
-    # Its studies are the defaults.
+    # Its studies equal the defaults.
     plain = config.from_mapping(PAPER)
     for study in ("accuracy", "stability", "claims", "propulsion"):
         one, other = getattr(plain, study), getattr(found, study)
@@ -146,7 +146,7 @@ def test_titles_that_cannot_be_drawn_or_written_are_refused(title):
 
 
 def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
-    """Written by docs/make_configuration_tables.py."""
+    """config/README.md contains the output of docs/make_configuration_tables.py."""
     copy = tmp_path / "README.md"
     shutil.copy(ROOT / "config" / "README.md", copy)
     subprocess.run(

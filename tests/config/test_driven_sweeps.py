@@ -1,4 +1,4 @@
-"""The key `drives`: sweeps of what a force or a spring pulls, from the file to the dataset."""
+"""The key `drives`: sweeps under a force or a spring, from the configuration to the dataset."""
 
 import pytest
 import xarray as xr
@@ -38,7 +38,7 @@ def test_a_force_stands_in_the_place_of_the_velocity():
 
 
 def test_what_is_moved_is_asked_for_as_before():
-    """Names of results are hashes of requests: no drive leaves no trace in one."""
+    """Keys of results are hashes of requests: a request without a drive has no key for it."""
     (request,) = batches.PointRequests(load.from_mapping({"sweeps": PAPER}).sweeps["transverse"])
     names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
     assert set(request) == names | {"poisson", "amplitude", "velocity"}
@@ -102,7 +102,7 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
         assert float(point.velocity) == asked.velocity > 0.0
         assert float(point.velocity_error) == asked.velocity_error
         assert float(point.mu_macro) == 0.6
-        # the static limits stand beside it, and nothing that is said of a velocity
+        # the limits over the amplitude are in the dataset, those over a velocity are not
         assert float(point.mu_static) > 0.5 and "mu_slider" not in data
         assert float(data.velocity.sel(amplitude=0.5, force=0.2)) == 0.0
         away = data.sel(force=1.0)
@@ -155,7 +155,7 @@ def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path)
     (request,) = batches.PointRequests(sweep)
     assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
     points = [batches.answer(request, store)[0]]
-    assert points[0]["result"]["velocity"] == 0.0  # below the static limit, 0.7^1.5
+    assert points[0]["result"]["velocity"] == 0.0  # the force is below the static limit, 0.7^1.5
     path = tmp_path / "pair.nc"
     sweep_dataset.write_sweep(path, sweep, points, [], given.of_sweep("pair"))
     with xr.open_dataset(path) as data:
@@ -165,7 +165,7 @@ def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path)
         "longitudinal", None, 0.3, force=0.2, contacts=PAIR["contacts"], results=tmp_path
     )
     assert stored.contacts == request["contacts"] and stored.converged
-    assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # found, not computed again
+    assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # the stored result is used
     with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': contact 1: in it"):
         configured(pair=PAIR | {"contacts": "phase="})
     unequal = {"motion": "normal", "contacts": "load=2;load=1"}

@@ -1,4 +1,4 @@
-"""Sweeps of other motions and pressures: configured, asked for, collected, found again."""
+"""Sweeps of other motions and pressures: configuration, requests, files and datasets."""
 
 import json
 import subprocess
@@ -69,7 +69,7 @@ def test_a_figure_has_room_for_so_many():
     lines = CIRCLE | {"velocity": [0.1]}
     with pytest.raises(load.ConfigError, match="allowed: up to 8"):
         configured(**{f"a{i}": lines for i in range(9)})
-    # every one of Poisson's ratios is drawn
+    # each Poisson's ratio is drawn
     ratios = CIRCLE | {"poisson": [0, 0.3, 0.5]}
     configured(**{f"a{i}": ratios for i in range(4)})
     with pytest.raises(load.ConfigError, match=r"loops has 15 sweeps at their Poisson's .* 12"):
@@ -145,7 +145,7 @@ EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
 
 
 def with_pressure(folder, pressure):
-    """A configuration in a file of a folder, with one sweep under that pressure."""
+    """Write a configuration with one sweep under a pressure to a folder."""
     path = folder / "mine.yaml"
     sweep = CIRCLE | {"motion": "transverse", "pressure": pressure}
     path.write_text(json.dumps({"sweeps": PAPER, "extended": {"pad": sweep}}))
@@ -173,13 +173,13 @@ def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, m
     said = str(refused.value)
     assert said.startswith(f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read")
     assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in said
-    # A job for other sweeps does without it.
+    # A job for other sweeps does not need the file.
     mapping = load.read_yaml(path)
     assert load.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
 
 
 def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkeypatch):
-    """By relative and absolute paths, by a link, read again elsewhere: one request."""
+    """Relative paths, absolute paths and links to one file give equal requests."""
     (tmp_path / "sub").mkdir()
     (tmp_path / "pad.csv").write_text(EVEN)
     (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
@@ -195,7 +195,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
         assert str(tmp_path) not in json.dumps(found.of_sweep("pad"))
     assert all(requests == asked[0] for requests in asked)
     assert asked[0][0]["pressure"].startswith("file:sha256=")
-    # What is handed to a job, in another folder and process.
+    # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
     handed = load.with_files_found(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
@@ -260,7 +260,7 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
     )
 
 
-# Questions
+# Static friction
 
 
 def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_path):

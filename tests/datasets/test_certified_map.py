@@ -1,4 +1,4 @@
-"""Answers from certified maps and from grids of them, in memory and in chunks."""
+"""Interpolation in certified maps, grids from them, and arrays of dask."""
 
 from types import SimpleNamespace
 
@@ -20,7 +20,7 @@ ERROR = 1e-2
 
 
 def friction(velocity, amplitude):
-    """Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with the velocity."""
+    """An invented smooth friction: Eq 6 with the power 1.5 of the amplitude."""
     return paper.large_amplitude_transverse(velocity, np.asarray(amplitude) ** 1.5)
 
 
@@ -33,7 +33,7 @@ def record(request, result=None):
 
 @pytest.fixture(scope="module")
 def made():
-    """A certified map of a made-up friction: its record, and the records of its points."""
+    """A certified map of the invented friction, and the records of its points."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": ERROR}}
     map_ = certified_stub.configured("transverse", **axes)
     return SimpleNamespace(map=map_, records=certified_stub.played(map_, record))
@@ -41,7 +41,7 @@ def made():
 
 @pytest.fixture(scope="module")
 def dataset(made, tmp_path_factory):
-    """The dataset of that map, through a file."""
+    """The dataset of `made`, read from a file."""
     path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
     certified_map.write(path, certified_map.build(made.map, made.records))
     with microslip.open_map("certified_transverse", path.parent) as opened:
@@ -72,7 +72,7 @@ def test_at_a_node_the_answer_is_the_node(dataset):
     answer = dataset.microslip.at(dataset.velocity.drop_vars("velocity"), dataset.amplitude)
     off = abs(answer.mu_macro - dataset.mu_macro).values
     assert (off <= answer.mu_macro_error.values).all()
-    # a neighbour with other nodes may answer on a border, and nobody else inside
+    # on a border the value may come from the neighbouring cell
     inside = np.unique(dataset.cell_node.values.reshape(-1, 5, 5)[:, 1:-1, 1:-1])
     assert off[inside].max() < 1e-6
 
@@ -136,7 +136,7 @@ def test_a_grid_has_the_range_of_the_map_and_answers_as_points_do(dataset):
     assert grid.velocity.values == pytest.approx([0.001, 0.01, 0.1, 1, 10])
     xr.testing.assert_identical(grid, dataset.microslip.at(grid.velocity.values, [0.5, 1.0]))
     assert dataset.microslip.on_grid().sizes == {"amplitude": 49, "velocity": 49}
-    # a grid is a map again, for whoever knows nothing of cells
+    # a grid is a plain map, which has an accessor, too
     plain = grid.assign_attrs(tolerance=ERROR)
     assert np.isfinite(plain.microslip.at(0.05, 0.7).mu_macro)
 
@@ -173,7 +173,7 @@ def test_a_map_without_all_its_points_is_refused(dataset):
 
 @pytest.mark.long
 def test_of_other_motions_the_map_answers_and_nothing_beyond():
-    """Along the motion friction is known in closed form, with a kink where nothing sticks."""
+    """Longitudinal friction has a closed form, with a kink where the whole contact slides."""
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
     axes |= {"motion": "longitudinal", "adaptive": {"error": 0.03}}
     paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}

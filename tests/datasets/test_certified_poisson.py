@@ -1,4 +1,4 @@
-"""Certified maps over Poisson's ratio, too: cells of three directions."""
+"""Certified maps over velocity, amplitude and Poisson's ratio."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,8 @@ ERROR = 3e-2
 
 
 def friction(velocity, amplitude, poisson):
-    """Eq 6 with a stiffer amplitude, which reduces less where Poisson's ratio is large; made up."""
+    """An invented friction: Eq 6 with the power 1.5 of the amplitude, and a drop that decreases
+    with Poisson's ratio."""
     plain = paper.large_amplitude_transverse(velocity, np.asarray(amplitude) ** 1.5)
     return 1.0 - (1.0 - plain) * (1.0 - poisson**2)
 
@@ -29,7 +30,7 @@ def record(request):
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    """A certified map over Poisson's ratios from 0 to 0.4, through a file."""
+    """A certified map over Poisson's ratios from 0 to 0.4, read from a file."""
     axes = {"velocity": [0.01, 10], "amplitude": [0, 3], "poisson": [0, 0.4]}
     map_ = certified_stub.configured("transverse", **axes, adaptive={"error": ERROR})
     path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
@@ -43,7 +44,7 @@ def test_a_file_says_its_directions(dataset):
     assert dataset.degrees.tolist() == [4, 4, 2]
     assert dataset.sizes["node"] == 5 * 5 * 3
     assert set(np.unique(dataset.poisson)) >= {0.0, 0.2, 0.4}
-    # the last direction runs fastest
+    # the last direction changes fastest
     first = dataset.poisson.values[dataset.cell_node.values[:, :3]]
     assert (np.diff(first) > 0.0).all()
     assert (dataset.cell_poisson_low < dataset.cell_poisson_high).all()
@@ -75,7 +76,7 @@ def test_grids_and_questions_the_other_way_round_have_one(dataset):
     )
     found = dataset.microslip.solve_for(0.5, amplitude=1.0, poisson=0.2)
     low, high = (float(found[name][0]) for name in ("velocity_low", "velocity_high"))
-    # friction is made up without an error, so it crosses what is wanted within the interval
+    # the invented friction is exact, so that it has the wanted value inside the interval
     assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
 
 

@@ -1,4 +1,4 @@
-"""Certified maps of the static limit: cells over the amplitude, and over Poisson's ratio, too."""
+"""Certified maps of the static limit over the amplitude, and over Poisson's ratio."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ STATIC = {"velocity": [0], "amplitude": [0, 1.5], "adaptive": {"error": ERROR}}
 
 
 def record(request):
-    """The exact limit at Poisson's ratio 0; made up above."""
+    """A record with the exact static limit at Poisson's ratio 0, and an invented one above."""
     amplitude, poisson = (float(request[name]) for name in ("amplitude", "poisson"))
     mu = float(paper.static_limit_transverse(amplitude)) * (1.0 - 0.1 * poisson**2)
     result = {"mu_macro": mu, "mu_macro_error": 1e-5, "converged": True}
@@ -30,7 +30,7 @@ def built(**given):
 def test_only_points_at_velocity_0_are_asked():
     map_ = certified_stub.configured("transverse", **STATIC)
     requests = certified_stub.first_requests(map_)
-    # two patches that meet at the amplitude 1, where all of the contact slides
+    # two patches meet at the amplitude 1, from which the whole contact slides
     assert len(requests) == 9
     assert {request["velocity"] for request in requests} == {"0"}
     assert "1" in {request["amplitude"] for request in requests}

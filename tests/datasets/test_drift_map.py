@@ -1,4 +1,4 @@
-"""Certified maps of drift: from what a configuration asks to the velocity under any force."""
+"""Certified maps of drift: configuration, requests, and velocity under a force."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ DRIFT = certified_stub.DRIFT | {"adaptive": {"error": ERROR}}
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    """A map of a drift that is made up, through a file."""
+    """A map of an invented drift, read from a file."""
     path = tmp_path_factory.mktemp("drift") / "certified_weights.nc"
     certified_map.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
     with microslip.open_map("certified_weights", path.parent) as opened:
@@ -33,7 +33,7 @@ def configured(**given):
 
 
 def places(count, seed=8):
-    """Random forces and amplitudes of the map."""
+    """Random forces and amplitudes in the range of the map."""
     rng = np.random.default_rng(seed)
     return (
         xr.DataArray(rng.uniform(0.0, 0.95, count), dims="n"),
@@ -65,9 +65,9 @@ def test_below_the_threshold_a_contact_stays_and_from_1_on_it_runs_away(dataset)
     assert not answer.velocity.values[:2].any() and not answer.velocity_error.values[:2].any()
     assert np.isinf(answer.velocity.values[4:]).all()
     assert answer.threshold.values == pytest.approx(least)
-    still = dataset.microslip.at([0.0, 0.5, 0.99], 0.0)  # nothing oscillates
+    still = dataset.microslip.at([0.0, 0.5, 0.99], 0.0)  # without oscillation the threshold is 1
     assert set(still.state.values) == {STATES.index("stays")}
-    # a threshold of 0 is none: no force moves nothing
+    # where the threshold is 0, the force 0 moves nothing
     assert STATES[int(dataset.microslip.at(0.0, 2.0).state)] == "stays"
 
 
@@ -107,7 +107,7 @@ def test_a_point_that_failed_leaves_its_cell_unanswered():
 def test_points_are_asked_for_by_force():
     (map_,) = configured().certified.values()
     requests = certified_stub.first_requests(map_)
-    assert len(requests) == 45  # two patches of 5 x 5 that share the row at the amplitude 1
+    assert len(requests) == 45  # two patches of 5 x 5 nodes share the row at the amplitude 1
     assert {request["velocity"] for request in requests} == {None}
     assert {request["tolerance"] for request in requests} == {"0.0015"}
     assert max(float(request["force"]) for request in requests) == 0.95

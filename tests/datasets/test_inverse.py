@@ -1,4 +1,4 @@
-"""Where a map has a wanted friction: the place, its interval, several places, none."""
+"""Search of a map for a wanted friction: one place, several, none, and their intervals."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ def outcome(answer):
 
 
 def peaked(error=0.0):
-    """A friction with a peak, made up: 1 - 4 (amplitude - 1)^2 / 9, whatever the velocity."""
+    """An invented friction with a peak, 1 - 4 (amplitude - 1)^2 / 9, at all velocities."""
     amplitude, velocity = np.linspace(0.0, 2.5, 26), np.array([0.1, 0.3, 1.0, 3.0])
     mu = np.repeat(1.0 - (2.0 * (amplitude[:, None] - 1.0) / 3.0) ** 2, 4, axis=1)
     return map_of(mu, velocity, amplitude, error, motion="longitudinal")
@@ -31,7 +31,7 @@ def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
     at = answer[sought].isel(root=0)
     back = dataset.microslip.at(**{sought: at}, **known)
     assert back.mu_macro.values == pytest.approx(wanted, abs=1e-9)
-    # At the ends friction is off by its error; friction rises with velocity, falls with amplitude.
+    # At the ends friction differs from the wanted value by its error.
     sign = 1.0 if sought == "velocity" else -1.0
     for end, side in (("low", -sign), ("high", sign)):
         there = dataset.microslip.at(**{sought: answer[f"{sought}_{end}"].isel(root=0)}, **known)
@@ -41,7 +41,7 @@ def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
 
 
 def test_the_interval_is_that_of_a_closed_form():
-    """1 - 4 (x - 1)^2 / 9 with the error e is w between x = 1 +- 1.5 sqrt(1 - w -+ e)."""
+    """1 - 4 (x - 1)^2 / 9 is w +- e at x = 1 +- 1.5 sqrt(1 - w -+ e)."""
     answer = peaked(error=0.01).microslip.solve_for(0.75, velocity=0.3)
     expected = [[1.0 - 1.5 * np.sqrt(0.25 + k) for k in (0.0, 0.01, -0.01)]]
     expected += [[1.0 + 1.5 * np.sqrt(0.25 + k) for k in (0.0, -0.01, 0.01)]]
@@ -91,7 +91,7 @@ def test_questions_of_many_dimensions_are_each_their_own():
 
 
 def test_a_steady_motion_has_a_velocity_to_look_for():
-    """Eq 21 for velocities up to 1: (3 pi / 8)(v - v^3 / 4), at 0.5."""
+    """Eq 21 is (3 pi / 8)(v - v^3 / 4) for velocities v up to 1; the wanted velocity is 0.5."""
     velocity = np.geomspace(0.05, 1.0, 41)
     mu = 3.0 * np.pi / 8.0 * (velocity - velocity**3 / 4.0)
     dataset = xr.Dataset(

@@ -1,4 +1,4 @@
-"""What theory says about other pressures, beside what is computed."""
+"""Closed forms for other pressures than Hertz's."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_under_the_power_2_they_are_the_papers(motion):
 
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "power:exponent=8"])
 def test_eq_9_is_the_load_where_the_displacement_reaches(name):
-    """The stick radius found by hand from the equivalent plane profile, the load by quadrature."""
+    """The stick radius is interpolated in the depth of the indenter; the load is a quadrature."""
     pressure = pressure_named(name)
     found = value("transverse", name, "mu_static_stick_zone", 0.4)
     radius = np.linspace(0.0, 1.0, 100001)
@@ -53,7 +53,7 @@ def test_the_whole_stick_zone_is_more_than_what_is_left(name):
 def test_the_closed_form_along_a_line_has_both_of_its_limits(name):
     rows = theory_limits.formulas("longitudinal", name)
     whole, static = rows["mu_closed_form"].function, rows["mu_static"].function
-    # springs that all yield at once would give the rigid limit (2/pi) arcsin(v/x)
+    # for a large amplitude x friction has the rigid limit (2/pi) arcsin(v/x)
     rigid = 2.0 / np.pi * np.arcsin(0.3)
     assert whole(np.array(300.0), np.array(1000.0)) == pytest.approx(rigid, abs=2e-3)
     assert whole(np.array(1e-7), np.array(0.5)) == pytest.approx(static(np.array(0.5)), abs=1e-3)
@@ -64,7 +64,7 @@ def test_the_steady_bore_is_eqs_17_and_18():
     bound = pressure_named(name).bound
     load = quad(lambda r: float(bound(r)) * r, 0.0, 1.0)[0]
 
-    def resistance(v):  # Eq 17 as it stands, for one velocity
+    def resistance(v):  # Eq 17 for one velocity, as printed
         def ring(r):
             return quad(lambda t: _share(v, r, t), 0.0, np.pi)[0] / np.pi * float(bound(r)) * r
 
@@ -75,7 +75,7 @@ def test_the_steady_bore_is_eqs_17_and_18():
 
 
 def _share(v, r, t):
-    """Forward share of the slip direction at (r, t) under v forward and a unit rotation."""
+    """Forward component of the slip direction at (r, t) for the velocity v and a unit rotation."""
     forward, lateral = v + r * np.cos(t), -r * np.sin(t)
     return forward / np.hypot(forward, lateral)
 
@@ -118,8 +118,12 @@ def test_the_limit_of_a_march_is_the_exact_one_and_not_eq_9():
         microslip.solve("transverse", v, 0.5, pressure=name, tolerance=3e-4).mu_macro
         for v in (8e-4, 1e-4)
     ]
-    guess = above[1] - (above[0] - above[1]) / 3.0  # differences shrink like v^(2/3)
+    guess = (
+        above[1] - (above[0] - above[1]) / 3.0
+    )  # the difference from the static limit is proportional to v^(2/3)
     assert guess == pytest.approx(exact, abs=3e-3)
     assert zone - guess > 0.05
-    assert float(hertz.mindlin_stick_radius(0.5)) != pytest.approx(0.5)  # that of a sphere
+    assert float(hertz.mindlin_stick_radius(0.5)) != pytest.approx(
+        0.5
+    )  # the sphere has another stick radius
     assert paper.static_limit_transverse(0.5) != pytest.approx(exact, abs=0.05)

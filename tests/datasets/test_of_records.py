@@ -1,4 +1,4 @@
-"""Single answers as datasets: every number has its place and its axis."""
+"""Datasets of single results: variables and their axes."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_a_point_and_a_history(tmp_path):
 
 @pytest.mark.slow
 def test_a_period_has_phases_and_points():
-    """Forces are integrals of tractions, which the axes of the dataset carry out."""
+    """A force is the integral of the tractions, a sum over the axis of points."""
     data = microslip.to_xarray(microslip.period("transverse", 0.3, 0.5, cells=8, steps=32))
     assert data.traction_forward.dims == ("phase", "point") and data.area.dims == ("point",)
     assert float(data.area.sum()) == pytest.approx(np.pi)

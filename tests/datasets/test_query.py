@@ -1,4 +1,4 @@
-"""Answers from finished maps: within their bounds, wherever they come from."""
+"""Interpolation between the points of a map, estimates outside, and their error bounds."""
 
 import errno
 import json
@@ -28,7 +28,7 @@ AMPLITUDE = np.linspace(0, 3, 13)
 
 
 def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
-    """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
+    """The map of an invented smooth friction: Eq 6 with the power 1.5 of the amplitude."""
     v, a = np.meshgrid(velocity, amplitude)
     return map_of(paper.large_amplitude_transverse(v, a**1.5), velocity, amplitude, error, **more)
 
@@ -84,7 +84,7 @@ def test_the_bound_holds_at_a_kink(kink):
     x = np.linspace(0, 1, 1001)
     value, error = table.at(np.ones(x.size), x)
     miss = np.abs(value - np.abs(x - kink))
-    assert miss.max() > 5e-3  # the cubic does miss it
+    assert miss.max() > 5e-3  # the cubic has a large error at the kink
     assert (miss <= error + 1e-12).mean() > 0.99
 
 
@@ -108,7 +108,7 @@ def test_the_error_covers_what_is_missed_and_what_the_nodes_are_off():
     assert np.median(fine.mu_macro_error) < 0.1 * np.median(answer.mu_macro_error)
     off = made_up(error=0.01).microslip.at(v, a)
     more = off.mu_macro_error.values - answer.mu_macro_error.values
-    assert np.median(more) == pytest.approx(0.01)  # less where the energy balance says so
+    assert np.median(more) == pytest.approx(0.01)  # less where the energy balance limits the error
     assert more.max() < 0.01 + 1e-12
 
 
@@ -135,7 +135,7 @@ def test_a_point_that_did_not_converge_is_not_interpolated_over():
 
 
 def over_poisson(poissons):
-    """Maps in which Poisson's ratio takes a share nu^2 of the drop away, joined by xarray."""
+    """Maps at several Poisson's ratios nu, joined; the drop below 1 is proportional to 1 - nu^2."""
     maps = [made_up().assign_coords(poisson=nu) for nu in poissons]
     for part, nu in zip(maps, poissons, strict=True):
         part["mu_macro"] = 1 - (1 - part.mu_macro) * (1 - nu**2)
@@ -195,7 +195,9 @@ def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_an
         low, high = (float(slow.mu_macro + sign * slow.mu_macro_error) for sign in (-1, 1))
         assert low <= float(still.mu_macro + still.mu_macro_error)
         assert high >= float(edge.mu_macro) - 1e-12
-        at_0 = paper.static_limit_transverse(amplitude)  # it falls with Poisson's ratio
+        at_0 = paper.static_limit_transverse(
+            amplitude
+        )  # the static limit decreases with Poisson's ratio
         assert at_0 - 0.012 <= float(still.mu_macro) <= at_0
 
 
@@ -208,7 +210,7 @@ def test_the_static_limit_at_any_poissons_ratio_holds_what_the_solver_computes()
         assert off <= float(still.mu_macro_error) + truth.mu_macro_error
 
 
-# Parts of a dataset, as they come out of xarray
+# Selections and joins of datasets
 
 
 PARTS = {
@@ -231,7 +233,7 @@ def test_a_part_of_a_dataset_answers_as_the_whole(part):
     whole = made_up(error=1e-4, tolerance=1e-3)
     known, answer = (data.microslip.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
     assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
-    # the largest miss around a cell is the same, unless nodes beside it were cut away
+    # the error depends on the nodes around the cell, which all selections contain
     assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
 
 
@@ -287,7 +289,7 @@ def test_nodes_that_a_join_has_filled_in_are_not_known():
     assert np.isfinite(both.microslip.at(0.1, 5.0, poisson=0.5).mu_macro)
 
 
-# Contacts that are pulled, or several on one body
+# Springs, and several contacts on one body
 
 
 SPRING = {"drive": "stiffness, mass"}
@@ -373,7 +375,7 @@ def test_the_error_does_not_jump_at_the_edge_of_a_map(motion, velocity, amplitud
         along = {"fast sliding": 1 + step, "static limit": 1 - step}.get(side, 1.0)
         answer = data.microslip.at(velocity * along, amplitude * out)
         assert side in SOURCES[int(answer.source)]
-        # No power law changes by more than four times the relative step.
+        # The error changes by at most four times the relative step, from the power laws.
         assert float(answer.mu_macro_error - edge.mu_macro_error) <= 5 * step
 
 
@@ -389,7 +391,7 @@ def test_a_wide_error_outside_the_map_names_the_remedy():
 @pytest.mark.long
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
 def test_brackets_hold_what_the_solver_says(tmp_path, motion):
-    # The map itself is made by the solver, so small that most points lie beyond it.
+    # The solver computes a small map, so that most points lie outside it.
     amplitude = np.linspace(0.5, 2.0, 4)
     velocity = np.geomspace(0.05, 2.0, 5)
     rows = [[microslip.solve(motion, v, a, tolerance=5e-3) for v in velocity] for a in amplitude]
@@ -508,7 +510,7 @@ def test_what_cannot_be_opened_is_one_line(results, tmp_path):
 
 
 def test_a_dataset_that_declares_more_than_it_holds_is_refused_unread(tmp_path):
-    """Also in a group; a map of our own is opened."""
+    """The size is checked in groups, too."""
     for group in ("/", "history"):
         path = tmp_path / f"{len(group)}.nc"
         with netCDF4.Dataset(path, "w") as file:

@@ -1,4 +1,4 @@
-"""Datasets of the studies: rows, references, fronts, maps, costs of a step, and outcomes."""
+"""Datasets of the studies of accuracy and stability."""
 
 import netCDF4
 import numpy as np
@@ -12,7 +12,7 @@ from microslip.studies.stability.dataset import OUTCOMES, outcome
 
 @pytest.fixture
 def accuracy(tmp_path):
-    """The dataset of made-up answers, read back from disk."""
+    """The dataset of accuracy from invented results, read from a file."""
     answer, _ = answered(accuracy_result)
     data = registry.build("accuracy", configured(), answer)
     sweep_dataset.write(data, tmp_path / "accuracy_cost.nc", registry.groups("accuracy"))
@@ -20,7 +20,7 @@ def accuracy(tmp_path):
 
 
 def rows_of(data, **where):
-    """The trials with these values, as a dataset."""
+    """Trials with these values, as a dataset."""
     chosen = np.ones(data.sizes["trial"], bool)
     for name, value in where.items():
         chosen &= data[f"trial_{name}"].values == value
@@ -84,7 +84,7 @@ def test_references_say_where_they_come_from(accuracy):
     assert float(mid.reference) == pytest.approx(0.1 / 1.6)
     assert float(mid.reference_error) == 2e-4
     assert mid.reference_source.item() == "model radial, tolerance 1e-6"
-    # Eq 21 once more, as the pure rotation that moves sideways at every point of the contact.
+    # Eq 21 by quadrature of the forward component of the slip direction.
     radius, angle = np.meshgrid(
         (np.arange(1000) + 0.5) / 1000, (np.arange(1000) + 0.5) * np.pi / 1000, indexing="ij"
     )
@@ -114,7 +114,7 @@ def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
     found = accuracy.transverse_cheapest
     assert found.dims == ("map_tolerance", "transverse_amplitude", "transverse_velocity")
     assert (found.sel(map_tolerance=0.01) == "slider").all()
-    # Of the models with cells, errors of 0.1/cells^2 are within 1e-3 from 12 cells on.
+    # The error of models with cells is 0.1/cells^2, which is below 1e-3 from 12 cells on.
     tight = accuracy.sel(map_tolerance=0.001)
     assert set(tight.transverse_cheapest.values.flat) <= {"mdr", "radial", "rigid", "cartesian"}
     assert (tight.transverse_cheapest_cells == 16).all()
@@ -148,7 +148,7 @@ def test_the_cost_of_a_step_and_its_exponents():
     assert data.scaling_memory.attrs["units"] == "byte"
 
 
-# What became of probes
+# Outcomes of probes
 
 
 STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
@@ -160,7 +160,7 @@ STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
         (None, "not_applicable"),
         ({"applies": False, "converged": False, "reason": "not here"}, "not_applicable"),
         (GOOD, "converged"),
-        (GOOD | {"mu_macro": 0.5019}, "converged"),  # within both errors together
+        (GOOD | {"mu_macro": 0.5019}, "converged"),  # within the sum of both errors
         (GOOD | {"mu_macro": 0.5021}, "wrong"),
         (GOOD | {"mu_macro": 0.4979}, "wrong"),
         (GOOD | {"mu_macro_error": 0.0, "mu_macro": 0.5011}, "wrong"),
@@ -179,7 +179,7 @@ def test_outcomes(result, expected):
 
 
 def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
-    """The error of so few cells is above the tolerance, whatever the method."""
+    """With few cells the error exceeds the tolerance for all methods."""
     coarse = GOOD | {"converged": False, "mu_macro_error": 0.03, "mu_macro": 0.52}
     assert OUTCOMES[outcome(coarse, 0.5, 1e-3, imposed=True)] == "converged"
     assert OUTCOMES[outcome(coarse | {"mu_macro": 0.6}, 0.5, 1e-3, imposed=True)] == "wrong"
@@ -189,7 +189,7 @@ def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
 
 @pytest.fixture
 def atlas(tmp_path):
-    """The dataset of made-up probes, read back from disk."""
+    """The dataset of stability from invented results, read from a file."""
     data = registry.build("stability", configured(), answered(stability_result)[0])
     sweep_dataset.write(data, tmp_path / "stability.nc", registry.groups("stability"))
     return netcdf.whole(tmp_path / "stability.nc")

@@ -1,4 +1,4 @@
-"""Datasets: coordinates, contents, conventions, and bytes that depend on the results alone."""
+"""Datasets of sweeps: coordinates, variables, conventions, and equal bytes for equal results."""
 
 import json
 import subprocess
@@ -55,7 +55,7 @@ def on_disk(name, folder, grids=GRIDS):
 
 
 def built(name, folder):
-    """All of a dataset, with its groups."""
+    """A dataset with the variables of its groups."""
     write(name, folder, folder / f"{name}.nc")
     return netcdf.whole(folder / f"{name}.nc")
 
@@ -175,7 +175,7 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
 @pytest.mark.parametrize("name", GRIDS)
 def test_conventions_and_provenance(name, tmp_path, solver):
     for variable in built(name, tmp_path).variables.values():
-        assert 0 < len(variable.attrs["long_name"]) <= 40  # they are labels of plots
+        assert 0 < len(variable.attrs["long_name"]) <= 40  # long names are labels of plots
         if name == "continuous_bore" and "description" in variable.attrs:
             assert variable.attrs["description"] != variable.attrs["long_name"]
     with on_disk(name, tmp_path) as data:
@@ -198,7 +198,7 @@ def test_conventions_and_provenance(name, tmp_path, solver):
 def test_equal_results_give_equal_bytes(name, tmp_path, solver):
     first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
     write(name, tmp_path, first)
-    time.sleep(1.1)  # HDF5 can hold times, in seconds
+    time.sleep(1.1)  # HDF5 can store times in seconds
     write(name, tmp_path, second)
     assert first.read_bytes() == second.read_bytes()
 
@@ -262,7 +262,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
 
 @pytest.mark.slow
 def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
-    """Not so without a tolerance: then its attribute is not a number."""
+    """Without a tolerance all points converge, and the attribute `tolerance` is NaN."""
     axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}
     for tolerance, count in ((1e-3, "2 not"), (None, "all")):
         grids = {"transverse": {**axes, "tolerance": tolerance}}
@@ -275,12 +275,12 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
                 assert all("at the imposed resolution" in str(r) for r in data.reason.values.flat)
 
 
-# Tables, plots and joins of a stranger's, in plain xarray
+# Tables, plots and joins in plain xarray
 
 
 @pytest.mark.parametrize("name", GRIDS)
 def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
-    """A row for each point, a column for each variable: no combinations of unrelated axes."""
+    """A table has a row for each point and a column for each variable."""
     path = tmp_path / f"{name}.nc"
     write(name, tmp_path, path)
     with xr.open_dataset(path) as data:
@@ -335,7 +335,7 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
 
 @pytest.mark.long
 def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
-    """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""
+    """With texts of variable length Python would crash here, since HDF5 loses their type."""
     write("transverse", tmp_path, tmp_path / "transverse.nc")
     code = (
         "import microslip, sys\n"

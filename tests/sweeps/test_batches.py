@@ -1,4 +1,4 @@
-"""Sweeps: requests, batches of them, and answers from the store or the solver."""
+"""Requests of sweeps, batches, and results from the store or the solver."""
 
 import errno
 import json
@@ -88,7 +88,7 @@ def test_a_velocity_more_changes_a_part_of_each_long_row():
     axis = [float(value) for value in range(1, 200)]
     before, after = (names_of(10, velocity=values) for values in (axis, [*axis, 77.5]))
     assert len(before) > 30
-    assert 3 <= len(after - before) <= 6  # three rows
+    assert 3 <= len(after - before) <= 6  # a part of each of the three rows
 
 
 def test_a_batch_is_named_by_its_requests_and_the_code(monkeypatch):
@@ -121,7 +121,7 @@ def test_swapped_values_and_the_format_of_records_count(monkeypatch):
 
 
 def failing_at(monkeypatch, error, amplitude=2.0):
-    """Have the stub of the solver raise an error at one amplitude."""
+    """Let the stub of the solver raise an error at one amplitude."""
     Solver(monkeypatch)
     solve = microslip.solve
 
@@ -187,7 +187,7 @@ def test_a_damaged_result_is_computed_again_to_the_same_bytes(monkeypatch, store
     path.write_bytes(whole[: len(whole) // 2])
     assert sweep.answer(request, store)[0] == record
     assert solver.calls == 2
-    assert path.read_bytes() == whole  # though the solver took another time
+    assert path.read_bytes() == whole  # the time of the solver is not stored
 
 
 def test_a_record_is_the_same_computed_or_read(monkeypatch, store):
@@ -214,7 +214,7 @@ def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error
     records, _ = sweep.run_batch(requests_of(), store)
     assert [record["result"]["converged"] for record in records] == 4 * [True] + 2 * [False]
     assert records[-1]["result"]["reason"] == f"{type(error).__name__}: {error}"
-    assert len(list(store.folder.rglob("*.json"))) == 4  # the others are computed again
+    assert len(list(store.folder.rglob("*.json"))) == 4  # failed points are not stored
 
 
 NOT_OF_THE_POINT = [
@@ -235,7 +235,7 @@ def test_an_error_of_the_code_or_the_machine_fails_the_batch(monkeypatch, store,
     failing_at(monkeypatch, error)
     with pytest.raises(type(error)):
         sweep.run_batch(requests_of(), store)
-    assert len(list(store.folder.rglob("*.json"))) == 4  # the points before it are kept
+    assert len(list(store.folder.rglob("*.json"))) == 4  # earlier points are stored
 
 
 def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, store):
@@ -268,7 +268,7 @@ def test_what_ran_out_of_time_is_not_kept(monkeypatch, store):
     for _ in range(2):
         sweep.answer(request, store)
     assert solver.calls == 2
-    monkeypatch.setitem(EFFORT, "exhausted", "work")  # which is the same everywhere
+    monkeypatch.setitem(EFFORT, "exhausted", "work")  # the work does not depend on the computer
     for _ in range(2):
         sweep.answer(request, store)
     assert solver.calls == 3

@@ -1,4 +1,4 @@
-"""Coordinates of maps of drift: where they begin, where they are cut, and what they interpolate."""
+"""Scaled coordinates of maps of drift: ranges, patches and the scaled velocity."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def test_places_have_the_scaled_coordinates_that_they_come_from(coordinates):
     rows = coordinates.patches[-1][1][1]
     nodes = np.column_stack([rng.uniform(0.05, 1, 50), rng.uniform(0, rows, 50)])
     places = np.array([coordinates.place(tuple(node)) for node in nodes.tolist()])
-    # places have nine digits, and near a threshold of 0.9 a share of 0.05 has five of them
+    # rounding of forces to nine digits leaves five near a threshold of 0.9
     assert coordinates.scaled(*places.T) == pytest.approx(nodes, abs=1e-4)
 
 
@@ -36,13 +36,13 @@ def test_it_begins_where_the_threshold_is_the_largest_force_and_is_cut_where_it_
     assert float(paper.static_limit_transverse(first)) == pytest.approx(0.9, abs=1e-8)
     assert first == pytest.approx(first_amplitude("transverse", 0.9), rel=1e-8)
     assert [SIDEWAYS.place((1.0, row))[1] for row in (1.0, 2.0)] == [1.0, 3.0]
-    # a contact that turns always sticks somewhere, and its range begins where a force moves it
+    # the threshold of a bore is never 0, so that its map has one patch
     assert TURNING.patches == [((0.0, 0.0), (1.0, 1.0))]
     assert TURNING.place((0.0, 0.0))[1] == 0.5
 
 
 def test_near_the_threshold_drift_as_the_power_3_2_is_smooth():
-    """(P - threshold)^(3/2) is the third power of the scaled force, whatever the amplitude."""
+    """(P - threshold)^(3/2) is proportional to the third power of the scaled force."""
     shares = np.array([0.02, 0.04])
     for row in (0.5, 1.3):
         places = np.array([SIDEWAYS.place((share, row)) for share in shares])
@@ -66,7 +66,7 @@ def test_errors_are_absolute_where_it_is_slow_and_relative_where_it_is_fast():
 def test_a_velocity_is_not_below_0():
     velocity, error = velocity_of(np.array([-1e-3]), np.array([2e-3]))
     assert velocity[0] == 0.0
-    assert error[0] == pytest.approx(1e-3, rel=1e-5)  # up to sinh(-1e-3 + 2e-3)
+    assert error[0] == pytest.approx(1e-3, rel=1e-5)  # the upper end is sinh(-1e-3 + 2e-3)
 
 
 def test_the_threshold_is_known_of_what_exerts_no_forward_force_by_itself():

@@ -1,4 +1,4 @@
-"""Cells of certified maps: which points are asked, and what is promised between them."""
+"""Cells of certified maps: scaled coordinates, refinement and error bounds."""
 
 from itertools import product
 
@@ -25,8 +25,8 @@ DEEP = MapCoordinates((0.001, 10.0), (0.0, 3.0), kinks_of("transverse"), (0.1, 0
 
 
 def played(coordinates, function, error):
-    """A refinement with all that it asks answered by a function of velocity and amplitude, and how
-    many rounds that takes."""
+    """Refine a map of a function of velocity and amplitude; return the answers and the number of
+    rounds, too."""
     known, rounds = {}, 0
     while (found := refined(coordinates, known, error)).missing:
         known |= {node: (function(*coordinates.place(node)), 0.0) for node in found.missing}
@@ -39,14 +39,14 @@ def played(coordinates, function, error):
 
 @pytest.mark.parametrize("coordinates", [PLAIN, TRANSVERSE, BORE, DEEP])
 def test_a_place_has_the_scaled_coordinates_that_it_was_asked_for(coordinates):
-    # shares of patches that leave out where slow ones end, which is where fast ones begin
+    # positions in patches, without their ends in velocity, where two patches meet
     shares = np.linspace(0, 1, 17)[1:-1], *[np.linspace(0, 1, 9)] * 2
     shares = np.array(list(product(*shares[: len(coordinates.directions)])))
     nodes = [begin + shares * np.subtract(end, begin) for begin, end in coordinates.patches]
     nodes = np.concatenate(nodes)
     places = np.array([coordinates.place(tuple(node)) for node in nodes])
     back = coordinates.scaled(*places.T)
-    # nine digits of an amplitude next to a border where places gather are fewer of the square root
+    # near a border the square root amplifies the rounding of amplitudes to nine digits
     assert back[:, 0] == pytest.approx(nodes[:, 0], abs=1e-7)
     assert back[:, 1] == pytest.approx(nodes[:, 1], abs=1e-4)
     assert (places[:, 1].min(), places[:, 1].max()) == coordinates.amplitude
@@ -78,7 +78,7 @@ def test_kinks_are_borders_of_patches():
 
 
 def test_places_are_even_in_what_they_are_said_to_be_even_in():
-    # slow: the cube root of the velocity; fast: its logarithm, and that of 1 + 2 A
+    # slow: even in the cube root of the velocity; fast: even in log(velocity) and log(1 + 2 A)
     slow = np.cbrt([BORE.place((x, 0.5))[0] for x in (0.0, 0.25, 0.5, 0.75, 1.0)])
     assert np.diff(slow) == pytest.approx(np.full(4, (1.0 - 0.1) / 4), rel=1e-7)
     fast = [BORE.place((x, 0.5))[0] for x in (2.0, 2.25, 2.5, 2.75, 3.0)]
@@ -95,7 +95,7 @@ def test_a_kink_outside_of_the_range_cuts_nothing():
 def test_a_kink_in_part_of_the_range_stays_clear_of_its_ends():
     inside = MapCoordinates((0.1, 10.0), (0.0, 3.0), kinks_of("transverse"))
     places = [inside.place((1.0, y))[0] for y in np.linspace(0, 2, 9)]
-    assert min(places) == pytest.approx(0.2)  # twice the slowest, where the kink is at 0.002
+    assert min(places) == pytest.approx(0.2)  # twice the smallest velocity; the kink is at 0.002
 
 
 def test_coordinates_survive_as_text():
@@ -107,7 +107,7 @@ def test_coordinates_survive_as_text():
 
 
 def test_no_more_than_a_cell_for_each_patch_is_asked_where_that_is_enough():
-    # a polynomial of the first degree in the coordinates of a patch without kinks
+    # a linear function of the scaled coordinates
     found, known, rounds = played(PLAIN, lambda v, a: np.log(v) + np.log(1 + 2 * a), 1e-6)
     assert list(found.cells) == first_cells(PLAIN)
     assert (len(known), rounds) == (25, 1)
@@ -116,11 +116,11 @@ def test_no_more_than_a_cell_for_each_patch_is_asked_where_that_is_enough():
 
 def test_surpluses_are_differences_of_the_fourth_order():
     x = np.arange(5.0)
-    # the fourth difference of x^4 at distance 1 is 4! = 24, its third ones at most 6 (4 * 2.5) = 60
+    # the fourth difference of x^4 is 4! = 24, and its third differences are at most 60
     along, across = surpluses_of(np.outer(x**4, np.ones(5)))
     assert along == pytest.approx(24.0)
     assert across == 0.0
-    # a cubic has no fourth differences; a share of its third one, 3! = 6, counts
+    # a cubic has no fourth differences; its third differences are 3! = 6
     assert surpluses_of(np.outer(np.ones(5), x**3)) == pytest.approx((0.0, 6 * LOWER_ORDER))
 
 
@@ -160,7 +160,8 @@ def test_what_is_promised_holds_for_a_function_with_layers():
 
 
 def test_what_five_nodes_do_not_show_is_halved_however_loose_the_error():
-    # Of x^4 the fourth difference over steps of 1/4 is 4! / 4^4 = 3/32; in halves a sixteenth.
+    # The fourth difference of x^4 over steps of 1/4 is 4! / 4^4 = 3/32; in halves it is 1/16 of
+    # that.
     def function(v, a):
         return 0.6 * (np.log(v / 0.01) / np.log(100)) ** 4
 
@@ -180,7 +181,7 @@ def test_all_follows_from_the_answers_in_whatever_order_they_come():
     found, known, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 3e-3)
     backwards = dict(reversed(known.items()))
     assert refined(TRANSVERSE, backwards, 3e-3) == found
-    # a looser error needs some of these points and no others
+    # a larger error needs a subset of these points
     looser, fewer, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 1e-2)
     assert fewer.keys() < known.keys()
     assert len(looser.cells) < len(found.cells)
@@ -197,7 +198,7 @@ def test_where_a_point_failed_nothing_is_promised_and_nothing_asked():
 def test_a_jump_ends_at_the_smallest_cells():
     found, _, _ = played(PLAIN, lambda v, a: float(v > 0.0301), 1e-2)
     assert min(cell.end[0] - cell.begin[0] for cell in found.cells) == SMALLEST
-    # which say so: the fourth differences of a jump of 1 are 3 at most, and its third ones 2
+    # the fourth differences of a jump of 1 are at most 3
     assert max(found.errors) == pytest.approx(3 * SHARE)
 
 
@@ -219,5 +220,7 @@ def test_a_third_direction_is_halved_where_friction_bends_over_it_and_only_there
 
 
 def test_surpluses_of_three_nodes_are_twice_their_second_differences():
-    values = np.multiply.outer(np.ones((5, 5)), [0.0, 1.0, 4.0])  # x^2: second differences of 2
+    values = np.multiply.outer(
+        np.ones((5, 5)), [0.0, 1.0, 4.0]
+    )  # the second differences of x^2 are 2
     assert surpluses_of(values) == pytest.approx((0.0, 0.0, 4.0))

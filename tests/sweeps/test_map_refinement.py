@@ -1,4 +1,4 @@
-"""Points of certified maps, and what a sweep may say under `adaptive`."""
+"""Points and ranges of certified maps."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def configured(**given):
 def test_the_first_round_asks_for_points_of_the_sweep_and_is_the_last_if_all_are_equal():
     (map_,) = configured().certified.values()
     first = certified_stub.first_requests(map_)
-    # slow and fast ones, two patches of 5 x 5 nodes each, share those on the border between them
+    # 2 x 2 patches of 5 x 5 nodes, which share the nodes on their borders in amplitude
     assert len(first) == 45 + 45
     assert {request["tolerance"] for request in first} == {"0.006"}
 
@@ -61,7 +61,7 @@ def test_other_motions_and_pressures_are_certified_likewise():
     assert map_.name == "certified_cone"
     assert map_refinement.coordinates_of(map_).patches == [
         ((0.0, 0.0), (1.0, 1.0))
-    ]  # no kink of it is known
+    ]  # no kinks are known for this pressure
     request = certified_stub.first_requests(map_)[0]
     assert (request["motion"], request["pressure"]) == ("bore", "power:exponent=1")
     with pytest.raises(ConfigError, match="certified_cone: another result has this name"):

@@ -1,4 +1,4 @@
-"""Periods in few bytes: what comes back is what went in, by the solver's own unfolding."""
+"""Stored periods: unpacked tractions, slips and forces equal the computed ones."""
 
 import json
 
@@ -30,7 +30,7 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
     truth = microslip.period(motion, velocity, amplitude, poisson=poisson, **COUNTS)
     for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
         assert found[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
-    # the state repeats itself and its mirror image no better than it converged
+    # the mirror symmetry of the state is as accurate as its convergence
     for name in ("traction_forward", "traction_lateral"):
         off = np.abs(found[name] - getattr(truth, name)) / truth.bound
         assert off.max() < 0.5 / period_codec.SHARES + 1e-3, name

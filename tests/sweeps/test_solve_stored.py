@@ -1,4 +1,4 @@
-"""Points from a folder of results: the same ones as a sweep's."""
+"""Stored results of single points, shared with sweeps and the command line."""
 
 import json
 import math

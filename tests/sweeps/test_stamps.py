@@ -1,4 +1,4 @@
-"""Stamps: damage to products is noticed, and what they are made of is known."""
+"""Stamps of products: damage, other inputs, and dates for Snakemake."""
 
 import os
 import time
@@ -10,7 +10,7 @@ from microslip.sweeps import stamps
 
 @pytest.fixture
 def product(tmp_path):
-    """A dataset and its page with their stamp: the stamp, and both paths."""
+    """The stamp of a dataset and its page, and the paths of both."""
     paths = [tmp_path / "friction.nc", tmp_path / "summaries" / "friction.html"]
     for path in paths:
         path.parent.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""The store: what is written is read back or not at all, whatever happens to the files."""
+"""The store: a record is read as it was written, or counts as missing."""
 
 import concurrent.futures
 import errno
@@ -111,7 +111,7 @@ def test_a_damaged_file_is_reported_and_then_replaced(store, caplog):
 
 @pytest.mark.parametrize("moment", ["fsync", "replace"])
 def test_killed_before_the_rename_nothing_is_lost(store, moment):
-    """Kill -9 while a result is replaced: what was there before is read back."""
+    """After a SIGKILL during the replacement of a result the former result is read."""
     path = written(store, "a")
     program = f"""
         import os, signal
@@ -211,7 +211,7 @@ def test_a_read_only_folder_gives_the_same_message(store):
 def test_many_threads_and_containers_write_one_result_without_disturbing_each_other(
     store, monkeypatch
 ):
-    """Process numbers are the same in containers, and in threads: they keep nobody apart."""
+    """Threads, and processes in containers, have equal process numbers."""
     monkeypatch.setattr(os, "getpid", lambda: 7)
     with concurrent.futures.ThreadPoolExecutor(8) as pool:
         done = [pool.submit(store.write, "a", KEY, RECORD) for _ in range(400)]
