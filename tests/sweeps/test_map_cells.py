@@ -12,7 +12,7 @@ from microslip.sweeps.map_cells import (
     SMALLEST,
     Cell,
     first_cells,
-    refined,
+    refine_cells,
     surpluses_of,
 )
 from microslip.sweeps.map_coordinates import MapCoordinates
@@ -28,7 +28,7 @@ def played(coordinates, function, error):
     """Refine a map of a function of velocity and amplitude; return the answers and the number of
     rounds, too."""
     known, rounds = {}, 0
-    while (found := refined(coordinates, known, error)).missing:
+    while (found := refine_cells(coordinates, known, error)).missing:
         known |= {node: (function(*coordinates.place(node)), 0.0) for node in found.missing}
         rounds += 1
     return found, known, rounds
@@ -174,13 +174,13 @@ def test_errors_of_nodes_count():
     (cell,) = first_cells(PLAIN)
     nodes = cell.nodes((4, 4))
     known = {node: (0.0, 3e-3 if node == (0.5, 0.5) else 1e-3) for node in nodes}
-    assert refined(PLAIN, known, 1e-2).errors == (3e-3,)
+    assert refine_cells(PLAIN, known, 1e-2).errors == (3e-3,)
 
 
 def test_all_follows_from_the_answers_in_whatever_order_they_come():
     found, known, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 3e-3)
     backwards = dict(reversed(known.items()))
-    assert refined(TRANSVERSE, backwards, 3e-3) == found
+    assert refine_cells(TRANSVERSE, backwards, 3e-3) == found
     # a larger error needs a subset of these points
     looser, fewer, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 1e-2)
     assert fewer.keys() < known.keys()
@@ -190,7 +190,7 @@ def test_all_follows_from_the_answers_in_whatever_order_they_come():
 def test_where_a_point_failed_nothing_is_promised_and_nothing_asked():
     (cell,) = first_cells(PLAIN)
     known = dict.fromkeys(cell.nodes((4, 4)), (1.0, 0.0)) | {(0.5, 0.25): (np.nan, np.inf)}
-    found = refined(PLAIN, known, 1e-2)
+    found = refine_cells(PLAIN, known, 1e-2)
     assert found.missing == ()
     assert found.errors == (np.inf,)
 

@@ -18,7 +18,7 @@ if __name__ == "__main__":  # not in the processes that solve
         configuration = load.from_mapping(snakemake.config, ask_solver=False)
         if snakemake.wildcards.batch != Plan(configuration).map_batch(name):
             raise batches.SourcesEdited("the solver")
-        records, seconds = map_refinement.solved(
+        records, seconds = map_refinement.solve_points(
             configuration.certified[name],
             store.Store(snakemake.params.store),
             snakemake.threads,

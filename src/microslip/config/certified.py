@@ -14,9 +14,9 @@ SHARE_OF_POINTS = 0.3
 """Default tolerance of the points of a map, as a fraction of the error of the map."""
 
 
-def _demand(condition: bool, refused: str, allowed: str) -> None:
+def _demand(condition: bool, circumstance: str, allowed: str) -> None:
     if not condition:
-        raise Refusal(f"is not allowed {refused}; allowed: {allowed}", "adaptive")
+        raise Refusal(f"is not allowed {circumstance}; allowed: {allowed}", "adaptive")
 
 
 def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
@@ -53,9 +53,11 @@ def refuse_unsolvable(map_: CertifiedMap) -> None:
     model, nu = map_.sweep.model, map_.sweep.poisson[0]
     motion, pressure = solver_names(map_.sweep)
     where = f"for {motion} under {pressure} at Poisson's ratio {nu:g}"
-    known = f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 except for bore"
+    closed_forms = (
+        f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 except for bore"
+    )
     is_known = drift_threshold.is_known(motion, pressure, nu)
-    _demand(is_known, f"{where}, whose threshold has no closed form", known)
+    _demand(is_known, f"{where}, whose threshold has no closed form", closed_forms)
     other = f"with model {model}, which has another threshold"
     _demand(model in EXACT_MODELS, other, ", ".join(EXACT_MODELS))
     least = float(drift_threshold.threshold(motion, map_.amplitude[1]))

@@ -81,7 +81,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
     if mapping is None:
         raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
-        message = f"{schema.shown(mapping)} is not a mapping; allowed: keys and values"
+        message = f"{schema.short_json(mapping)} is not a mapping; allowed: keys and values"
         raise ConfigError(f"{path}: {message}")
     return mapping
 

@@ -57,13 +57,13 @@ def error_line(errors: Iterable["ErrorDetails"]) -> str:
     return _line(min(errors, key=lambda e: (e["type"] not in UNKNOWN, _dotted(_keys(e["loc"])))))
 
 
-def near_miss(given: object, known: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the known name that is similar to a given one, else ''."""
-    near = difflib.get_close_matches(str(given), known, n=1)
+def near_miss(name: object, names: Iterable[str]) -> str:
+    """'did you mean NAME? ' for the most similar of the names, else ''."""
+    near = difflib.get_close_matches(str(name), names, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
-def shown(value: object) -> str:
+def short_json(value: object) -> str:
     """Format a value as JSON, cut to 60 characters."""
     try:
         text = json.dumps(value, default=str, ensure_ascii=False)
@@ -83,9 +83,9 @@ def _line(error: "ErrorDetails") -> str:
         return f"{_dotted([*keys, *filter(None, [refusal.key])])}: {refusal}"
     if kind in UNKNOWN:
         keys[-1] = str(keys[-1])
-        known = [key for rule in _rules(keys[:-1]) for key in rule.get("properties", ())]
-        hint = near_miss(keys[-1], known)
-        return f"{_dotted(keys)}: unknown key; {hint}allowed: {', '.join(known)}"
+        names = [key for rule in _rules(keys[:-1]) for key in rule.get("properties", ())]
+        hint = near_miss(keys[-1], names)
+        return f"{_dotted(keys)}: unknown key; {hint}allowed: {', '.join(names)}"
     if kind == "missing":
         required = next(r["required"] for r in _rules(keys[:-1]) if "required" in r)
         return f"{_dotted(keys)}: missing; required: {', '.join(required)}"
@@ -97,9 +97,9 @@ def _line(error: "ErrorDetails") -> str:
         return f"{where}: {value} is not allowed; allowed: a finite number"
     types = {rule.get("type") for rule in rules}
     if isinstance(value, str) and {"number", "integer"} & types and "string" not in types:
-        return f"{where}: {shown(value)} is text; {_as_number(value)}"
+        return f"{where}: {short_json(value)} is text; {_as_number(value)}"
     hint = near_miss(value, [name for rule in rules for name in rule.get("enum", ())])
-    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {allowed_values(rules)}"
+    return f"{where}: {short_json(value)} is not allowed; {hint}allowed: {allowed_values(rules)}"
 
 
 def _keys(location: tuple[int | str, ...]) -> list[int | str]:

@@ -241,8 +241,8 @@ class Adaptive(Settings):
     @model_validator(mode="after")
     def _refuse_loose_points(self) -> Self:
         if self.tolerance is not None and self.tolerance >= self.error:
-            given, least = f"{self.tolerance:g} is not allowed", f"which is {self.error:g}"
-            raise Refusal(f"{given}; allowed: less than the error, {least}", "tolerance")
+            message = f"{self.tolerance:g} is not allowed; allowed: less than the error"
+            raise Refusal(f"{message}, which is {self.error:g}", "tolerance")
         return self
 
 

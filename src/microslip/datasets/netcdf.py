@@ -24,7 +24,7 @@ from microslip.foundation.errors import CacheError
 Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
 
-def divided(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
     """Divide a dataset into the dataset of the root and those of the groups.
 
     Parameters

@@ -35,8 +35,8 @@ def formulas_under(motion: str, name: str) -> dict:
         return forms
     exact = of_sphere[STATIC]
     if pressure.is_indenter:
-        zone, left = _of_indenter(motion, pressure)
-        exact = replace(exact, function=_each(left))
+        zone, static = _of_indenter(motion, pressure)
+        exact = replace(exact, function=_each(static))
     elif pressure.hertzian and motion != "bore":
         zone = paper.static_transverse  # an elliptic stick zone carries the same share of the load
         exact = replace(exact, function=_each(exact.function))

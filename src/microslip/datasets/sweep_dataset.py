@@ -146,11 +146,11 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
 def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
     """Write a dataset to a netCDF-4 file, atomically.
 
-    groups: groups of the file, as for `netcdf.divided`.  Equal datasets give equal bytes.  Raises
+    groups: groups of the file, as for `netcdf.divide`.  Equal datasets give equal bytes.  Raises
     CacheError if the file cannot be written; its one line recommends a remedy.
     """
     with writing_beside(path) as beside:
-        netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
+        netcdf.write(beside, *netcdf.divide(dataset, groups or {}))
 
 
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
@@ -251,7 +251,7 @@ def _transients(records: Sequence[dict]) -> dict[str, tuple]:
 
     def runs(name: str, text: str, **about: str) -> tuple:
         values = [record["result"][name] for record in records]
-        return variable(("start", "transient_step"), values, text, **about)
+        return variable(("start", "transient_step"), values, text, float, "1", **about)
 
     def steady(form: str, text: str, description: str) -> tuple:
         value = FORMS["continuous-bore"][form].function(velocity)

@@ -58,7 +58,7 @@ def build(study: str, configuration: Configuration, answer: Callable) -> object:
 
 
 def groups(study: str) -> dict:
-    """Groups in the file of a study's dataset, as for netcdf.divided: title and dims by name."""
+    """Groups in the file of a study's dataset, as for netcdf.divide: title and dims by name."""
     return _dataset_of(study).GROUPS
 
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.canonical import canonical_json
-from microslip.sweeps.map_coordinates import Box, MapCoordinates, rounded
+from microslip.sweeps.map_coordinates import Box, MapCoordinates, round_digits
 from microslip.theory.drift_threshold import first_amplitude, threshold
 from microslip.theory.kinks import Kinks, kinks_of
 
@@ -91,7 +91,7 @@ class DriftCoordinates(NamedTuple):
         least = min(float(threshold(self.motion, amplitude)), self.force)
         stretched = share * _stretched(self.force, least)
         force = least + (1.0 - least) * float(np.tanh(stretched)) ** 2
-        return rounded(self.force if share == 1.0 else force), amplitude
+        return round_digits(self.force if share == 1.0 else force), amplitude
 
     @property
     def _rows(self) -> MapCoordinates:
@@ -101,7 +101,7 @@ class DriftCoordinates(NamedTuple):
         kinks = kinks_of(self.motion).amplitudes
         if first <= low:
             return MapCoordinates((), (low, high), Kinks(kinks))
-        return MapCoordinates((), (rounded(first), high), Kinks((rounded(first), *kinks)))
+        return MapCoordinates((), (round_digits(first), high), Kinks((round_digits(first), *kinks)))
 
 
 def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarray:

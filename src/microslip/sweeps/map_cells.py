@@ -94,8 +94,8 @@ def first_cells(coordinates: MapCoordinates | DriftCoordinates) -> list[Cell]:
     return [Cell(*patch) for patch in coordinates.patches]
 
 
-def refined(
-    coordinates: MapCoordinates | DriftCoordinates, known: Answers, error: float
+def refine_cells(
+    coordinates: MapCoordinates | DriftCoordinates, answers: Answers, error: float
 ) -> Refinement:
     """Refine a map as far as the answers allow.
 
@@ -103,7 +103,7 @@ def refined(
     ----------
     coordinates : MapCoordinates or DriftCoordinates
         Coordinates of the map.
-    known : mapping of Node to (float, float)
+    answers : mapping of Node to (float, float)
         Friction and its error at the solved nodes.
     error : float
         Largest accepted error, including the errors of the nodes.
@@ -113,12 +113,12 @@ def refined(
     while pending:
         cell = pending.pop()
         nodes = cell.nodes(degrees)
-        unknown = [node for node in nodes if node not in known]
+        unknown = [node for node in nodes if node not in answers]
         if unknown:
             missing.update(unknown)
             finished.append((cell, np.inf))
             continue
-        values, errors = np.array([known[node] for node in nodes]).T
+        values, errors = np.array([answers[node] for node in nodes]).T
         surpluses = surpluses_of(values.reshape([n + 1 for n in degrees]))
         bound = errors.max() + SHARE * sum(surpluses)
         worst = _worst(cell, surpluses)

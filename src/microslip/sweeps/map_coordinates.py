@@ -125,7 +125,7 @@ class MapCoordinates(NamedTuple):
         *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
-        return tuple(rounded(value) for value in (*flat, *deep))
+        return tuple(round_digits(value) for value in (*flat, *deep))
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
         """Velocity and amplitude at scaled coordinates."""
@@ -221,6 +221,6 @@ def _at_spread_share(share: float, ends: Ends) -> float:
     return np.expm1(_between(share, (low, high))) / SPREAD
 
 
-def rounded(value: float) -> float:
+def round_digits(value: float) -> float:
     """Round a number to DIGITS significant digits."""
     return float(f"{value:.{DIGITS}g}")

@@ -16,7 +16,7 @@ from microslip.config.records import CertifiedMap
 from microslip.foundation import named_files
 from microslip.sweeps.batches import PointRequests, answer
 from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity
-from microslip.sweeps.map_cells import Answers, Node, Refinement, refined
+from microslip.sweeps.map_cells import Answers, Node, Refinement, refine_cells
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.store import Store
 from microslip.theory.kinks import kinks_of
@@ -53,7 +53,7 @@ def refine(
     """
     coordinates = coordinates_of(map_)
     answers: dict[Node, tuple[float, float]] = {}
-    while nodes := (state := refined(coordinates, answers, map_.error)).missing:
+    while nodes := (state := refine_cells(coordinates, answers, map_.error)).missing:
         requests = [_request(map_, coordinates, node) for node in nodes]
         for node, request, record in zip(nodes, requests, ask(requests), strict=True):
             answers[node] = _answer(request, record["result"])
@@ -81,7 +81,7 @@ def _answer(request: dict, result: dict) -> tuple[float, float]:
     return result["mu_macro"], result["mu_macro_error"]
 
 
-def solved(
+def solve_points(
     map_: CertifiedMap,
     store: Store,
     processes: int,

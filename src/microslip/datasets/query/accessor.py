@@ -28,10 +28,10 @@ from microslip.datasets.query.answers import (
     dataset_of,
 )
 from microslip.datasets.query.cells import CellNodes, Map
-from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
+from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
 from microslip.datasets.query.drift import Drift
 from microslip.datasets.query.nodes import Nodes, nodes_of, poisson_within, refuse_values
-from microslip.datasets.query.solver import drive_of, solved
+from microslip.datasets.query.solver import drive_of, solve_and_store
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
@@ -223,8 +223,8 @@ class Friction:
             value, error, _ = self._friction(nodes, nu, None, **points)
             return value, error
 
-        parts = [labelled("wanted", wanted)]
-        parts += [labelled(name, value) for name, value in others.items()]
+        parts = [coordinate_array("wanted", wanted)]
+        parts += [coordinate_array(name, value) for name, value in others.items()]
         parts = xr.broadcast(*parts)
         values, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
         intervals, outcome = inverse.search(at, values, other, ends)
@@ -237,10 +237,10 @@ class Friction:
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
-        coordinates = {"velocity": labelled("velocity", velocity)}
+        coordinates = {"velocity": coordinate_array("velocity", velocity)}
         if amplitude is None:
             return coordinates
-        return {"amplitude": labelled("amplitude", amplitude)} | coordinates
+        return {"amplitude": coordinate_array("amplitude", amplitude)} | coordinates
 
     def _friction(
         self,
@@ -416,7 +416,7 @@ class Friction:
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            result = solved(folder, self._motion, velocity, size, **settings)
+            result = solve_and_store(folder, self._motion, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
             if result.converged:

@@ -51,7 +51,7 @@ def dataset_of(
     """
     for part, attrs in zip(parts, about.values(), strict=True):
         part.attrs = dict(attrs)
-    found = xr.Dataset(dict(zip(about, parts, strict=True)), attrs={"motion": motion})
-    if "poisson" not in found.dims:
-        found = found.assign_coords(poisson=poisson)
-    return link_errors(found)
+    dataset = xr.Dataset(dict(zip(about, parts, strict=True)), attrs={"motion": motion})
+    if "poisson" not in dataset.dims:
+        dataset = dataset.assign_coords(poisson=poisson)
+    return link_errors(dataset)

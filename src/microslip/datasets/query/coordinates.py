@@ -18,7 +18,7 @@ DIGITS = 6
 """Number of significant digits of evenly spaced coordinates, as in a configuration."""
 
 
-def labelled(name: str, value: object) -> xr.DataArray:
+def coordinate_array(name: str, value: object) -> xr.DataArray:
     """Convert an argument to a DataArray of numbers >= 0; a sequence becomes the dimension `name`.
 
     Values in chunks of dask are not checked.
@@ -56,7 +56,7 @@ def evaluate(
     function : callable
         From the coordinates by name, float arrays of shape (n,), to arrays of shape (n,).
     coordinates : dict of xarray.DataArray
-        Coordinates as `labelled` returns them, the slowest dimension of the results first.
+        Coordinates as `coordinate_array` returns them, the slowest dimension of the results first.
     types : tuple of type
         Types of the results.
     """
@@ -64,7 +64,7 @@ def evaluate(
     def block(*parts: np.ndarray) -> tuple[np.ndarray, ...]:
         arrays = np.broadcast_arrays(*parts)
         flat = {
-            name: labelled(name, xr.DataArray(array.ravel().astype(float), dims="n")).values
+            name: coordinate_array(name, xr.DataArray(array.ravel().astype(float), dims="n")).values
             for name, array in zip(coordinates, arrays, strict=True)
         }
         results = zip(function(**flat), types, strict=True)

@@ -10,7 +10,7 @@ import xarray as xr
 from microslip.datasets import certified_map
 from microslip.datasets.query.answers import dataset_of
 from microslip.datasets.query.cells import CellTable, cells_of
-from microslip.datasets.query.coordinates import evaluate, grid_axes, labelled
+from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
 from microslip.datasets.variables import attributes, flag_attributes
 from microslip.foundation.errors import InputError
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
@@ -76,8 +76,8 @@ class Drift:
         table = cells_of(self._dataset).cells
         # An outer product has the order of dimensions of the datasets.
         coordinates = {
-            "amplitude": labelled("amplitude", amplitude),
-            "force": labelled("force", force),
+            "amplitude": coordinate_array("amplitude", amplitude),
+            "force": coordinate_array("force", force),
         }
         types = (float, float, float, np.int8)
         parts = evaluate(partial(_drift, table), coordinates, types)

@@ -137,9 +137,9 @@ class Table:
         """
         i, s, rows, row_weights = self.rows.cubics(row)
         j, t, columns, column_weights = self.columns.cubics(column)
-        picked = rows[:, :, None], columns[:, None, :]
-        value = np.einsum("ni,nj,nij->n", row_weights, column_weights, self.values[picked])
-        error = self.errors[picked].max(axis=(1, 2))
+        corners = rows[:, :, None], columns[:, None, :]
+        value = np.einsum("ni,nj,nij->n", row_weights, column_weights, self.values[corners])
+        error = self.errors[corners].max(axis=(1, 2))
         # Between two nodes the interpolation error is proportional to the product of the distances.
         for miss, share in zip(self._misses, (s, t), strict=True):
             error = error + 4.0 * share * (1.0 - share) * miss[i, j]

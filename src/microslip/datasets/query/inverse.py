@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from microslip.datasets.query.coordinates import labelled
+from microslip.datasets.query.coordinates import coordinate_array
 from microslip.datasets.variables import flags, variable
 from microslip.foundation.errors import InputError
 
@@ -46,7 +46,7 @@ def ends_of(
     if within is None:
         return float(dataset[name].min()), float(dataset[name].max())
     try:
-        low, high = labelled("within", within).values.astype(float)
+        low, high = coordinate_array("within", within).values.astype(float)
     except (TypeError, ValueError):
         low, high = 0.0, 0.0
     if not low < high:
@@ -94,6 +94,15 @@ def _search(
     at: Friction, wanted: np.ndarray, other: np.ndarray, places: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Intervals and outcomes, as for `search`, from friction at the first places."""
+
+    def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
+        return at(place, other)[0] - wanted
+
+    def excess(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Distance of friction from the requested value, less the error."""
+        value, error = at(place, other)
+        return np.abs(value - wanted) - error
+
     count = len(wanted)
     value, error = (
         part.reshape(count, -1)
@@ -108,45 +117,36 @@ def _search(
     touched = inside[:, :-1] | inside[:, 1:] | crosses
     row, first = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (1, 0))))
     last = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (0, 1))))[1] + 1
-    points = wanted[row], other[row]
+    arguments = wanted[row], other[row]
     place = np.full(len(row), np.nan)
-    crossing = np.full(len(row), -1)
-    for k, (i, begin, end) in enumerate(zip(row, first, last, strict=True)):
-        exact = begin + np.flatnonzero(off[i, begin : end + 1] == 0.0)
-        cells = begin + np.flatnonzero(crosses[i, begin:end])
+    crossings = np.full(len(row), -1)
+    for k, (i, begin, stop) in enumerate(zip(row, first, last, strict=True)):
+        exact = begin + np.flatnonzero(off[i, begin : stop + 1] == 0.0)
+        cells = begin + np.flatnonzero(crosses[i, begin:stop])
         if exact.size:
             place[k] = places[exact[len(exact) // 2]]
         elif cells.size:
-            crossing[k] = cells[len(cells) // 2]
-    crossed = crossing >= 0
-
-    def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
-        return at(place, other)[0] - wanted
-
-    def excess(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Distance of friction from the requested value, beyond the error."""
-        value, error = at(place, other)
-        return np.abs(value - wanted) - error
-
-    cells = crossing[crossed]
-    bracket = places[cells], places[cells + 1]
-    place[crossed] = _roots(difference, *bracket, points, crossed)[0]
+            crossings[k] = cells[len(cells) // 2]
+    crossed = crossings >= 0
+    lower = crossings[crossed]
+    place[crossed], _ = _roots(difference, places[lower], places[lower + 1], arguments, crossed)
     ends = []
     for node, step in ((first, 1), (last, -1)):
-        # The neighbour is within the error, or else the crossing is between both.
+        # The end lies between an outer node, outside, and an inner place: the neighbouring node if
+        # that is inside, else the place of the requested friction.
         neighbour = np.clip(node + step, 0, len(places) - 1)
         inner = np.where(inside[row, neighbour], places[neighbour], place)
         end = np.where(inside[row, node] | np.isnan(inner), places[node], inner)
-        open_end = ~inside[row, node]
-        pair = np.sort([places[node][open_end], end[open_end]], axis=0)
-        root, success = _roots(excess, *pair, points, open_end)
-        end[open_end] = np.where(success, root, end[open_end])  # an error of 0 leaves no room
+        outer = ~inside[row, node]
+        left, right = np.sort([places[node][outer], end[outer]], axis=0)
+        root, success = _roots(excess, left, right, arguments, outer)
+        end[outer] = np.where(success, root, end[outer])  # an error of 0 leaves no room
         ends.append(end)
     bounded = ~inside[row, first] & ~inside[row, last]
     number = np.bincount(row, minlength=count)
-    crosses_map = np.bincount(row, np.isfinite(place), count) > 0
+    has_place = np.bincount(row, np.isfinite(place), count) > 0
     outcome = np.select(
-        [crosses_map & (number > 1), crosses_map, number > 0, off[:, 0] > 0.0],
+        [has_place & (number > 1), has_place, number > 0, off[:, 0] > 0.0],
         [SEVERAL, FOUND, POSSIBLE, LARGER],
         SMALLER,
     )
@@ -157,18 +157,20 @@ def _roots(
     function: Callable,
     left: np.ndarray,
     right: np.ndarray,
-    points: tuple[np.ndarray, ...],
+    arguments: tuple[np.ndarray, ...],
     chosen: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Roots in brackets, and whether each was found; points: further arguments of the function, of
-    which those chosen belong to the brackets."""
+    """Roots of a function in brackets, and True where the search succeeded.
+
+    arguments: further arguments of the function; chosen: those that belong to the brackets.
+    """
     from scipy.optimize.elementwise import find_root
 
     if not len(left):
         return left, np.ones(0, bool)
-    arguments = tuple(part[chosen] for part in points)
-    answer = find_root(function, (left, right), args=arguments, tolerances=ACCURACY)
-    return answer.x, answer.success
+    more = tuple(part[chosen] for part in arguments)
+    result = find_root(function, (left, right), args=more, tolerances=ACCURACY)
+    return result.x, result.success
 
 
 def answer(

@@ -100,8 +100,8 @@ def _dataset(
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:
         return dataset
-    if group not in (known := group_names(path)):
-        raise InputError("group", group, f"allowed is one of {', '.join(known) or 'none'}")
+    if group not in (names := group_names(path)):
+        raise InputError("group", group, f"allowed is one of {', '.join(names) or 'none'}")
     part = _opened(path, chunks=chunks, group=group)
     return part.assign_attrs(dataset.attrs | part.attrs)
 

@@ -15,7 +15,7 @@ from microslip.foundation.files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
 
 
-def solved(folder: str, *point: Any, **settings: Any) -> Result:
+def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
     """Call solve_stored with a folder of results, or a temporary folder if that cannot be
     written."""
     try:
