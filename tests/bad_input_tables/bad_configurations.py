@@ -4,6 +4,7 @@ A line starts with the key at fault; its parts are the value as it was given, wh
 and what is allowed.
 """
 
+import json
 import re
 
 import yaml
@@ -190,6 +191,8 @@ SPACED = "{start: 1, stop: 2, count: %d}"
 GRID = f"{{linear: {SPACED}}}"
 CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six digits that are kept
 RATIOS = str([0.04 * i for i in range(11)])
+EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
+PROPULSION = "propulsion.motions"
 
 # Settings that are fine one by one, the key that is named, parts.
 TOGETHER = [
@@ -223,6 +226,45 @@ TOGETHER = [
         "accuracy.map.velocity x amplitude_transverse",
         "18000 points",
         "at most 10000",
+    ),
+]
+
+# Certified maps, resolutions in place of a tolerance, self-propelled motions.
+TOGETHER += [
+    ({f"{T}.adaptive": "{}"}, f"{T}.adaptive.error", "missing; required: error"),
+    (
+        {f"{T}.adaptive": "{error: 1.0e-3, tolerance: 1.0e-2}"},
+        f"{T}.adaptive.tolerance",
+        "0.01 is not allowed",
+        "less than the error",
+    ),
+    (
+        {f"{T}.adaptive.error": "1.0e-2", f"{T}.velocity": "[1]"},
+        f"{T}.adaptive",
+        "is not allowed here; allowed: with two amplitudes",
+    ),
+    (
+        {f"{T}.adaptive.error": "1.0e-2", f"{T}.cells": "8"},
+        f"{T}.adaptive",
+        "is not allowed with cells or steps imposed",
+    ),
+    ({f"{T}.tolerance": "~"}, f"{T}.tolerance", "null", "cells and steps imposed"),
+    ({f"{T}.tolerance": "~", f"{T}.cells": "8"}, f"{T}.tolerance", "or steps imposed"),
+    ({f"{C}.tolerance": "~"}, f"{C}.tolerance", "null", "or cells imposed"),
+    (
+        {PROPULSION: json.dumps({"m": EIGHT | {"motion": "bore"}})},
+        f"{PROPULSION}.m.motion",
+        "'bore': allowed is a self",
+    ),
+    (
+        {PROPULSION: json.dumps({f"m{i}": EIGHT for i in range(9)})},
+        f"{PROPULSION}.m8.panel",
+        "loops has more than 8 lines",
+    ),
+    (
+        {PROPULSION: json.dumps({f"m{i}": EIGHT | {"panel": f"p{i}"} for i in range(5)})},
+        f"{PROPULSION}.m4.panel",
+        "p4 is one of more than 4; allowed: p0, p1, p2, p3",
     ),
 ]
 
@@ -260,7 +302,7 @@ FILES = {
     "a month too many": (b"results: 2026-13-01\n", "not valid YAML", "month", "line 1"),
     "a tag": (b"results: !!python/object/apply:os.getcwd []\n", "not valid YAML", "line 1"),
     "an unknown alias": (b"sweeps: *others\n", "not valid YAML", "others"),
-    "itself inside": (b"sweeps: &s {transverse: *s}\n", "holds itself"),
+    "itself inside": (b"sweeps: &s {transverse: *s}\n", "contains itself"),
     "very deep": (b"[" * 5000, "not valid YAML"),
     "a list for a key": (b"? [1, 2]\n: 3\n", "not valid YAML", "line 1"),
 }

@@ -178,64 +178,11 @@ def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poi
     assert [grid.velocity[0] for grid in config.from_mapping(given).grids.values()] == [0, 0, 0]
 
 
-@pytest.mark.parametrize(
-    ("name", "given", "missing"),
-    [
-        ("transverse", {"amplitude": [1]}, "cells and steps"),
-        ("transverse", {"amplitude": [1], "cells": 8}, "steps"),
-        ("continuous_bore", {}, "cells"),
-    ],
-)
-def test_no_tolerance_goes_with_an_imposed_resolution_alone(name, given, missing):
-    axes = {"velocity": [1], "tolerance": None, **given}
-    with pytest.raises(ConfigError, match=f"{name}.tolerance: null .* {missing} imposed"):
-        config.from_mapping({"sweeps": {name: axes}})
-    imposed = {"cells": 8} | ({"steps": 16} if name == "transverse" else {})
-    grid = config.from_mapping({"sweeps": {name: axes | imposed}}).sweeps[name]
-    assert grid.tolerance is None
-
-
-EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
-MAP = {"velocity": [0.1, 10], "amplitude": [0, 3]}
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"motions": {"m": EIGHT | {"motion": "bore"}}}, "m.motion: 'bore': allowed is a self"),
-        ({"motions": {f"m{i}": EIGHT for i in range(9)}}, "m8.panel: loops has more than 8 lines"),
-        (
-            {"motions": {f"m{i}": EIGHT | {"panel": f"p{i}"} for i in range(5)}},
-            "m4.panel: p4 is one of more than 4; allowed: p0, p1, p2, p3",
-        ),
-    ],
-)
-def test_self_propelled_motions_propel_and_fit_on_a_figure(given, said):
-    with pytest.raises(ConfigError, match=said):
-        config.from_mapping(PAPER | {"propulsion": given})
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"error": 1e-3, "tolerance": 1e-2}, "tolerance: 0.01 is not allowed; .* less than the"),
-        ({}, "error: missing; required: error"),
-    ],
-)
-def test_points_of_a_certified_map_are_better_than_the_map(given, said):
-    with pytest.raises(ConfigError, match=rf"transverse.adaptive.{said}"):
-        config.from_mapping({"sweeps": {"transverse": MAP | {"adaptive": given}}})
-
-
-def test_a_certified_map_has_a_range_and_a_free_resolution():
-    for changed, said in (
-        ({"velocity": [1]}, "is not allowed here; allowed: with two amplitudes"),
-        ({"cells": 8}, "is not allowed with cells or steps imposed"),
-    ):
-        with pytest.raises(ConfigError, match=f"transverse.adaptive: {said}"):
-            config.from_mapping(
-                {"sweeps": {"transverse": MAP | changed | {"adaptive": {"error": 1e-2}}}}
-            )
+def test_an_imposed_resolution_goes_without_a_tolerance():
+    steady = {"velocity": [1], "tolerance": None, "cells": 8}
+    sweeps = {"transverse": steady | {"amplitude": [1], "steps": 16}, "continuous_bore": steady}
+    found = config.from_mapping({"sweeps": sweeps}).sweeps
+    assert found["transverse"].tolerance is found["continuous_bore"].tolerance is None
 
 
 def test_yaml_is_read_strictly_where_it_would_be_misread(tmp_path):

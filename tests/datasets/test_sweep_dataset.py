@@ -306,13 +306,6 @@ def test_groups_are_opened_by_name(tmp_path, solver):
         microslip.open_map("transverse", tmp_path, group="field")
 
 
-def test_a_tree_of_all_groups_opens(tmp_path, solver):
-    write("continuous_bore", tmp_path, tmp_path / "continuous_bore.nc")
-    with xr.open_datatree(tmp_path / "continuous_bore.nc", engine="netcdf4") as tree:
-        assert set(tree.children) == {"velocity_curves", "field", "transients"}
-        assert tree["transients/transient_torque"].dims == ("start", "transient_step")
-
-
 @pytest.mark.slow
 def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
     axes = {"amplitude": [0, 2]}

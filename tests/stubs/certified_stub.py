@@ -13,6 +13,13 @@ PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
 DRIFT = {"motion": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
 
 
+def record(request, mu, error=1e-4):
+    """The record of a request with a friction, or of a point that did not converge (None)."""
+    result = {"mu_macro": mu, "mu_macro_error": error, "converged": True}
+    result = {"converged": False} if mu is None else result
+    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+
+
 def configured(motion, **given):
     """The certified map of a sweep with these settings."""
     (map_,) = load.from_mapping({"sweeps": {motion: given}}).certified.values()
@@ -45,9 +52,7 @@ def bore(**given) -> xr.Dataset:
 
     def answer(request):
         velocity, amplitude = (float(request[name]) for name in ("velocity", "amplitude"))
-        mu = (velocity + 0.1) / (velocity + 0.1 + amplitude)
-        result = {"mu_macro": mu, "mu_macro_error": 1e-4, "converged": True}
-        return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+        return record(request, (velocity + 0.1) / (velocity + 0.1 + amplitude))
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | given)

@@ -165,20 +165,16 @@ def test_what_hdf5_says_on_a_full_disk_is_put_right(store, monkeypatch, said):
     assert not leftovers(store)
 
 
-def test_what_netcdf_says_stands_where_there_is_room(store):
-    with (
-        pytest.raises(CacheError, match=r"cannot write .*x.nc: NetCDF: HDF error"),
-        files.writing_beside(store.folder / "x.nc"),
-    ):
-        raise RuntimeError("NetCDF: HDF error")
-
-
-def test_a_mistake_in_a_program_stays_one(store):
-    with (
-        pytest.raises(RuntimeError, match="^dictionary changed"),
-        files.writing_beside(store.folder / "x.nc"),
-    ):
-        raise RuntimeError("dictionary changed size during iteration")
+@pytest.mark.parametrize(
+    ("error", "kind", "text"),
+    [
+        (RuntimeError("NetCDF: HDF error"), CacheError, "cannot write .*x.nc: NetCDF: HDF error"),
+        (RuntimeError("dictionary changed"), RuntimeError, "^dictionary changed"),
+    ],
+)
+def test_errors_of_netcdf_and_of_the_code_are_told_apart(store, error, kind, text):
+    with pytest.raises(kind, match=text), files.writing_beside(store.folder / "x.nc"):
+        raise error
 
 
 def test_old_halves_of_files_are_cleared_and_nothing_else(store):
