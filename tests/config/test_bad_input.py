@@ -65,8 +65,8 @@ def test_every_option_is_given_a_bad_value():
     motion = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
     motion = motion._subparsers._group_actions[0].choices["transverse"]
     options = {name for name in motion._option_string_actions if name.startswith("--")}
-    given = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
-    assert options - given == {"--help"}
+    tested = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
+    assert options - tested == {"--help"}
 
 
 @pytest.mark.slow

@@ -29,15 +29,15 @@ def saved(folder, text):
 
 
 def test_defaults_are_filled_in(tmp_path):
-    found = load(saved(tmp_path, GOOD))
-    assert found.results == "results"
-    assert found.points_per_job == dict.fromkeys(found.sweeps, 50)
-    sweep = found.sweeps["transverse"]
+    result = load(saved(tmp_path, GOOD))
+    assert result.results == "results"
+    assert result.points_per_job == dict.fromkeys(result.sweeps, 50)
+    sweep = result.sweeps["transverse"]
     assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0,), False)
     assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
-    assert found.histories["transients"]["velocity"] == 0.8
-    assert found.sweeps["continuous_bore"].motion == "continuous-bore"
-    assert found.extended == found.groups == found.drives == found.certified == {}
+    assert result.histories["transients"]["velocity"] == 0.8
+    assert result.sweeps["continuous_bore"].motion == "continuous-bore"
+    assert result.extended == result.groups == result.drives == result.certified == {}
 
 
 def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
@@ -64,28 +64,28 @@ extended:
 
 def test_mappings_are_merged_as_yaml_says(tmp_path):
     """Keys beside << replace merged keys, also in a mapping that is merged again."""
-    found = load(saved(tmp_path, MERGED))
-    assert found.sweeps["bore"].velocity == (2.0,)
-    assert found.sweeps["bore"].amplitude == (0.0, 1.0)
-    assert found.extended["again"].velocity == (3.0,)
-    assert found.extended["again"].poisson == found.sweeps["transverse"].poisson == (0.3,)
+    result = load(saved(tmp_path, MERGED))
+    assert result.sweeps["bore"].velocity == (2.0,)
+    assert result.sweeps["bore"].amplitude == (0.0, 1.0)
+    assert result.extended["again"].velocity == (3.0,)
+    assert result.extended["again"].poisson == result.sweeps["transverse"].poisson == (0.3,)
 
 
 def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
     text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
-    found = load(saved(tmp_path, text))
-    assert found.points_per_job == dict.fromkeys(found.sweeps, 3) | {"transverse": 7}
+    result = load(saved(tmp_path, text))
+    assert result.points_per_job == dict.fromkeys(result.sweeps, 3) | {"transverse": 7}
     # Datasets do not depend on it.
     plain = load(saved(tmp_path, GOOD))
-    assert found.of_sweep("transverse") == plain.of_sweep("transverse")
+    assert result.of_sweep("transverse") == plain.of_sweep("transverse")
 
 
 def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):
     text = GOOD.replace("[0.1, 1]", "[1, 0.30000000000000004, 0.1]")
-    found = load(saved(tmp_path, text)).sweeps
-    assert found["transverse"].velocity == (0.1, 0.3, 1.0)
-    assert found["bore"].velocity == (0.1, 1.0, 10.0)
-    assert found["bore"].amplitude == (0.0, 0.5, 1.0)
+    result = load(saved(tmp_path, text)).sweeps
+    assert result["transverse"].velocity == (0.1, 0.3, 1.0)
+    assert result["bore"].velocity == (0.1, 1.0, 10.0)
+    assert result["bore"].amplitude == (0.0, 0.5, 1.0)
     thirds = {"log": {"start": 1, "stop": 10, "count": 4.0}}
     ratios = {"velocity": thirds, "amplitude": [1], "poisson": [0.3, 0]}
     sweep = config.from_mapping({"sweeps": {"bore": ratios}}).sweeps["bore"]
@@ -96,27 +96,27 @@ def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["config", "smoke", "poisson", "coarse"])
 def test_shipped_configurations_are_good_and_filled_ones_are_the_same(name):
-    given, folders = config.read_yaml(ROOT / "config" / f"{name}.yaml"), [ROOT / "config"]
-    found = config.from_mapping(given, folders=folders)
-    filled = config.with_files_found(given, folders=folders)
-    assert config.from_mapping(json.loads(json.dumps(filled))) == found
+    settings, folders = config.read_yaml(ROOT / "config" / f"{name}.yaml"), [ROOT / "config"]
+    result = config.from_mapping(settings, folders=folders)
+    filled = config.with_files_found(settings, folders=folders)
+    assert config.from_mapping(json.loads(json.dumps(filled))) == result
 
 
 def test_the_default_configuration_is_that_of_the_paper():
-    found = load(ROOT / "config" / "config.yaml")
+    result = load(ROOT / "config" / "config.yaml")
     for name, top in (("transverse", 3.0), ("bore", 5.0)):
-        sweep = found.sweeps[name]
+        sweep = result.sweeps[name]
         assert len(sweep.velocity) == len(sweep.amplitude) == 25
         assert (sweep.amplitude[0], sweep.amplitude[-1]) == (0.0, top)
         assert (sweep.velocity[0], sweep.velocity[-1]) == (1e-3, 10.0)
-    assert {0.1, 1.0, 10.0} <= set(found.sweeps["continuous_bore"].velocity)
+    assert {0.1, 1.0, 10.0} <= set(result.sweeps["continuous_bore"].velocity)
     # It names all methods; the atlas cannot vary two of them.
-    assert set(found.accuracy.methods) == set(method_names.names())
-    assert set(found.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
+    assert set(result.accuracy.methods) == set(method_names.names())
+    assert set(result.stability.methods) == set(method_names.names()) - {"paper", "aspher"}
     # Its studies equal the defaults.
     plain = config.from_mapping(PAPER)
     for study in ("accuracy", "stability", "claims", "propulsion"):
-        one, other = getattr(plain, study), getattr(found, study)
+        one, other = getattr(plain, study), getattr(result, study)
         methods = {"methods": other.methods} if hasattr(other, "methods") else {}
         assert one.model_copy(update=methods) == other
     assert plain.accuracy.methods == list(method_names.names())
@@ -126,8 +126,8 @@ def test_the_default_configuration_is_that_of_the_paper():
 def test_titles_may_hold_what_is_markup_elsewhere(title):
     point = {"motion": "bore", "velocity": 1, "amplitude": 1}
     points = {"named": point | {"title": title}, title: point}
-    found = config.from_mapping(PAPER | {"accuracy": {"points": points}}).accuracy.points
-    assert found["named"].title == title in found
+    result = config.from_mapping(PAPER | {"accuracy": {"points": points}}).accuracy.points
+    assert result["named"].title == title in result
 
 
 LINE = {"motion": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}
@@ -158,15 +158,17 @@ def test_the_tables_of_all_keys_are_those_of_the_models(tmp_path):
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     for sweep, motion in config.MOTION_OF_SWEEP.items():
         for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
-            given = {"velocity": [1], "model": model, "poisson": poisson}
+            settings = {"velocity": [1], "model": model, "poisson": poisson}
             if sweep != "continuous_bore":
-                given["amplitude"] = [1]
+                settings["amplitude"] = [1]
             try:
-                config.from_mapping({"sweeps": {sweep: given}})
+                config.from_mapping({"sweeps": {sweep: settings}})
                 refused = False
             except ConfigError:
                 refused = True
-            problem = Problem(motion_named(motion), 1.0, given.get("amplitude", [None])[0], poisson)
+            problem = Problem(
+                motion_named(motion), 1.0, settings.get("amplitude", [None])[0], poisson
+            )
             assert refused == bool(MODELS[model].refuses(problem))
 
 
@@ -174,23 +176,23 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
 @pytest.mark.parametrize("poisson", [0, 0.3])
 def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):
     axes = {"velocity": [0, 1], "amplitude": [0.5], "poisson": poisson, "model": model}
-    given = {"sweeps": {"transverse": axes, "bore": axes}, "extended": {"line": LINE | axes}}
-    assert [grid.velocity[0] for grid in config.from_mapping(given).grids.values()] == [0, 0, 0]
+    settings = {"sweeps": {"transverse": axes, "bore": axes}, "extended": {"line": LINE | axes}}
+    assert [grid.velocity[0] for grid in config.from_mapping(settings).grids.values()] == [0, 0, 0]
 
 
 def test_an_imposed_resolution_goes_without_a_tolerance():
     steady = {"velocity": [1], "tolerance": None, "cells": 8}
     sweeps = {"transverse": steady | {"amplitude": [1], "steps": 16}, "continuous_bore": steady}
-    found = config.from_mapping({"sweeps": sweeps}).sweeps
-    assert found["transverse"].tolerance is found["continuous_bore"].tolerance is None
+    result = config.from_mapping({"sweeps": sweeps}).sweeps
+    assert result["transverse"].tolerance is result["continuous_bore"].tolerance is None
 
 
 def test_yaml_is_read_strictly_where_it_would_be_misread(tmp_path):
-    for text, said in (
+    for text, message in (
         ("010", "base 8"),
         ("1:30", "base 60"),
         ("1.0e-400", "nearer 0"),
         ("yes", "true is not allowed"),
     ):
-        with pytest.raises(ConfigError, match=said):
+        with pytest.raises(ConfigError, match=message):
             load(saved(tmp_path, yaml.safe_dump(PAPER) + f"points_per_job: {text}\n"))

@@ -23,8 +23,8 @@ def configured(**drives):
 def test_axes_and_numbers_become_requests_in_the_order_of_the_dataset():
     sweep = configured(springs=SPRINGS | {"mass": 2}).drives["springs"]
     requests = batches.PointRequests(sweep)
-    asked = [(r["stiffness"], r["velocity"]) for r in requests]
-    assert asked == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
+    request = [(r["stiffness"], r["velocity"]) for r in requests]
+    assert request == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
     assert {r["mass"] for r in requests} == {"2"}
     assert not any("force" in r or "damping" in r for r in requests)
 
@@ -67,24 +67,24 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("given", "said"), BAD, ids=[said for _, said in BAD])
-def test_what_does_not_go_together_is_refused_in_a_line(given, said):
+@pytest.mark.parametrize(("settings", "message"), BAD, ids=[message for _, message in BAD])
+def test_what_does_not_go_together_is_refused_in_a_line(settings, message):
     with pytest.raises(load.ConfigError) as refused:
-        configured(bad=given)
+        configured(bad=settings)
     line = str(refused.value)
     assert line.startswith("configuration: drives.bad") and "\n" not in line
-    assert said in line
+    assert message in line
 
 
 def test_a_name_is_taken_once():
     extended = {"line": {"motion": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}}
-    given = {"sweeps": PAPER, "extended": extended, "drives": {"line": SPRINGS}}
+    settings = {"sweeps": PAPER, "extended": extended, "drives": {"line": SPRINGS}}
     with pytest.raises(load.ConfigError, match="drives.line: another result has this name"):
-        load.from_mapping(given)
+        load.from_mapping(settings)
 
 
-def written(tmp_path, name, given):
-    configuration = configured(**{name: given | {"tolerance": 1e-2}})
+def written(tmp_path, name, settings):
+    configuration = configured(**{name: settings | {"tolerance": 1e-2}})
     sweep, store = configuration.drives[name], Store(tmp_path / "results")
     records = [batches.answer(r, store)[0] for r in batches.PointRequests(sweep)]
     path = tmp_path / f"{name}.nc"
@@ -98,9 +98,9 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
         assert data.velocity.dims == data.mu_macro.dims == ("amplitude", "force")
         assert data.drive == "force"
         point = data.sel(amplitude=0.5, force=0.6)
-        asked = microslip.solve("transverse", amplitude=0.5, force=0.6, tolerance=1e-2)
-        assert float(point.velocity) == asked.velocity > 0.0
-        assert float(point.velocity_error) == asked.velocity_error
+        request = microslip.solve("transverse", amplitude=0.5, force=0.6, tolerance=1e-2)
+        assert float(point.velocity) == request.velocity > 0.0
+        assert float(point.velocity_error) == request.velocity_error
         assert float(point.mu_macro) == 0.6
         # the limits over the amplitude are in the dataset, those over a velocity are not
         assert float(point.mu_static) > 0.5 and "mu_slider" not in data
@@ -117,9 +117,9 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
     with xr.open_dataset(written(tmp_path, "springs", SPRINGS | {"mass": 2})) as data:
         assert data.mu_macro.dims == ("stiffness", "amplitude", "velocity")
         assert float(data.mass) == 2.0 and data.drive == "mass, stiffness"
-        found = data.mu_macro.interp(stiffness=10.0, velocity=0.5, amplitude=1.0)
-        asked = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
-        assert float(found) == pytest.approx(asked.mu_macro, abs=1e-12)
+        result = data.mu_macro.interp(stiffness=10.0, velocity=0.5, amplitude=1.0)
+        request = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
+        assert float(result) == pytest.approx(request.mu_macro, abs=1e-12)
         assert data.stiffness.attrs["formula"] == "k u_lim / (mu F_z)"
 
 
@@ -127,17 +127,17 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
 def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
     place = {"amplitude": 1.0, "tolerance": 1e-2}
     pull = {"velocity": 0.1, "stiffness": 0.5, "damping": 0.1}
-    for given in ({"force": 0.4}, {"force": 1.5}, pull):
+    for settings in ({"force": 0.4}, {"force": 1.5}, pull):
         first, again = (
-            microslip.solve_stored("transverse", results=tmp_path, **place, **given).to_dict()
+            microslip.solve_stored("transverse", results=tmp_path, **place, **settings).to_dict()
             for _ in range(2)
         )
-        asked = microslip.solve("transverse", **place, **given).to_dict()
-        for one in (first, again, asked):
+        request = microslip.solve("transverse", **place, **settings).to_dict()
+        for one in (first, again, request):
             one.pop("solve_time_s")
-        assert first.keys() >= {*given}
+        assert first.keys() >= {*settings}
         assert plain(first) == plain(again)
-        stored, fresh = plain(first), {k: v for k, v in plain(asked).items() if v is not None}
+        stored, fresh = plain(first), {k: v for k, v in plain(request).items() if v is not None}
         assert {name: stored[name] for name in fresh} == fresh
 
 
@@ -150,14 +150,14 @@ PAIR = {
 
 
 def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path):
-    given = configured(pair=PAIR)
-    sweep, store = given.drives["pair"], Store(tmp_path)
+    settings = configured(pair=PAIR)
+    sweep, store = settings.drives["pair"], Store(tmp_path)
     (request,) = batches.PointRequests(sweep)
     assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
     points = [batches.answer(request, store)[0]]
     assert points[0]["result"]["velocity"] == 0.0  # the force is below the static limit, 0.7^1.5
     path = tmp_path / "pair.nc"
-    sweep_dataset.write_sweep(path, sweep, points, [], given.of_sweep("pair"))
+    sweep_dataset.write_sweep(path, sweep, points, [], settings.of_sweep("pair"))
     with xr.open_dataset(path) as data:
         assert data.attrs["contacts"] == PAIR["contacts"]
         assert "mu_static" not in data and float(data["velocity"].squeeze()) == 0.0

@@ -34,19 +34,19 @@ POWER = "power:exponent=1"
 
 
 def test_defaults_are_those_of_other_sweeps():
-    found = configured(circle=CIRCLE)
-    sweep = found.extended["circle"]
+    result = configured(circle=CIRCLE)
+    sweep = result.extended["circle"]
     assert (sweep.pressure, sweep.group, sweep.title) == ("hertz", "loops", "circle")
     assert (sweep.model, sweep.tolerance, sweep.poisson) == ("auto", 1e-3, (0.0,))
-    assert list(found.grids) == ["bore", "circle"]
-    assert found.of_sweep("circle")["histories"] == {}
+    assert list(result.grids) == ["bore", "circle"]
+    assert result.of_sweep("circle")["histories"] == {}
 
 
 def test_groups_keep_the_order_of_their_sweeps():
     lines = CIRCLE | {"group": "still", "velocity": [0.1]}
-    found = configured(b=CIRCLE, c=lines, a=CIRCLE)
-    assert found.groups == {"loops": ("b", "a"), "still": ("c",)}
-    assert found.extended["c"].drawn_over == "amplitude"
+    result = configured(b=CIRCLE, c=lines, a=CIRCLE)
+    assert result.groups == {"loops": ("b", "a"), "still": ("c",)}
+    assert result.extended["c"].drawn_over == "amplitude"
 
 
 def test_a_steady_motion_has_no_amplitude():
@@ -77,9 +77,9 @@ def test_a_figure_has_room_for_so_many():
 
 
 def test_jobs_do_not_ask_the_solver():
-    given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
-    found = load.from_mapping(given, ask_solver=False)
-    assert found.extended["circle"].motion == "no such"
+    changes = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
+    result = load.from_mapping(changes, ask_solver=False)
+    assert result.extended["circle"].motion == "no such"
 
 
 ALONE = """
@@ -115,8 +115,8 @@ def test_a_plain_point_is_asked_for_as_ever():
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.PointRequests(plain.sweeps["bore"])
     assert "pressure" not in expected
-    (found,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
-    assert found == expected
+    (result,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
+    assert result == expected
 
 
 def test_equal_motions_are_asked_for_alike():
@@ -126,18 +126,18 @@ def test_equal_motions_are_asked_for_alike():
 
 
 def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypatch, tmp_path):
-    solver, seen = Solver(monkeypatch), []
+    solver, calls = Solver(monkeypatch), []
 
-    def solve(*place, **given):
-        seen.append(given.get("pressure"))
-        return solver.solve(*place, **given)
+    def solve(*place, **changes):
+        calls.append(changes.get("pressure"))
+        return solver.solve(*place, **changes)
 
     monkeypatch.setattr("microslip.solve", solve)
     requests = requests_of(pressure="power:exponent=1.0")
     assert {request["pressure"] for request in requests} == {POWER}
     sweep.run_batch(requests, Store(tmp_path))
     sweep.run_batch(requests_of(), Store(tmp_path))
-    assert seen == 4 * [POWER] + 4 * [None]
+    assert calls == 4 * [POWER] + 4 * [None]
     assert sweep.label(requests[0]).startswith("elliptic at pressure power:exponent=1, poisson 0")
 
 
@@ -160,8 +160,8 @@ def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, m
     monkeypatch.chdir(here)
     path = with_pressure(beside, "file:pad.csv")
 
-    def digest(found):
-        return found.extended["pad"].pressure
+    def digest(result):
+        return result.extended["pad"].pressure
 
     first = digest(load.load(path))
     assert first == pressure_named(f"file:{beside / 'pad.csv'}").name
@@ -170,9 +170,11 @@ def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, m
     (here / "pad.csv").unlink()
     with pytest.raises(load.ConfigError) as refused:
         load.load(path)
-    said = str(refused.value)
-    assert said.startswith(f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read")
-    assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in said
+    message = str(refused.value)
+    assert message.startswith(
+        f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read"
+    )
+    assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in message
     # A job for other sweeps does not need the file.
     mapping = load.read_yaml(path)
     assert load.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
@@ -183,25 +185,25 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     (tmp_path / "sub").mkdir()
     (tmp_path / "pad.csv").write_text(EVEN)
     (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
-    asked = []
+    request = []
     for folder, name in (
         (tmp_path, "file:pad.csv"),
         (tmp_path, "file:./sub/../pad.csv"),
         (tmp_path / "sub", "file:link.csv"),
         (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
     ):
-        found = load.load(with_pressure(folder, name))
-        asked.append([*sweep.PointRequests(found.extended["pad"])])
-        assert str(tmp_path) not in json.dumps(found.of_sweep("pad"))
-    assert all(requests == asked[0] for requests in asked)
-    assert asked[0][0]["pressure"].startswith("file:sha256=")
+        result = load.load(with_pressure(folder, name))
+        request.append([*sweep.PointRequests(result.extended["pad"])])
+        assert str(tmp_path) not in json.dumps(result.of_sweep("pad"))
+    assert all(requests == request[0] for requests in request)
+    assert request[0][0]["pressure"].startswith("file:sha256=")
     # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
     handed = load.with_files_found(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
-    found = load.from_mapping(handed, ask_solver=False)
-    assert [*sweep.PointRequests(found.extended["pad"])] == asked[0]
+    result = load.from_mapping(handed, ask_solver=False)
+    assert [*sweep.PointRequests(result.extended["pad"])] == request[0]
     assert load.with_files_found(handed) == handed
 
 
@@ -234,8 +236,8 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     Solver(monkeypatch)
     data = built(tmp_path, motion="elliptic:phase=90.0", title="a circle")
     assert data.mu_macro.dims == ("amplitude", "velocity")
-    said = {key: data.attrs[key] for key in ("motion", "pressure", "title", "group")}
-    assert said == {
+    message = {key: data.attrs[key] for key in ("motion", "pressure", "title", "group")}
+    assert message == {
         "motion": "elliptic",
         "pressure": "hertz",
         "title": "a circle",

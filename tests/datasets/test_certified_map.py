@@ -102,9 +102,9 @@ def test_a_point_that_failed_leaves_its_cells_unanswered(made):
     there = float(bad["velocity"]) * 1.01, float(bad["amplitude"]) * 0.99
     answer = data.microslip.at(*there)
     assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
-    said = list(certified_map.report(data, "certified_transverse"))
-    assert "1 not converged" in said[0]
-    assert "cells are not within 0.01" in said[1]
+    message = list(certified_map.report(data, "certified_transverse"))
+    assert "1 not converged" in message[0]
+    assert "cells are not within 0.01" in message[1]
 
 
 def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
@@ -174,8 +174,8 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
     axes |= {"motion": "longitudinal", "adaptive": {"error": 0.03}}
     paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
-    given = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}})
-    (map_,) = given.certified.values()
+    settings = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}})
+    (map_,) = settings.certified.values()
 
     def answered(request):
         place = float(request["velocity"]), float(request["amplitude"])

@@ -72,8 +72,8 @@ def test_grids_and_questions_the_other_way_round_have_one(dataset):
     xr.testing.assert_identical(
         grid, dataset.microslip.at(grid.velocity.values, grid.amplitude.values, poisson=0.2)
     )
-    found = dataset.microslip.solve_for(0.5, amplitude=1.0, poisson=0.2)
-    low, high = (float(found[name][0]) for name in ("velocity_low", "velocity_high"))
+    result = dataset.microslip.solve_for(0.5, amplitude=1.0, poisson=0.2)
+    low, high = (float(result[name][0]) for name in ("velocity_low", "velocity_high"))
     # the invented friction is exact, so that it has the wanted value inside the interval
     assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
 

@@ -20,8 +20,8 @@ def record(request):
     return certified_stub.record(request, mu, error=1e-5)
 
 
-def built(**given):
-    map_ = certified_stub.configured("transverse", **STATIC | given)
+def built(**settings):
+    map_ = certified_stub.configured("transverse", **STATIC | settings)
     return certified_map.build(map_, certified_stub.played(map_, record))
 
 
@@ -54,8 +54,8 @@ def test_over_poissons_ratio_it_answers_at_any():
     answer = dataset.microslip.at(0.0, amplitude, poisson=0.35)
     truth = paper.static_limit_transverse(amplitude.values) * (1.0 - 0.1 * 0.35**2)
     assert bool((abs(answer.mu_macro - truth) <= answer.mu_macro_error).all())
-    found = dataset.microslip.solve_for(0.5, velocity=0.0, poisson=0.35)
-    low, high = (float(found[name][0]) for name in ("amplitude_low", "amplitude_high"))
+    result = dataset.microslip.solve_for(0.5, velocity=0.0, poisson=0.35)
+    low, high = (float(result[name][0]) for name in ("amplitude_low", "amplitude_high"))
     friction = [paper.static_limit_transverse(a) * (1.0 - 0.1 * 0.35**2) for a in (high, low)]
     assert friction[0] <= 0.5 <= friction[1]
 

@@ -27,8 +27,8 @@ def dataset(tmp_path_factory):
         return opened.load()
 
 
-def configured(**given):
-    drives = {"weights": DRIFT | given}
+def configured(**settings):
+    drives = {"weights": DRIFT | settings}
     return load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
 
@@ -129,14 +129,14 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("given", "said"), BAD, ids=[said for _, said in BAD])
-def test_what_has_no_such_map_is_refused_in_a_line(given, said):
-    given = {name: value for name, value in (DRIFT | given).items() if value is not None}
+@pytest.mark.parametrize(("settings", "message"), BAD, ids=[message for _, message in BAD])
+def test_what_has_no_such_map_is_refused_in_a_line(settings, message):
+    settings = {name: value for name, value in (DRIFT | settings).items() if value is not None}
     with pytest.raises(ConfigError) as refused:
-        load.from_mapping({"sweeps": certified_stub.PAPER, "drives": {"weights": given}})
+        load.from_mapping({"sweeps": certified_stub.PAPER, "drives": {"weights": settings}})
     line = str(refused.value)
     assert line.startswith("configuration: drives.weights.adaptive: ") and "\n" not in line
-    assert said in line
+    assert message in line
 
 
 @pytest.mark.long
@@ -146,7 +146,7 @@ def test_the_solver_agrees_at_places_that_no_map_has_used():
     rng = np.random.default_rng(17)
     for amplitude in rng.uniform(0.3, 2.0, 6):
         force = rng.uniform(float(threshold("transverse", amplitude)), 0.95)
-        found = microslip.solve("transverse", None, amplitude, force=force, tolerance=3e-3)
+        result = microslip.solve("transverse", None, amplitude, force=force, tolerance=3e-3)
         answer = data.microslip.at(force, amplitude)
-        off = abs(float(answer.velocity) - found.velocity)
-        assert off <= float(answer.velocity_error) + found.velocity_error
+        off = abs(float(answer.velocity) - result.velocity)
+        assert off <= float(answer.velocity_error) + result.velocity_error

@@ -24,17 +24,19 @@ def peaked(error=0.0):
 @pytest.mark.parametrize("sought", ["velocity", "amplitude"])
 def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
     dataset = eq6_map(1e-3)
-    known = {"amplitude": 1.2} if sought == "velocity" else {"velocity": 0.5}
+    reference = {"amplitude": 1.2} if sought == "velocity" else {"velocity": 0.5}
     wanted = np.array([0.5, 0.7, 0.9])
-    answer = dataset.microslip.solve_for(wanted, **known)
+    answer = dataset.microslip.solve_for(wanted, **reference)
     assert answer[sought].dims == ("wanted", "root") and outcome(answer) == ["found"] * 3
     at = answer[sought].isel(root=0)
-    back = dataset.microslip.at(**{sought: at}, **known)
+    back = dataset.microslip.at(**{sought: at}, **reference)
     assert back.mu_macro.values == pytest.approx(wanted, abs=1e-9)
     # At the ends friction differs from the wanted value by its error.
     sign = 1.0 if sought == "velocity" else -1.0
     for end, side in (("low", -sign), ("high", sign)):
-        there = dataset.microslip.at(**{sought: answer[f"{sought}_{end}"].isel(root=0)}, **known)
+        there = dataset.microslip.at(
+            **{sought: answer[f"{sought}_{end}"].isel(root=0)}, **reference
+        )
         off = there.mu_macro - wanted
         assert off.values == pytest.approx(side * there.mu_macro_error.values, rel=1e-6)
     assert answer.bounded.values.all()
@@ -47,8 +49,8 @@ def test_the_interval_is_that_of_a_closed_form():
     expected += [[1.0 + 1.5 * np.sqrt(0.25 + k) for k in (0.0, -0.01, 0.01)]]
     assert outcome(answer) == ["several"]
     names = ("amplitude", "amplitude_low", "amplitude_high")
-    found = np.stack([answer[name].values for name in names], axis=1)
-    assert found == pytest.approx(np.array(expected), abs=1e-8)
+    result = np.stack([answer[name].values for name in names], axis=1)
+    assert result == pytest.approx(np.array(expected), abs=1e-8)
 
 
 def test_two_places_that_the_error_does_not_tell_apart_are_one():
@@ -65,9 +67,9 @@ def test_what_is_nowhere_and_what_may_be_somewhere():
     assert outcome(answer) == [OUTCOMES[2], OUTCOMES[4], OUTCOMES[3]]
     assert np.isnan(answer.amplitude.values).all()
     reach = 1.5 * np.sqrt(0.01)
-    found = answer.isel(wanted=0, root=0)
-    assert float(found.amplitude_low) == pytest.approx(1.0 - reach, abs=1e-8)
-    assert float(found.amplitude_high) == pytest.approx(1.0 + reach, abs=1e-8)
+    result = answer.isel(wanted=0, root=0)
+    assert float(result.amplitude_low) == pytest.approx(1.0 - reach, abs=1e-8)
+    assert float(result.amplitude_high) == pytest.approx(1.0 + reach, abs=1e-8)
     assert np.isnan(answer.amplitude_low.values[1:]).all()
 
 
@@ -110,7 +112,7 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
 
 
 @pytest.mark.parametrize(
-    ("question", "said"),
+    ("question", "message"),
     [
         ({}, "one of velocity and amplitude"),
         ({"velocity": 1.0, "amplitude": 1.0}, "one of velocity and amplitude"),
@@ -120,6 +122,6 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
         ({"velocity": 1.0, "poisson": 0.3}, "poisson"),
     ],
 )
-def test_bad_questions_are_refused(question, said):
-    with pytest.raises(InputError, match=said):
+def test_bad_questions_are_refused(question, message):
+    with pytest.raises(InputError, match=message):
         eq6_map(0.0).microslip.solve_for(0.5, **question)

@@ -30,13 +30,13 @@ def test_under_the_power_2_they_are_the_papers(motion):
 def test_eq_9_is_the_load_where_the_displacement_reaches(name):
     """The stick radius is interpolated in the depth of the indenter; the load is a quadrature."""
     pressure = pressure_named(name)
-    found = value("transverse", name, "mu_static_stick_zone", 0.4)
+    result = value("transverse", name, "mu_static_stick_zone", 0.4)
     radius = np.linspace(0.0, 1.0, 100001)
     stick = radius[np.searchsorted(pressure.depth(radius), 0.6)]
-    assert found == pytest.approx(
+    assert result == pytest.approx(
         axisymmetric.static_stick_zone_of(lambda r: float(pressure.bound(r)), stick), abs=1e-4
     )
-    assert indenters.static_stick_zone(pressure, stick) == pytest.approx(found, abs=1e-4)
+    assert indenters.static_stick_zone(pressure, stick) == pytest.approx(result, abs=1e-4)
 
 
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ellipse:ratio=0.3"])
@@ -70,8 +70,8 @@ def test_the_steady_bore_is_eqs_17_and_18():
 
         return quad(ring, 0.0, 1.0, limit=200, points=[v] if v < 1.0 else None)[0] / load
 
-    found = value("continuous-bore", name, "mu_forward_theory", [1.5])
-    assert found == pytest.approx([resistance(1.5)], abs=1e-6)
+    result = value("continuous-bore", name, "mu_forward_theory", [1.5])
+    assert result == pytest.approx([resistance(1.5)], abs=1e-6)
 
 
 def _share(v, r, t):
@@ -81,7 +81,7 @@ def _share(v, r, t):
 
 
 def test_datasets_of_other_pressures_have_them():
-    given = {
+    settings = {
         "sweeps": {"continuous_bore": {"velocity": [0.5]}},
         "extended": {
             "cone": {
@@ -93,10 +93,10 @@ def test_datasets_of_other_pressures_have_them():
             }
         },
     }
-    found = theory_limits.variables(config.from_mapping(given).extended["cone"])
+    result = theory_limits.variables(config.from_mapping(settings).extended["cone"])
     names = {"mu_large_amplitude", "mu_static_slider", "mu_static_stick_zone", "mu_static"}
-    assert names <= found.keys()
-    dims, values, attributes = found["mu_static_stick_zone"]
+    assert names <= result.keys()
+    dims, values, attributes = result["mu_static_stick_zone"]
     assert dims == ("amplitude",)
     assert values[1] == pytest.approx(
         indenters.static_stick_zone(pressure_named("power:exponent=1"), 0.5)

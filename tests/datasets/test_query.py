@@ -231,17 +231,17 @@ PARTS = {
 @pytest.mark.parametrize("part", PARTS)
 def test_a_part_of_a_dataset_answers_as_the_whole(part):
     whole = made_up(error=1e-4, tolerance=1e-3)
-    known, answer = (data.microslip.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
-    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    reference, answer = (data.microslip.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
+    assert float(answer.mu_macro) == pytest.approx(float(reference.mu_macro), abs=1e-12)
     # the error depends on the nodes around the cell, which all selections contain
-    assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
+    assert float(answer.mu_macro_error) == pytest.approx(float(reference.mu_macro_error), rel=1e-9)
 
 
 def test_one_column_of_a_map_knows_its_own_velocity():
     whole = made_up(error=1e-4)
     answer = whole.isel(velocity=6).microslip.at(float(VELOCITY[6]), 1.3)
-    known = whole.microslip.at(float(VELOCITY[6]), 1.3)
-    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    reference = whole.microslip.at(float(VELOCITY[6]), 1.3)
+    assert float(answer.mu_macro) == pytest.approx(float(reference.mu_macro), abs=1e-12)
     assert SOURCES[int(whole.isel(velocity=6).microslip.at(1.0, 1.3).source)] != "map"
 
 
@@ -308,10 +308,10 @@ def test_what_is_proved_of_one_contact_at_a_velocity_is_not_said_of_others(attri
 
 def test_the_solver_is_asked_for_the_drive_and_the_contacts_of_the_dataset(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    given = {"stiffness": 0.5, "mass": 0.0}
-    spring = made_up().assign_attrs(SPRING).assign_coords(given)
+    settings = {"stiffness": 0.5, "mass": 0.0}
+    spring = made_up().assign_attrs(SPRING).assign_coords(settings)
     both = made_up().assign_attrs(ANTIPHASE)
-    for dataset, more in ((spring, given), (both, ANTIPHASE)):
+    for dataset, more in ((spring, settings), (both, ANTIPHASE)):
         answer = dataset.microslip.at(0.3, 50.0, tolerance=1e-2)
         truth = microslip.solve("transverse", 0.3, 50.0, tolerance=1e-2, **more)
         assert SOURCES[int(answer.source)] == "solver"
@@ -459,18 +459,18 @@ def results(tmp_path):
 
 
 def test_open_map_is_plain_xarray(results):
-    found = open_map("transverse", results, chunks={})
-    assert found.mu_macro.chunks is not None
-    row = found.mu_macro.sel(amplitude=1.5)
+    result = open_map("transverse", results, chunks={})
+    assert result.mu_macro.chunks is not None
+    row = result.mu_macro.sel(amplitude=1.5)
     assert float(row.interp(velocity=0.1)) == pytest.approx(
-        float(found.microslip.at(0.1, 1.5).mu_macro), abs=0.02
+        float(result.microslip.at(0.1, 1.5).mu_macro), abs=0.02
     )
 
 
 def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
-    found = open_map("transverse", results)
-    plain = found.microslip.at(0.0123, 0.777)
-    exact = found.microslip.at(0.0123, 0.777, tolerance=1e-3)
+    result = open_map("transverse", results)
+    plain = result.microslip.at(0.0123, 0.777)
+    exact = result.microslip.at(0.0123, 0.777, tolerance=1e-3)
     assert float(plain.mu_macro_error) > 1e-3 >= float(exact.mu_macro_error)
     assert SOURCES[int(exact.source)] == "solver"
     truth = microslip.solve("transverse", 0.0123, 0.777)
@@ -480,7 +480,7 @@ def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
 
 
 def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypatch):
-    found = open_map("transverse", results)
+    result = open_map("transverse", results)
     refused = files.check_room
 
     def read_only(folder, *rest):
@@ -490,9 +490,9 @@ def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypa
 
     monkeypatch.setattr(files, "check_room", read_only)
     before = sorted(results.rglob("*"))
-    assert np.isfinite(found.microslip.at(0.0123, 0.777).mu_macro)
+    assert np.isfinite(result.microslip.at(0.0123, 0.777).mu_macro)
     with pytest.warns(UserWarning, match="results are not stored: .*Read-only file system"):
-        exact = found.microslip.at(0.0123, 0.777, tolerance=1e-3)
+        exact = result.microslip.at(0.0123, 0.777, tolerance=1e-3)
     assert float(exact.mu_macro) == microslip.solve("transverse", 0.0123, 0.777).mu_macro
     assert sorted(results.rglob("*")) == before
 

@@ -99,10 +99,10 @@ def test_references_say_where_they_come_from(accuracy):
 
 def test_a_reference_that_did_not_converge_says_so():
     def result(request):
-        found = accuracy_result(request)
+        answer = accuracy_result(request)
         if request["kind"] == "point":
-            found |= {"converged": False, "reason": "stalled"}
-        return found
+            answer |= {"converged": False, "reason": "stalled"}
+        return answer
 
     data = registry.build("accuracy", configured(), answered(result)[0])
     assert data.reference_source.values[0] == "model radial, tolerance 1e-6, not met: stalled"
@@ -111,9 +111,9 @@ def test_a_reference_that_did_not_converge_says_so():
 
 def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
     assert list(accuracy.map_tolerance.values) == [0.01, 0.001]
-    found = accuracy.transverse_cheapest
-    assert found.dims == ("map_tolerance", "transverse_amplitude", "transverse_velocity")
-    assert (found.sel(map_tolerance=0.01) == "slider").all()
+    result = accuracy.transverse_cheapest
+    assert result.dims == ("map_tolerance", "transverse_amplitude", "transverse_velocity")
+    assert (result.sel(map_tolerance=0.01) == "slider").all()
     # The error of models with cells is 0.1/cells^2, which is below 1e-3 from 12 cells on.
     tight = accuracy.sel(map_tolerance=0.001)
     assert set(tight.transverse_cheapest.values.flat) <= {"mdr", "radial", "rigid", "cartesian"}
@@ -125,8 +125,8 @@ def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
 
 def test_where_no_model_is_good_enough_the_map_is_empty():
     def result(request):
-        found = accuracy_result(request)
-        return found | {"mu_macro": 0.9} if request["kind"] == "trial" else found
+        answer = accuracy_result(request)
+        return answer | {"mu_macro": 0.9} if request["kind"] == "trial" else answer
 
     data = registry.build("accuracy", configured(), answered(result)[0])
     assert (data.bore_cheapest == "").all()

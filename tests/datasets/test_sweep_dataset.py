@@ -301,8 +301,8 @@ def test_groups_are_opened_by_name(tmp_path, solver):
     assert history.history_force_forward.dims == ("history_step",)
     assert history.source_digest == microslip.open_map("transverse", tmp_path).source_digest
     assert "Figure 1" in history.title
-    known = "velocity_curves, amplitude_curves, history"
-    with pytest.raises(InputError, match=f"group = 'field': allowed is one of {known}"):
+    reference = "velocity_curves, amplitude_curves, history"
+    with pytest.raises(InputError, match=f"group = 'field': allowed is one of {reference}"):
         microslip.open_map("transverse", tmp_path, group="field")
 
 
@@ -343,18 +343,18 @@ def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
 
 
 def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solver):
-    said = ["no \u03bd " + "\u03b1" * 300, "short", ""]
+    message = ["no \u03bd " + "\u03b1" * 300, "short", ""]
     answer = solver.solve
 
     def solve(motion, velocity, *rest, **more):
-        found = answer(motion, velocity, *rest, **more).to_dict()
-        found["reason"] = said[[0.1, 1.0, 10.0].index(velocity)]
-        return SimpleNamespace(to_dict=lambda: found)
+        result = answer(motion, velocity, *rest, **more).to_dict()
+        result["reason"] = message[[0.1, 1.0, 10.0].index(velocity)]
+        return SimpleNamespace(to_dict=lambda: result)
 
     monkeypatch.setattr("microslip.solve", solve)
     reason = built("continuous_bore", tmp_path).reason.values.tolist()
-    assert reason[1:] == said[1:]
-    assert said[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
+    assert reason[1:] == message[1:]
+    assert message[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
     assert len(reason[0].encode()) <= point_variables.WIDTHS["reason"]
 
 
@@ -367,8 +367,8 @@ def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
     with xr.open_dataset(tmp_path / "part.nc") as again:
         xr.testing.assert_identical(again.load(), part.load())
     shown = data.mu_macro.plot()
-    said = (shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel())
-    assert [" ".join(text.split()) for text in said] == [
+    message = (shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel())
+    assert [" ".join(text.split()) for text in message] == [
         "forward velocity, v0 / (omega u_lim) [1]",
         "amplitude, y0 / u_lim [1]",
         "mean forward friction force over mu F_z [1]",

@@ -34,8 +34,8 @@ def store(tmp_path):
 
 
 def test_requests_are_canonical_and_run_through_the_velocity_fastest():
-    found = [(r["amplitude"], r["velocity"]) for r in requests_of()]
-    assert found == [(a, v) for a in ("0", "1", "2") for v in ("0.1", "1")]
+    result = [(r["amplitude"], r["velocity"]) for r in requests_of()]
+    assert result == [(a, v) for a in ("0", "1", "2") for v in ("0.1", "1")]
     assert requests_of(amplitude=[2.0, 1, 0.0]) == requests_of()
 
 

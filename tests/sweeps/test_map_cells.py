@@ -27,11 +27,11 @@ DEEP = MapCoordinates((0.001, 10.0), (0.0, 3.0), kinks_of("transverse"), (0.1, 0
 def played(coordinates, function, error):
     """Refine a map of a function of velocity and amplitude; return the answers and the number of
     rounds, too."""
-    known, rounds = {}, 0
-    while (found := refine_cells(coordinates, known, error)).missing:
-        known |= {node: (function(*coordinates.place(node)), 0.0) for node in found.missing}
+    reference, rounds = {}, 0
+    while (result := refine_cells(coordinates, reference, error)).missing:
+        reference |= {node: (function(*coordinates.place(node)), 0.0) for node in result.missing}
         rounds += 1
-    return found, known, rounds
+    return result, reference, rounds
 
 
 # Coordinates
@@ -58,8 +58,8 @@ def test_a_place_has_the_scaled_coordinates_that_it_was_asked_for(coordinates):
 @pytest.mark.parametrize("coordinates", [PLAIN, TRANSVERSE, BORE])
 def test_velocities_reach_from_the_slowest_to_the_fastest(coordinates):
     ends = coordinates.patches[0][0][0], coordinates.patches[-1][1][0]
-    found = tuple(coordinates.place((x, 0.3))[0] for x in ends)
-    assert found == coordinates.velocity
+    result = tuple(coordinates.place((x, 0.3))[0] for x in ends)
+    assert result == coordinates.velocity
 
 
 def test_kinks_are_borders_of_patches():
@@ -108,10 +108,10 @@ def test_coordinates_survive_as_text():
 
 def test_no_more_than_a_cell_for_each_patch_is_asked_where_that_is_enough():
     # a linear function of the scaled coordinates
-    found, known, rounds = played(PLAIN, lambda v, a: np.log(v) + np.log(1 + 2 * a), 1e-6)
-    assert list(found.cells) == first_cells(PLAIN)
-    assert (len(known), rounds) == (25, 1)
-    assert found.errors == pytest.approx([0.0], abs=1e-8)
+    result, reference, rounds = played(PLAIN, lambda v, a: np.log(v) + np.log(1 + 2 * a), 1e-6)
+    assert list(result.cells) == first_cells(PLAIN)
+    assert (len(reference), rounds) == (25, 1)
+    assert result.errors == pytest.approx([0.0], abs=1e-8)
 
 
 def test_surpluses_are_differences_of_the_fourth_order():
@@ -125,19 +125,19 @@ def test_surpluses_are_differences_of_the_fourth_order():
 
 
 def test_cells_are_halved_along_the_direction_that_is_worse():
-    found, _, _ = played(PLAIN, lambda v, a: np.sin(9 * np.log(v)) + np.log(1 + 2 * a), 1e-3)
-    widths = {cell.end[1] - cell.begin[1] for cell in found.cells}
+    result, _, _ = played(PLAIN, lambda v, a: np.sin(9 * np.log(v)) + np.log(1 + 2 * a), 1e-3)
+    widths = {cell.end[1] - cell.begin[1] for cell in result.cells}
     assert widths == {1.0}
-    assert len(found.cells) > 2
+    assert len(result.cells) > 2
 
 
 def test_cells_gather_where_a_function_is_not_smooth_and_cover_the_map():
-    found, _, _ = played(PLAIN, lambda v, a: abs(np.log(v) - np.log(0.03)), 1e-2)
-    size = {cell: cell.end[0] - cell.begin[0] for cell in found.cells}
+    result, _, _ = played(PLAIN, lambda v, a: abs(np.log(v) - np.log(0.03)), 1e-2)
+    size = {cell: cell.end[0] - cell.begin[0] for cell in result.cells}
     at_kink = np.log(3) / np.log(100)
     nearest = min(size, key=lambda cell: abs(0.5 * (cell.begin[0] + cell.end[0]) - at_kink))
     assert size[nearest] == min(size.values()) < max(size.values())
-    area = sum(np.prod(np.subtract(cell.end, cell.begin)) for cell in found.cells)
+    area = sum(np.prod(np.subtract(cell.end, cell.begin)) for cell in result.cells)
     assert area == pytest.approx(1.0)
 
 
@@ -145,10 +145,10 @@ def test_what_is_promised_holds_for_a_function_with_layers():
     def function(v, a):
         return np.tanh(4 * (np.log10(v) + 1.2)) * np.exp(-a) + 1 / (1 + 8 * (a - 1.1) ** 2)
 
-    found, known, _ = played(PLAIN, function, 3e-3)
+    result, reference, _ = played(PLAIN, function, 3e-3)
     rng, off = np.random.default_rng(3), []
-    for cell, bound in zip(found.cells, found.errors, strict=True):
-        values = np.array([known[node][0] for node in cell.nodes((4, 4))]).reshape(5, 5)
+    for cell, bound in zip(result.cells, result.errors, strict=True):
+        values = np.array([reference[node][0] for node in cell.nodes((4, 4))]).reshape(5, 5)
         for node in rng.uniform(cell.begin, cell.end, (20, 2)):
             s, t = 4 * (node - cell.begin) / np.subtract(cell.end, cell.begin)
             between = [np.polyval(np.polyfit(range(5), row, 4), t) for row in values]
@@ -156,7 +156,7 @@ def test_what_is_promised_holds_for_a_function_with_layers():
             off.append(abs(value - function(*PLAIN.place(tuple(node)))) / bound)
     assert len(off) > 400
     assert np.mean(np.array(off) <= 1.0) >= 0.99
-    assert max(found.errors) <= 3e-3
+    assert max(result.errors) <= 3e-3
 
 
 def test_what_five_nodes_do_not_show_is_halved_however_loose_the_error():
@@ -165,41 +165,41 @@ def test_what_five_nodes_do_not_show_is_halved_however_loose_the_error():
     def function(v, a):
         return 0.6 * (np.log(v / 0.01) / np.log(100)) ** 4
 
-    found, _, _ = played(PLAIN, function, 0.1)
+    result, _, _ = played(PLAIN, function, 0.1)
     assert 0.6 * 3 / 32 > RESOLVED > 0.6 * 3 / 32 / 16
-    assert {cell.end[0] - cell.begin[0] for cell in found.cells} == {0.5}
+    assert {cell.end[0] - cell.begin[0] for cell in result.cells} == {0.5}
 
 
 def test_errors_of_nodes_count():
     (cell,) = first_cells(PLAIN)
     nodes = cell.nodes((4, 4))
-    known = {node: (0.0, 3e-3 if node == (0.5, 0.5) else 1e-3) for node in nodes}
-    assert refine_cells(PLAIN, known, 1e-2).errors == (3e-3,)
+    reference = {node: (0.0, 3e-3 if node == (0.5, 0.5) else 1e-3) for node in nodes}
+    assert refine_cells(PLAIN, reference, 1e-2).errors == (3e-3,)
 
 
 def test_all_follows_from_the_answers_in_whatever_order_they_come():
-    found, known, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 3e-3)
-    backwards = dict(reversed(known.items()))
-    assert refine_cells(TRANSVERSE, backwards, 3e-3) == found
+    result, reference, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 3e-3)
+    backwards = dict(reversed(reference.items()))
+    assert refine_cells(TRANSVERSE, backwards, 3e-3) == result
     # a larger error needs a subset of these points
     looser, fewer, _ = played(TRANSVERSE, lambda v, a: v / (v + a), 1e-2)
-    assert fewer.keys() < known.keys()
-    assert len(looser.cells) < len(found.cells)
+    assert fewer.keys() < reference.keys()
+    assert len(looser.cells) < len(result.cells)
 
 
 def test_where_a_point_failed_nothing_is_promised_and_nothing_asked():
     (cell,) = first_cells(PLAIN)
-    known = dict.fromkeys(cell.nodes((4, 4)), (1.0, 0.0)) | {(0.5, 0.25): (np.nan, np.inf)}
-    found = refine_cells(PLAIN, known, 1e-2)
-    assert found.missing == ()
-    assert found.errors == (np.inf,)
+    reference = dict.fromkeys(cell.nodes((4, 4)), (1.0, 0.0)) | {(0.5, 0.25): (np.nan, np.inf)}
+    result = refine_cells(PLAIN, reference, 1e-2)
+    assert result.missing == ()
+    assert result.errors == (np.inf,)
 
 
 def test_a_jump_ends_at_the_smallest_cells():
-    found, _, _ = played(PLAIN, lambda v, a: float(v > 0.0301), 1e-2)
-    assert min(cell.end[0] - cell.begin[0] for cell in found.cells) == SMALLEST
+    result, _, _ = played(PLAIN, lambda v, a: float(v > 0.0301), 1e-2)
+    assert min(cell.end[0] - cell.begin[0] for cell in result.cells) == SMALLEST
     # the fourth differences of a jump of 1 are at most 3
-    assert max(found.errors) == pytest.approx(3 * SHARE)
+    assert max(result.errors) == pytest.approx(3 * SHARE)
 
 
 def test_halves_have_the_nodes_of_the_whole():
@@ -211,10 +211,10 @@ def test_halves_have_the_nodes_of_the_whole():
 
 def test_a_third_direction_is_halved_where_friction_bends_over_it_and_only_there():
     deep = PLAIN._replace(poisson=(0.0, 0.5))
-    found, known, _ = played(deep, lambda v, a, nu: 0.1 * np.sin(12 * nu) + a, 3e-3)
-    widths = {(c.end[0] - c.begin[0], c.end[1] - c.begin[1]) for c in found.cells}
+    result, reference, _ = played(deep, lambda v, a, nu: 0.1 * np.sin(12 * nu) + a, 3e-3)
+    widths = {(c.end[0] - c.begin[0], c.end[1] - c.begin[1]) for c in result.cells}
     assert widths == {(1.0, 1.0)}
-    assert len(found.cells) > 1
+    assert len(result.cells) > 1
     straight, fewer, _ = played(deep, lambda v, a, nu: 0.1 * nu + a, 3e-3)
     assert (len(straight.cells), len(fewer)) == (1, 5 * 5 * 3)
 

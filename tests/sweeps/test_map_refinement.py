@@ -11,8 +11,8 @@ from microslip.sweeps import map_refinement
 GIVEN = {"velocity": [0.01, 1], "amplitude": [0, 2], "adaptive": {"error": 0.02}}
 
 
-def configured(**given):
-    return load.from_mapping({"sweeps": {"transverse": GIVEN | given}})
+def configured(**settings):
+    return load.from_mapping({"sweeps": {"transverse": GIVEN | settings}})
 
 
 def test_the_first_round_asks_for_points_of_the_sweep_and_is_the_last_if_all_are_equal():
@@ -25,14 +25,14 @@ def test_the_first_round_asks_for_points_of_the_sweep_and_is_the_last_if_all_are
 
 def test_a_point_that_did_not_converge_is_not_known():
     (map_,) = configured().certified.values()
-    known, _ = map_refinement.refine(map_, lambda requests: [{"result": {}} for _ in requests])
-    assert all(np.isnan(value) and np.isinf(error) for value, error in known.values())
+    reference, _ = map_refinement.refine(map_, lambda requests: [{"result": {}} for _ in requests])
+    assert all(np.isnan(value) and np.isinf(error) for value, error in reference.values())
 
 
 def test_certified_maps_are_named_after_their_sweep_and_have_its_ranges():
-    found = configured(velocity=[0, 0.01, 1]).certified
-    assert list(found) == ["certified_transverse"]
-    map_ = found["certified_transverse"]
+    result = configured(velocity=[0, 0.01, 1]).certified
+    assert list(result) == ["certified_transverse"]
+    map_ = result["certified_transverse"]
     assert (map_.velocity, map_.amplitude) == ((0.01, 1.0), (0.0, 2.0))
     assert (map_.error, map_.tolerance) == (0.02, 0.006)
     assert configured(adaptive=None).certified == {}
@@ -56,8 +56,8 @@ def test_several_poissons_ratios_are_a_third_direction():
 
 def test_other_motions_and_pressures_are_certified_likewise():
     cone = GIVEN | {"motion": "bore", "pressure": "power:exponent=1", "group": "cones"}
-    given = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
-    (map_,) = load.from_mapping(given).certified.values()
+    settings = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
+    (map_,) = load.from_mapping(settings).certified.values()
     assert map_.name == "certified_cone"
     assert map_refinement.coordinates_of(map_).patches == [
         ((0.0, 0.0), (1.0, 1.0))
@@ -65,7 +65,7 @@ def test_other_motions_and_pressures_are_certified_likewise():
     request = certified_stub.first_requests(map_)[0]
     assert (request["motion"], request["pressure"]) == ("bore", "power:exponent=1")
     with pytest.raises(ConfigError, match="certified_cone: another result has this name"):
-        load.from_mapping(given | {"extended": {"cone": cone, "certified_cone": cone}})
+        load.from_mapping(settings | {"extended": {"cone": cone, "certified_cone": cone}})
 
 
 @pytest.mark.parametrize(
@@ -79,6 +79,6 @@ def test_other_motions_and_pressures_are_certified_likewise():
         ({"adaptive": {}}, "sweeps.transverse.adaptive.error"),
     ],
 )
-def test_what_cannot_be_certified_is_refused(given, at_fault):
+def test_what_cannot_be_certified_is_refused(settings, at_fault):
     with pytest.raises(ConfigError, match=at_fault):
-        configured(**given)
+        configured(**settings)

@@ -25,17 +25,17 @@ def asked(point):
 def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path):
     record, _ = batches.answer(asked(point), Store(tmp_path))
     assert batches.answer(asked(point), Store(tmp_path)) == (record, 0.0)
-    found = unpacked(record["result"])
+    result = unpacked(record["result"])
     motion, velocity, amplitude, poisson = point[0], *map(float, point[1:])
     truth = microslip.period(motion, velocity, amplitude, poisson=poisson, **COUNTS)
     for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
-        assert found[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
+        assert result[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
     # the mirror symmetry of the state is as accurate as its convergence
     for name in ("traction_forward", "traction_lateral"):
-        off = np.abs(found[name] - getattr(truth, name)) / truth.bound
+        off = np.abs(result[name] - getattr(truth, name)) / truth.bound
         assert off.max() < 0.5 / period_codec.SHARES + 1e-3, name
-    assert (found["slips"] == truth.slips).all()
-    assert (found["mu_macro"], found["converged"]) == (truth.mu_macro, truth.converged)
+    assert (result["slips"] == truth.slips).all()
+    assert (result["mu_macro"], result["converged"]) == (truth.mu_macro, truth.converged)
 
 
 def test_a_stored_period_takes_few_bytes():

@@ -49,13 +49,13 @@ def test_sweep_command_line_and_python_find_each_others_points(tmp_path, monkeyp
     grid = load.from_mapping({"sweeps": {"bore": axes}}).sweeps["bore"]
     batches.run_batch(batches.PointRequests(grid), Store(tmp_path))
     assert len(calls) == 1
-    found = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
+    result = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
     options = ["--velocity", "0.5", "--amplitude", "1", "--poisson", "0.3", "--tolerance", "1e-2"]
     assert cli.main(["point", "bore", *options, "--results", str(tmp_path), "--json"]) == 0
     assert len(calls) == 1
-    said = json.loads(capsys.readouterr().out)
-    assert said["mu_macro"] == found.mu_macro
-    assert said["mu_macro_error"] == found.mu_macro_error
+    message = json.loads(capsys.readouterr().out)
+    assert message["mu_macro"] == result.mu_macro
+    assert message["mu_macro_error"] == result.mu_macro_error
 
 
 def test_other_physics_tolerance_or_resolution_is_another_point(tmp_path, monkeypatch):
@@ -70,8 +70,8 @@ def test_a_velocity_below_0_is_answered_where_the_motion_drives(tmp_path, monkey
     calls = counting(monkeypatch)
     place = ("normal:forward=1,phase=90", -0.1, 0.5)
     for _ in range(2):
-        found = microslip.solve_stored(*place, results=tmp_path, tolerance=1e-1)
-    assert without_time(found) == without_time(microslip.solve(*place, tolerance=1e-1))
+        result = microslip.solve_stored(*place, results=tmp_path, tolerance=1e-1)
+    assert without_time(result) == without_time(microslip.solve(*place, tolerance=1e-1))
     assert len(calls) == 1 + 1
     with pytest.raises(InputError, match="^velocity = -0.1: "):
         microslip.solve_stored("transverse", -0.1, 0.5, results=tmp_path)
@@ -109,8 +109,8 @@ def test_a_folder_that_is_none_is_refused(tmp_path, capsys):
 
 def test_no_tolerance_is_kept_and_found_again(tmp_path, monkeypatch):
     calls = counting(monkeypatch)
-    given = {"cells": 8, "steps": 16, "tolerance": None, "results": tmp_path}
-    first, again = (microslip.solve_stored("transverse", 0.3, 1.0, **given) for _ in range(2))
+    settings = {"cells": 8, "steps": 16, "tolerance": None, "results": tmp_path}
+    first, again = (microslip.solve_stored("transverse", 0.3, 1.0, **settings) for _ in range(2))
     assert len(calls) == 1 and without_time(first) == without_time(again)
     assert first.converged and first.tolerance is None
     with pytest.raises(ValueError, match="tolerance = None"):

@@ -152,16 +152,17 @@ def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "said", [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("NetCDF: HDF error")]
+    "message",
+    [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("NetCDF: HDF error")],
 )
-def test_what_hdf5_says_on_a_full_disk_is_put_right(store, monkeypatch, said):
+def test_what_hdf5_says_on_a_full_disk_is_put_right(store, monkeypatch, message):
     monkeypatch.setattr(files.os, "fsync", full)
     with (
         pytest.raises(CacheError, match=r"cannot write .*No space left on device.*make room"),
         files.writing_beside(store.folder / "x.nc") as beside,
     ):
         beside.write_text("half")
-        raise said
+        raise message
     assert not leftovers(store)
 
 

@@ -94,7 +94,7 @@ class CertifiedMap:
     name: str
     sweep: Sweep  # with the ranges and settings of the map
     error: float
-    tolerance: float  # of the points
+    tolerance: float  # largest error of the points
 
     @property
     def velocity(self) -> tuple[float, ...]:

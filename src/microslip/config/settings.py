@@ -36,10 +36,10 @@ CONFIG = ConfigDict(
     strict=True,
     frozen=True,
     allow_inf_nan=False,
-    regex_engine="python-re",  # patterns look ahead
+    regex_engine="python-re",  # the patterns have lookaheads
     use_attribute_docstrings=True,
     validate_default=True,
-    defer_build=True,  # builds the validator of Root alone
+    defer_build=True,  # only the validator of Root is built
 )
 PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
 """Configuration of typed dicts, whose docstrings are slow to extract."""

@@ -68,7 +68,9 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         name: ("point", np.array(axis))
         for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
-    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes  # one value unless it is a direction
+    axes = {
+        "poisson": ((), map_.sweep.poisson[0])
+    } | axes  # a scalar, unless it is a direction of the map
     if map_.force is None:
         axes = {"velocity": ((), 0.0)} | axes
     dataset = xr.Dataset(
@@ -96,7 +98,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,
-        points=len(set(places)),  # a place where slow and fast cells meet can be two nodes
+        points=len(set(places)),  # a point between slow and fast cells can be two nodes
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )

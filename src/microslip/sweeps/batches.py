@@ -29,8 +29,8 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Version of the content of records, to be increased if it changes without a change of the
-solver."""
+"""Version of the content of records.  It has to be increased if the content changes without a
+change of the solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states of Figure 5."""
@@ -201,7 +201,7 @@ def _cut(items: Sequence, mean: int) -> list[list]:
 def group(request: dict) -> str:
     """Subfolder of the store for the result of a request."""
     motion = request["motion"] if "motion" in request else request["model"]
-    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # numbers apart
+    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # without parameters
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:

@@ -1,13 +1,15 @@
 """Scaled coordinates of a map of drift: force and amplitude.
 
 Below the threshold of the force, the static limit at its amplitude, a contact stays and needs no
-map. Above it the contact drifts.  The drift velocity is about proportional to the power 3/2 of the
-force above the threshold, since friction approaches its static limit as the power 2/3 of the
-velocity.  At the force 1 the contact runs away; there the velocity of a rigid contact is
-proportional to the power -1/2 of 1 less the force.  The scaled force t is therefore defined by
-tanh(t)^2 = (force - threshold) / (1 - threshold).  Amplitudes gather where the threshold equals the
-largest force and where it vanishes. Cells interpolate asinh(velocity): its error is the absolute
-error of a small velocity and the relative error of a large one.
+map. Above the threshold it drifts.  The drift velocity is about proportional to the power 3/2 of
+the force above the threshold, since friction approaches its static limit as the power 2/3 of the
+velocity.  At the force 1 the contact runs away; close to it the velocity of a rigid contact is
+proportional to (1 - force)^(-1/2).
+
+The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).
+Amplitudes gather where the threshold equals the largest force and where it vanishes.  Cells
+interpolate asinh(velocity): its error is the absolute error of a small velocity and the relative
+error of a large one.
 """
 
 from __future__ import annotations

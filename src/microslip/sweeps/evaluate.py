@@ -43,7 +43,7 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
 
 
 def is_final(result: dict) -> bool:
-    """True unless the solver failed or ran out of time, so that the point is computed again."""
+    """False if the solver failed or ran out of time; such a point is computed again."""
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 

@@ -127,6 +127,6 @@ def solve_stored(
 
 
 def _drives(**values: float | None) -> tuple:
-    """The drive as an attribute of Sweep."""
+    """Convert a drive to the attribute `drives` of Sweep."""
     pairs = ((name, values[name]) for name in DRIVES)
     return tuple((name, (float(value),), False) for name, value in pairs if value is not None)

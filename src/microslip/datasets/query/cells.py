@@ -16,7 +16,7 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
-"""Number of velocities at which the upper edge of a map is evaluated, for larger amplitudes."""
+"""Number of velocities at which friction at the largest amplitude is evaluated."""
 
 
 def is_certified(dataset: xr.Dataset) -> bool:
@@ -109,7 +109,7 @@ class CellTable:
 
 def _polynomial(nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """Values (n,) of the polynomial through equally spaced nodes at shares (n, directions)."""
-    value = nodes[..., None]  # the points run last
+    value = nodes[..., None]  # the axis of the points is the last one
     for share in shares.T:
         degree = len(value) - 1
         weights = lagrange(np.arange(degree + 1.0)[None], degree * share)

@@ -108,7 +108,7 @@ class Drift:
 def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, ...]:
     """Velocity, its error bound, threshold of the force and code of the state, shape (n,) each."""
     coordinates = table.coordinates
-    assert isinstance(coordinates, DriftCoordinates)  # as Drift demands
+    assert isinstance(coordinates, DriftCoordinates)  # checked by Drift
     least = np.asarray(threshold(coordinates.motion, amplitude), float)
     state = np.full(len(force), DRIFTS, np.int8)
     state[force <= least + THRESHOLD_ERROR] = UNDECIDED

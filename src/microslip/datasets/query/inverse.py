@@ -140,7 +140,7 @@ def _search(
         outer = ~inside[row, node]
         left, right = np.sort([places[node][outer], end[outer]], axis=0)
         root, success = _roots(excess, left, right, arguments, outer)
-        end[outer] = np.where(success, root, end[outer])  # an error of 0 leaves no room
+        end[outer] = np.where(success, root, end[outer])  # with an error of 0 there is no root
         ends.append(end)
     bounded = ~inside[row, first] & ~inside[row, last]
     number = np.bincount(row, minlength=count)

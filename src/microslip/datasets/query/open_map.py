@@ -69,7 +69,7 @@ def open_map(
         raise InputError("results", results, "is not a folder; allowed: the name of a folder")
     try:
         return _dataset(name, results, chunks, group)
-    except OSError as error:  # damage inside a file, or a name that no file can have
+    except OSError as error:  # a damaged file, or an invalid file name
         why = " ".join((error.strerror or str(error)).split())[:120]
         raise CacheError(
             f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
@@ -109,5 +109,5 @@ def _dataset(
 def _opened(path: Path, **how: Any) -> xr.Dataset:
     dataset = xr.open_dataset(path, engine="netcdf4", **how)
     for variable in dataset.variables.values():
-        variable.encoding.pop("original_shape", None)  # else xarray warns when a part is saved
+        variable.encoding.pop("original_shape", None)  # avoids a warning when a selection is saved
     return dataset
