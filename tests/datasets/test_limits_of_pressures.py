@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-import microslip
 from microslip.config import load as config
 from microslip.datasets import theory_limits
 from microslip.pressures.by_name import pressure_named
-from microslip.theory import axisymmetric, hertz, indenters, paper
+from microslip.theory import axisymmetric, indenters
 from microslip.theory.catalogue import FORMS
 
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
@@ -108,22 +107,3 @@ def test_nothing_is_said_where_nothing_is_known():
     assert theory_limits.formulas("bore", "ring") == {}
     assert "mu_static" not in theory_limits.formulas("transverse", "ring")
     assert theory_limits.formulas("elliptic", "power") == {}
-
-
-def test_the_limit_of_a_march_is_the_exact_one_and_not_eq_9():
-    name = "power:exponent=1"
-    zone = float(value("transverse", name, "mu_static_stick_zone", 0.5))
-    exact = float(value("transverse", name, "mu_static", 0.5))
-    above = [
-        microslip.solve("transverse", v, 0.5, pressure=name, tolerance=3e-4).mu_macro
-        for v in (8e-4, 1e-4)
-    ]
-    guess = (
-        above[1] - (above[0] - above[1]) / 3.0
-    )  # the difference from the static limit is proportional to v^(2/3)
-    assert guess == pytest.approx(exact, abs=3e-3)
-    assert zone - guess > 0.05
-    assert float(hertz.mindlin_stick_radius(0.5)) != pytest.approx(
-        0.5
-    )  # the sphere has another stick radius
-    assert paper.static_limit_transverse(0.5) != pytest.approx(exact, abs=0.05)
