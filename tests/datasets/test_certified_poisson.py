@@ -60,13 +60,6 @@ def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson)
     assert float(answer.poisson) == poisson
 
 
-def test_which_poissons_ratio_has_to_be_told(dataset):
-    with pytest.raises(InputError, match=r"poisson = None: allowed is 0 to 0.4"):
-        dataset.microslip.at(0.1, 1.0)
-    with pytest.raises(InputError, match=r"poisson = 0.45: allowed is 0 to 0.4"):
-        dataset.microslip.at(0.1, 1.0, poisson=0.45)
-
-
 def test_grids_and_questions_the_other_way_round_have_one(dataset):
     grid = dataset.microslip.on_grid(3, 3, poisson=0.2)
     xr.testing.assert_identical(

@@ -349,14 +349,6 @@ def test_another_dataset_has_no_friction():
 # Beyond the map
 
 
-def test_what_is_known_without_a_map(friction):
-    answer = friction.at([0.0, 0.1], [0.0, 0.5])
-    assert answer.mu_macro.sel(amplitude=0).values == pytest.approx(1.0, abs=1e-12)
-    static = answer.sel(velocity=0, amplitude=0.5)
-    assert float(static.mu_macro) == pytest.approx(paper.static_limit_transverse(0.5))
-    assert SOURCES[int(static.source)] == "static limit"
-
-
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
 @pytest.mark.parametrize(
     ("velocity", "amplitude", "side"),

@@ -53,11 +53,11 @@ def refuse_unsolvable(map_: CertifiedMap) -> None:
     model, nu = map_.sweep.model, map_.sweep.poisson[0]
     motion, pressure = solver_names(map_.sweep)
     where = f"for {motion} under {pressure} at Poisson's ratio {nu:g}"
-    closed_forms = (
+    allowed = (
         f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 except for bore"
     )
     is_known = drift_threshold.is_known(motion, pressure, nu)
-    _demand(is_known, f"{where}, whose threshold has no closed form", closed_forms)
+    _demand(is_known, f"{where}, whose threshold has no closed form", allowed)
     other = f"with model {model}, which has another threshold"
     _demand(model in EXACT_MODELS, other, ", ".join(EXACT_MODELS))
     least = float(drift_threshold.threshold(motion, map_.amplitude[1]))

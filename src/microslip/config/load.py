@@ -199,7 +199,7 @@ def from_mapping(
         One line: source, key, value, what is allowed.
     """
     settings = _settings(mapping, source)
-    all_members: dict[str, SteadySweep] = {}
+    entries: dict[str, SteadySweep] = {}
     families: dict[str, dict[str, Sweep]] = {}
     maps = {}
     for family in ("sweeps", "extended", "drives"):
@@ -209,7 +209,7 @@ def from_mapping(
         for name in (name for name in order if name in members):
             with _errors_at(f"{source}: {family}.{name}"):
                 if family != "sweeps":
-                    _refuse_taken(name, {*all_members} | ({*members} - {name}))
+                    _refuse_taken(name, {*entries} | ({*members} - {name}))
                 sweep = _sweep(name, members[name], folders, ask_solver)
                 families[family][name] = sweep
                 if ask_solver and family != "sweeps":
@@ -219,7 +219,7 @@ def from_mapping(
                     maps[map_.name] = map_
                     if ask_solver:
                         certified.refuse_unsolvable(map_)
-        all_members |= members
+        entries |= members
     with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))
     if ask_solver:
@@ -232,8 +232,7 @@ def from_mapping(
         results=settings.results,
         **families,
         points_per_job={
-            name: sweep.points_per_job or settings.points_per_job
-            for name, sweep in all_members.items()
+            name: sweep.points_per_job or settings.points_per_job for name, sweep in entries.items()
         },
         histories={name: dict(run) for name, run in settings.histories},
         accuracy=settings.accuracy,
@@ -247,39 +246,33 @@ def from_mapping(
 # Sweeps
 
 
-def _sweep(name: str, settings: Any, folders: Iterable, strict: bool) -> Sweep:
+def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
     """Convert the settings of a sweep to a Sweep; raises Refusal for combinations that are not
     allowed."""
     drives = tuple(
         (drive, tuple(axis), isinstance(axis.raw, list | dict))
         for drive in DRIVES
-        if (axis := getattr(settings, drive, None)) is not None
+        if (axis := getattr(entry, drive, None)) is not None
     )
-    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(settings, "amplitude", None)
+    of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(entry, "amplitude", None)
     more: dict[str, Any] = {}
     if not of_paper:
-        if not drives and not hasattr(settings, "group"):
+        if not drives and not hasattr(entry, "group"):
             raise Refusal("missing; required: force or stiffness")
-        pressure = _with_path(settings.pressure, folders, strict)
-        more = {
-            "title": settings.title or name,
-            "pressure": _by_content(pressure),
-            "drives": drives,
-        }
-        more |= {
-            key: getattr(settings, key) for key in ("group", "contacts") if hasattr(settings, key)
-        }
+        pressure = _with_path(entry.pressure, folders, strict)
+        more = {"title": entry.title or name, "pressure": _by_content(pressure), "drives": drives}
+        more |= {key: getattr(entry, key) for key in ("group", "contacts") if hasattr(entry, key)}
     sweep = Sweep(
         name=name,
-        motion=MOTION_OF_SWEEP[name] if of_paper else settings.motion,
-        velocity=tuple(settings.velocity or ()),
+        motion=MOTION_OF_SWEEP[name] if of_paper else entry.motion,
+        velocity=tuple(entry.velocity or ()),
         amplitude=None if amplitude is None else tuple(amplitude),
-        poisson=tuple(settings.poisson),
-        poisson_is_axis=isinstance(settings.poisson.raw, list),
-        model=settings.model,
-        tolerance=None if settings.tolerance is None else float(number(settings.tolerance)),
-        cells=settings.cells,
-        steps=settings.steps,
+        poisson=tuple(entry.poisson),
+        poisson_is_axis=isinstance(entry.poisson.raw, list),
+        model=entry.model,
+        tolerance=None if entry.tolerance is None else float(number(entry.tolerance)),
+        cells=entry.cells,
+        steps=entry.steps,
         **more,
     )
     axes = [sweep.velocity or (None,), sweep.amplitude or (None,), sweep.poisson]
