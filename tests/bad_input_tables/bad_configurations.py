@@ -239,6 +239,12 @@ TOGETHER += [
         "less than the error",
     ),
     (
+        {f"{T}.adaptive": "{error: 0.1, tolerance: 0.02}"},
+        f"{T}.adaptive.tolerance",
+        "0.02 is not allowed",
+        "<= 0.01",
+    ),
+    (
         {f"{T}.adaptive.error": "1.0e-2", f"{T}.velocity": "[1]"},
         f"{T}.adaptive",
         "is not allowed here; allowed: with two amplitudes",

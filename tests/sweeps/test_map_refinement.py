@@ -66,19 +66,3 @@ def test_other_motions_and_pressures_are_certified_likewise():
     assert (request["motion"], request["pressure"]) == ("bore", "power:exponent=1")
     with pytest.raises(ConfigError, match="certified_cone: another result has this name"):
         load.from_mapping(settings | {"extended": {"cone": cone, "certified_cone": cone}})
-
-
-@pytest.mark.parametrize(
-    "given, at_fault",
-    [
-        ({"velocity": [0.1]}, "sweeps.transverse.adaptive"),
-        ({"cells": 16, "steps": 64}, "sweeps.transverse.adaptive"),
-        ({"adaptive": {"error": 0.01, "tolerance": 0.01}}, "sweeps.transverse.adaptive.tolerance"),
-        ({"adaptive": {"error": 0.1, "tolerance": 0.02}}, "sweeps.transverse.adaptive.tolerance"),
-        ({"adaptive": {"error": 0}}, "sweeps.transverse.adaptive.error"),
-        ({"adaptive": {}}, "sweeps.transverse.adaptive.error"),
-    ],
-)
-def test_what_cannot_be_certified_is_refused(settings, at_fault):
-    with pytest.raises(ConfigError, match=at_fault):
-        configured(**settings)
