@@ -302,7 +302,7 @@ DAMAGES = {
 
 # Arguments of microslip gc, words of its one line.
 GC = [
-    (["--configfile", "a\0b"], "no name of a file"),
+    (["--configfile", "a\0b"], "not the name of a file"),
     (["--configfile", "nosuch.yaml"], "--configfile: nosuch.yaml: cannot be read"),
     (["--configfile", "long.yaml"], "is not there"),
     (["--configfile", "none\nx.yaml"], "cannot be read"),

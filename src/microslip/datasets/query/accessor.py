@@ -324,7 +324,7 @@ class Friction:
         case = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
         if not beyond.is_alone(self._dataset):
             case = f"{case} under a spring or of several contacts"
-        advice = f"no limit of {case} is known: give a tolerance, and the solver computes the point"
+        advice = f"no limit of {case} is known: with a tolerance the solver is asked"
         if part is None:
             raise ValueError(f"velocity = {velocity:g}: the map has no such velocity; {advice}")
         axes = (("velocity", part.columns, velocity), ("amplitude", part.rows, amplitude))
