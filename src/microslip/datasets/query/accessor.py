@@ -326,7 +326,7 @@ class Friction:
             case = f"{case} under a spring or of several contacts"
         advice = f"no limit of {case} is known: with a tolerance the solver is asked"
         if part is None:
-            raise ValueError(f"velocity = {velocity:g}: the map has no such velocity; {advice}")
+            raise ValueError(f"velocity = {velocity:g}: the map has none such; {advice}")
         axes = (("velocity", part.columns, velocity), ("amplitude", part.rows, amplitude))
         for name, axis, value in axes:
             if not axis.holds(np.array(value)):
