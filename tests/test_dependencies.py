@@ -1,6 +1,8 @@
 """Declared dependencies: each has a lower bound that works, and the workflow tool an upper one."""
 
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -10,7 +12,9 @@ from packaging.requirements import Requirement
 TOP = Path(__file__).parents[1]
 PROJECT = tomllib.loads((TOP / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 LISTS = {"dependencies": PROJECT["dependencies"], **PROJECT["optional-dependencies"]}
-DEPENDENCIES = {r.name: r.specifier for r in map(Requirement, PROJECT["dependencies"])}
+USED = [*LISTS["dependencies"], *LISTS["plot"], *LISTS["workflow"]]
+DEPENDENCIES = {one.name: one.specifier for one in map(Requirement, USED)}
+OPTIONAL = {"matplotlib": "plot", "plotly": "plot", "snakemake": "workflow", "jinja2": "workflow"}
 
 
 @pytest.mark.parametrize("name", LISTS)
@@ -35,6 +39,39 @@ def test_every_requirement_has_a_lower_bound(name):
 )
 def test_releases_that_fail_are_excluded(name, version):
     assert not DEPENDENCIES[name].contains(version)
+
+
+BLOCKED = (
+    "import sys\n"
+    f"sys.modules.update(dict.fromkeys({[*OPTIONAL]}))\n"
+    "from microslip.app import cli\n"
+    "sys.exit(cli.main(sys.argv[1:]))"
+)
+"""Runs a command without the packages of the extras, which cannot be imported then."""
+
+
+def run_without_extras(*words):
+    command = [sys.executable, "-c", BLOCKED, *words]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def test_a_point_needs_no_extra():
+    done = run_without_extras("point", "transverse", "--velocity", "0.1", "--amplitude", "0")
+    assert done.returncode == 0 and "mu_macro" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"),
+    [
+        (("sweep", "-n"), "workflow"),
+        (("fit", "transverse", "rows.csv", "--figure", "fit.png"), "plot"),
+    ],
+)
+def test_a_command_that_needs_an_extra_names_it(words, extra):
+    done = run_without_extras(*words)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert f"microslip[{extra}]" in line
 
 
 def test_the_workflow_requires_the_snakemake_that_is_declared():

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from microslip.app.option_parser import format_as_options
 from microslip.app.question import Answer, add_json, add_options, respond, typed_options
 from microslip.app.terminal import complain
+from microslip.foundation import extras
 from microslip.foundation.errors import CacheError, InputError
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.printed_lines import force_unit, in_unit, line, prefixed
@@ -96,6 +97,9 @@ def _refuse_endings(options: argparse.Namespace) -> None:
         if path is not None and Path(path).suffix.lower() not in endings:
             allowed = f"allowed is a name that ends in {' or '.join(endings)}"
             raise InputError(name, path, allowed)
+    lacking = extras.missing("matplotlib") if options.figure is not None else ""
+    if lacking:
+        raise InputError("figure", options.figure, lacking)
 
 
 def _write(found: Fit, options: argparse.Namespace) -> None:

@@ -25,7 +25,7 @@ from pathlib import Path
 from microslip.app.figure_targets import TARGETS
 from microslip.app.terminal import complain
 from microslip.config import load, schema
-from microslip.foundation import files
+from microslip.foundation import extras, files
 from microslip.foundation.errors import CacheError, InputError
 from microslip.report.figures import drawing
 
@@ -74,6 +74,10 @@ def main(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
+    lacking = extras.missing("snakemake")
+    if lacking:
+        complain(f"microslip sweep: {lacking}")
+        return 2
     try:
         os.getcwd()
         given = ["--snakefile", str(snakefile()), *arguments]
