@@ -63,8 +63,8 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
     assert names(results) == before
     said = capsys.readouterr().out
-    assert "2 points and single runs that nothing asks for" in said
-    assert "1 batches that nothing asks for" in said
+    assert "2 points and single runs that no configuration requests" in said
+    assert "1 batches that no configuration requests" in said
     assert "3 datasets, pages and figures" in said and "pendulum.nc" in said
     assert "nothing is removed without --delete" in said
     assert "mine" not in said

@@ -60,7 +60,7 @@ with job_log(snakemake.log[0], shown=logging.INFO) as log:
     configuration = load.from_mapping(snakemake.config, ask_solver=False)
     plan = Plan(configuration)
     plan.refuse_edited(name, snakemake.params.made_of)
-    stamps.set_aside(snakemake.output[:2])
+    stamps.set_aside(snakemake.output.stamp, snakemake.output[:2])
     records = batches.records_in(snakemake.input.batches)
     if name in configuration.grids:
         report = write_sweep(configuration.grids[name], snakemake.input.batches)

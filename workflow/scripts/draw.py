@@ -16,7 +16,7 @@ with job_log(snakemake.log[0]):
     Plan(configuration).refuse_edited(f"figures/{name}", made_of)
     files = zip(snakemake.params.names, snakemake.input.datasets, strict=True)
     figure = drawing.draw(name, {dataset: loaded(path) for dataset, path in files})
-    stamps.set_aside(snakemake.output[:2])
+    stamps.set_aside(snakemake.output.stamp, snakemake.output[:2])
     for path in snakemake.output[:2]:
         drawing.save(figure, path)
     stamps.write(snakemake.output.stamp, made_of, snakemake.output[:2])

@@ -22,7 +22,7 @@ with job_log(snakemake.log[0]) as log:
     paths = zip(snakemake.params.names, snakemake.input.datasets, strict=True)
     datasets = {name: loaded(path) for name, path in paths}
     certified = [datasets.pop(name) for name in explorer.certified_of(configuration)]
-    stamps.set_aside(snakemake.output[:1])
+    stamps.set_aside(snakemake.output.stamp, snakemake.output[:1])
     page.write(snakemake.output[0], datasets, periods, certified)
     for line in explorer.report(periods):
         log.info(line)

@@ -25,8 +25,8 @@ AGAIN = ".again"
 """Name of a file in the folder of results that is newer than what has to be made again."""
 WHEN = 1_000_000_000
 """Date (s since 1970, in 2001) of AGAIN; what has to be made again is dated one second before."""
-BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-"""How a whole file begins, for files without a stamp."""
+HDF5 = b"\x89HDF"
+"""First bytes of a netCDF file."""
 
 
 def stamp_of(product: str) -> str:
@@ -60,34 +60,31 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
         return False
 
 
-def is_damaged(path: str | Path) -> bool:
-    """Whether a file is another one than its stamp says, or without a stamp than its name says.
+def is_damaged(dataset: Path) -> bool:
+    """Whether a netCDF file differs from its stamp, or without a stamp is no netCDF file.
 
-    path: of a dataset, page or figure; False where there is no file.  Raises CacheError if it
-    cannot be read.
+    Raises CacheError if the file cannot be read.
     """
-    path = Path(path)
     try:
-        if not path.exists():
-            return False
-        checksum = _stamped(path)
+        checksum = _stamped(dataset.parent / stamp_of(dataset.stem), dataset)
         if checksum is not None:
-            return _checksum(path) != checksum
-        begins = BEGINNINGS.get(path.suffix, b"")
-        with open(path, "rb") as file:
-            return file.read(len(begins)) != begins
+            return _checksum(dataset) != checksum
+        with open(dataset, "rb") as file:
+            return file.read(len(HDF5)) != HDF5
     except OSError as error:
-        raise CacheError(files.advice("read", path, error)) from error
+        raise CacheError(files.advice("read", dataset, error)) from error
 
 
-def set_aside(outputs: Iterable[str | Path]) -> None:
-    """Rename files that are damaged, or that the workflow did not make, before others are written
-    in their place: they may be of use to someone."""
+def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
+    """Rename the files of a product that differ from its stamp, before a job writes new ones.
+
+    Such a file is damaged, or the user has put it there and may still need it.
+    """
     for path in map(Path, outputs):
-        if path.is_file() and _checksum(path) != _stamped(path):
+        if path.is_file() and _checksum(path) != _stamped(stamp, path):
             aside = path.with_name(f"{path.name}.damaged")
             os.replace(path, aside)
-            log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
+            log.warning("%s differs from what the workflow made: it is kept as %s", path, aside)
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
@@ -110,14 +107,9 @@ def write_again(path: str | Path, dated: bool) -> None:
         os.utime(path, (WHEN, WHEN))
 
 
-def _stamped(path: Path) -> str | None:
-    """Checksum of a file according to its stamp; None if it has none."""
-    folder, inner = (path.parent, "")
-    if path.parent.name in ("figures", "summaries"):
-        folder, inner = path.parent.parent, "figures/" * (path.parent.name == "figures")
-    if path.suffix == ".html" and folder == path.parent:
-        inner = "pages/"
-    return read(folder / stamp_of(f"{inner}{path.stem}")).get("sums", {}).get(path.name)
+def _stamped(stamp: str | Path, path: Path) -> str | None:
+    """Checksum of a file according to a stamp; None without one."""
+    return read(stamp).get("sums", {}).get(path.name)
 
 
 def _checksum(file: str | Path) -> str:
