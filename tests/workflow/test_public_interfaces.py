@@ -10,8 +10,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 OTHERS = ("snakemake", "xarray", "pint", "numba")
-NUMBA_CONFIG = ROOT / "src/microslip/foundation/kernel_cache.py"
-"""The one file that sets an option of numba.config besides the vector units in compiled.py."""
+NUMBA_CONFIG = ROOT / "src/microslip/foundation/compiled.py"
+"""The only file that uses numba.config."""
 WORKFLOW = {"source_path", "basedir", "current_basedir", "cores", "configfiles"}
 """Attributes of the object `workflow` that rules may use: paths, cores, configuration files."""
 PYTHON = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")])
@@ -70,8 +70,8 @@ def test_no_module_uses_private_names_of_other_packages(path):
     assert not list(private_uses(ast.parse(path.read_text(encoding="utf-8"))))
 
 
-def test_options_of_the_kernel_cache_are_set_in_one_file():
-    setting = re.compile(r"config\.CACHE_\w+")
+def test_one_file_uses_the_configuration_of_numba():
+    setting = re.compile(r"numba\.config|import config")
     assert [path for path in PYTHON if setting.search(path.read_text("utf-8"))] == [NUMBA_CONFIG]
 
 

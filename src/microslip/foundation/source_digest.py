@@ -22,14 +22,21 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
 
+from microslip.foundation.errors import CacheError
+from microslip.foundation.files import write_atomically
+
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
 """Folders of the package that no result depends on, except for the files in ANSWERING."""
 ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER that turn answers of the solver into results."""
-_WRITING = ("accessor", "files", "kernel_cache", "source_digest")
-NAMING = {f"foundation/{name}.py" for name in _WRITING}
-"""Files that name and write results; the values in them do not depend on these."""
+NAMING = {
+    "foundation/accessor.py",
+    "foundation/files.py",
+    "foundation/kernel_cache.py",
+    "foundation/source_digest.py",
+}
+"""Files that name and write results.  No value in a result depends on them."""
 ENDINGS = {"py", "html", "css", "js"}
 """Ends of the names of files that count: modules, and what pages are made of."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
@@ -145,11 +152,9 @@ class Sources:
         """Write what was parsed; where that is refused, the next process parses again."""
         if not self._is_written:
             self._is_written = True
-            beside = self._file.with_name(f"{self._file.name}.{os.urandom(8).hex()}")
-            with contextlib.suppress(OSError):
-                self._file.parent.mkdir(exist_ok=True)
-                beside.write_text(json.dumps([_READER, self._known]))
-                os.replace(beside, self._file)
+            with contextlib.suppress(CacheError):
+                content = json.dumps([_READER, self._known])
+                write_atomically(self._file, content.encode())
 
     @property
     def _file(self) -> Path:
