@@ -42,24 +42,15 @@ rule all:
         files_of_target("all"),
 
 
-# snakemake certified, and all other targets that `microslip sweep --help` lists.
-for target in figure_targets.TARGETS.keys() - {"all"}:
+# snakemake certified, snakemake fig2, and all other targets that `microslip sweep --help` lists.
+for target in PLAN.targets:
+    if target != "all":
 
-    rule:
-        name:
-            target
-        input:
-            files_of_target(target),
-
-
-# snakemake fig2, or the name of any other figure.
-for target, figure in figure_targets.targets_of(CONFIGURATION).items():
-
-    rule:
-        name:
-            target
-        input:
-            files_of_figure(figure),
+        rule:
+            name:
+                target
+            input:
+                files_of_target(target),
 
 
 # Compiles the solver once, before jobs that would all do it at the same time.

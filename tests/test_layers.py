@@ -80,3 +80,7 @@ def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
     assert {p for p in users if p.parts[0] in PHYSICS} == {Path("pressures", "from_file.py")}
+
+
+def test_type_checkers_find_the_type_hints():
+    assert (PACKAGE / "py.typed").is_file()

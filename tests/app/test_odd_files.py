@@ -143,7 +143,7 @@ def test_odd_names_of_datasets(name, more, word):
 
 
 @pytest.mark.parametrize("case", odd.DAMAGES)
-def test_a_damaged_dataset_without_a_seal_is_one_line(case, tmp_path):
+def test_a_damaged_dataset_without_a_stamp_is_one_line(case, tmp_path):
     path = tmp_path / "map.nc"
     odd.whole().to_netcdf(path)
     path.write_bytes(odd.DAMAGES[case](path.read_bytes()))

@@ -292,7 +292,7 @@ OPENED = [
     ("transverse", {"results": "x" * 300}, "File name too long"),
     ("transverse", {"results": "~"}, "'~'"),
 ]
-# What is done to the bytes of a dataset without a seal.
+# Damage to the bytes of a dataset without a stamp.
 DAMAGES = {
     "the signature alone": lambda content: content[:8],
     "cut off": lambda content: content[: len(content) // 2],

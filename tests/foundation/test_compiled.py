@@ -45,12 +45,6 @@ def of_kernels(package):
     return Sources(package).of_kernels()
 
 
-def test_there_are_kernels_to_speak_of():
-    assert len(KERNELS) > 10
-    some = {"contacts/coulomb.py", "contacts/march.py", "models/squares/convolution.py"}
-    assert some <= set(KERNELS)
-
-
 @pytest.fixture(scope="module")
 def unedited(tmp_path_factory):
     """A copy of the package to be left as it is, and what names its compiled code."""

@@ -226,7 +226,7 @@ def test_rows_on_the_plateau_tell_mu_alone(closed):
     noise = 0.01 * np.random.default_rng(1).standard_normal(8)
     found = fitted(table | {"friction": MU * LOAD + noise})
     assert found.told == ("mu",) and found.u_lim_m is None and found.u_lim_high_m is None
-    assert found.reason.startswith("the rows tell mu alone: any u_lim above")
+    assert found.reason.startswith("the rows determine mu alone: any u_lim above")
     assert found.u_lim_low_m < U_LIM
     assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.02 * found.mu_low
 
@@ -243,7 +243,7 @@ def test_large_amplitudes_tell_no_u_lim(closed):
 
 def test_rows_that_tell_neither_are_refused(closed):
     table = {"speed": [1e-4, 1.0001e-4, 1.0002e-4], "amplitude": [U_LIM] * 3}
-    with pytest.raises(InputError, match="tell neither number"):
+    with pytest.raises(InputError, match="determine neither number"):
         fitted(table | {"friction": [1.0, 1.1, 0.9]})
 
 

@@ -6,6 +6,7 @@ import shutil
 import pytest
 import xarray as xr
 from matplotlib.text import Text
+from stubs import studies_stub
 from stubs.propulsion_stub import DRIVING
 from stubs.workflow_project import Project, jobs_in
 
@@ -190,12 +191,7 @@ METHODS = {
         "points": {"fast": {"motion": "longitudinal", "velocity": 0.5, "amplitude": 1}},
         "levels": 2,
         "repeats": 1,
-        "map": {
-            "velocity": [1, 3],
-            "amplitude_transverse": [0.5, 2],
-            "amplitude_bore": [0.5, 2],
-            "tolerance": [0.01],
-        },
+        "map": studies_stub.ACCURACY["map"] | {"velocity": [1, 3], "tolerance": [0.01]},
     },
     "stability": {
         "methods": ["shipped", "my-method"],

@@ -96,16 +96,6 @@ marked = str if HERE else local
 TO_SOLVE = {}
 
 
-def in_results(files):
-    """Paths with the folder of results before them."""
-    return [f"{RESULTS}/{file}" for file in files]
-
-
-def files_of(products):
-    """Files of products."""
-    return in_results(file for product in products for file in PLAN.products[product].files)
-
-
 def made_again(right):
     """The file AGAIN; ancient, which means that its date does not count, where all is right."""
     return ancient(marked(AGAIN)) if right else marked(AGAIN)
@@ -174,25 +164,14 @@ def compiled(*kernels, place=RESULTS):
 
 
 def files_of_target(target):
-    """Input function of a target that TARGETS lists."""
+    """Input function of a target."""
 
     def files(wildcards):
-        page = f"{target}.html"
-        problem = explorer.refusal(CONFIGURATION, page) if page in explorer.PAGES else None
-        if problem:
-            sys.exit(f"Error in {ORIGIN}: {problem}")
-        return files_of(PLAN.products_of(target))
-
-    return files
-
-
-def files_of_figure(name):
-    """Input function of the target that makes one figure."""
-
-    def files(wildcards):
-        if name not in PLAN.figures:
-            sys.exit(f"Error in {ORIGIN}: {figure_targets.why_no_figure(CONFIGURATION, name)}")
-        return files_of([f"figures/{name}"])
+        try:
+            products = PLAN.products_of(target)
+        except load.ConfigError as error:
+            sys.exit(f"Error in {ORIGIN}: {error}")
+        return [f"{RESULTS}/{file}" for name in products for file in PLAN.products[name].files]
 
     return files
 

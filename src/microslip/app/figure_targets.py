@@ -68,16 +68,6 @@ def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
     return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)
 
 
-def targets_of(configuration: Configuration) -> dict[str, str]:
-    """Figures by the names of their targets: their own names, and fig1 to fig6.
-
-    Figures that the configuration has no data for are among them, see `why_no_figure`.
-    """
-    figures = (*drawing.FIGURES, *drawable(configuration))
-    names = {name: name for name in figures} | drawing.SHORT_NAMES
-    return {name: figure for name, figure in names.items() if name not in TARGETS}
-
-
 def why_no_figure(configuration: Configuration, figure: str) -> str:
     """Why a configuration leads to no such figure, a key of drawing.FIGURES, in one line."""
     names = drawing.FIGURES[figure]

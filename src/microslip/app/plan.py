@@ -16,7 +16,7 @@ from functools import cache, cached_property
 from typing import NamedTuple
 
 from microslip.app import figure_targets
-from microslip.config.records import Configuration
+from microslip.config.records import ConfigError, Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import fingerprint
 from microslip.report.explorer import explorer
@@ -98,12 +98,11 @@ class Plan:
             points = batches.PointRequests(configuration.grids[group])
             found = batches.batches_of_points(points, configuration.points_per_job[group])
         elif beside == "histories":
-            found = [
-                Batch(runs) for runs in [batches.history_requests(configuration, name)] if runs
-            ]
+            runs = batches.history_requests(configuration, name)
+            found = [Batch(runs)] if runs else []
         elif beside == "periods":
             periods = explorer.period_requests(configuration, name)
-            found = batches.batches_of_requests(periods, explorer.PERIODS_PER_JOB)
+            found = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
         elif group in configuration.certified:
             found = []
         else:
@@ -154,18 +153,14 @@ class Plan:
         """Names of all datasets."""
         return [*self.configuration.grids, *self.configuration.certified, *self.studies]
 
-    def with_figures(self, datasets: Iterable[str]) -> list[str]:
-        """Datasets, and the figures drawn from them alone, or from them and maps of the paper."""
-        datasets, paper = [*datasets], set(self.configuration.sweeps)
-        drawn = [
-            f"figures/{figure}"
-            for figure, names in self.figures.items()
-            if (set(names) - paper or set(names)) <= set(datasets)
-        ]
-        return [*datasets, *drawn]
+    @property
+    def targets(self) -> list[str]:
+        """Names of all targets: those of TARGETS, all figures, and fig1 to fig6."""
+        names = (*figure_targets.TARGETS, *drawing.FIGURES, *self.figures, *drawing.SHORT_NAMES)
+        return list(dict.fromkeys(names))
 
     def products_of(self, target: str) -> list[str]:
-        """Products that a key of figure_targets.TARGETS asks for."""
+        """Products of a target; raises ConfigError if the configuration has no data for it."""
         configuration = self.configuration
         drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
         datasets = {
@@ -175,8 +170,25 @@ class Plan:
             "certified": [name for name in configuration.certified if name not in drift],
         } | {study: [dataset] for dataset, study in self.studies.items()}
         if target in datasets:
-            return self.with_figures(datasets[target])
-        return [f"pages/{target}"]
+            return [*datasets[target], *self._figures_of(datasets[target])]
+        page = f"{target}.html"
+        if page in explorer.PAGES:
+            if problem := explorer.refusal(configuration, page):
+                raise ConfigError(problem)
+            return [f"pages/{target}"]
+        figure = drawing.SHORT_NAMES.get(target, target)
+        if figure not in self.figures:
+            raise ConfigError(figure_targets.why_no_figure(configuration, figure))
+        return [f"figures/{figure}"]
+
+    def _figures_of(self, datasets: Iterable[str]) -> list[str]:
+        """Figures that are drawn from these datasets alone, or from these and maps of the paper."""
+        paper = set(self.configuration.sweeps)
+        return [
+            f"figures/{figure}"
+            for figure, names in self.figures.items()
+            if (set(names) - paper or set(names)) <= set(datasets)
+        ]
 
     # What products are made of
 

@@ -175,17 +175,12 @@ def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
     size: mean number of points in a batch.
     """
     axis, values = requests.last
-    parts = _cut(values, size) if len(values) > size else [values]
-    blocks = _cut(requests.rows, max(size // len(values), 1))
+    parts = cut(values, size) if len(values) > size else [values]
+    blocks = cut(requests.rows, max(size // len(values), 1))
     return [Batch(block, axis, part) for block in blocks for part in parts]
 
 
-def batches_of_requests(requests: Sequence[dict], size: int) -> list[Batch]:
-    """Batches of single requests in their order; size: mean number in a batch."""
-    return [Batch(part) for part in _cut(requests, size)]
-
-
-def _cut(items: Sequence, mean: int) -> list[list]:
+def cut(items: Sequence, mean: int) -> list[list]:
     """Lists of `mean` items on average.
 
     Each cut depends on the item after it alone, so that an item more changes one list.

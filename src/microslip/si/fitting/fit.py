@@ -9,7 +9,7 @@ import numpy as np
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.si.fitting import estimate
-from microslip.si.fitting.conclusions import Settled, concluded
+from microslip.si.fitting.conclusions import concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import (
     LEAST,
@@ -115,10 +115,17 @@ def fit(
         reached = [scale.points(0.3, end) for end in ends]
         model = SolvedFriction(motion, scale.poisson, allowed_error, reached)
     rows_to_fit = _rows(rows, scale, model, ends)
-    best, others = _best(rows_to_fit, scale, model)
-    settled = Settled(motion, scale, model, rows_to_fit, best, others)
+    fits = _fits(rows_to_fit, scale, model)
     try:
-        return concluded(settled, accepted, texts | rows.texts)
+        return concluded(
+            scale,
+            model,
+            rows_to_fit,
+            fits,
+            motion=motion,
+            confidence=accepted,
+            texts=texts | rows.texts,
+        )
     except InputError as error:
         if error.argument != "measured":
             raise
@@ -183,16 +190,13 @@ def _rows(
     )
 
 
-def _best(
-    rows: estimate.Rows, scale: Scale, model: FrictionModel
-) -> tuple[estimate.Best, list[estimate.Best]]:
-    """The best fit, and others that were tried, the best one first."""
-    tried = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
-    tried.sort(key=lambda one: one.squares)
-    best = tried[0]
+def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
+    """The best fit, with the model anchored at it, then the fits from other initial guesses."""
+    fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
+    best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):
         model.anchor(scale.points(*np.exp(best.theta)))
         last, best = best, estimate.best_near(rows, best.theta)
         if np.abs(best.theta - last.theta).max() <= SETTLED:
             break
-    return best, tried[1:]
+    return [best, *others]
