@@ -4,13 +4,13 @@
 #                       results/points (the store) <--'    ^             draw --> results/figures
 #                       certified maps --> map ------------'          explore --> results/*.html
 #
-# A batch is named by its requests and by the digest of the code that answers them, so a batch that
-# is there is right.  Datasets, figures and pages have plain names, so that each has a stamp,
-# results/.made/NAME.json, written last: what it was made of, and the checksums of its files.
+# The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
+# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which the
+# job writes last: the fingerprint of its inputs, and the checksums of its files.
 #
-# Snakemake decides by dates, and only by one: results/.again is an input of every rule.  A product
-# without the right stamp and a damaged batch are dated back behind it; for all others it is
-# `ancient`, and so are all right inputs.  Neither other dates nor .snakemake count.
+# Snakemake compares dates.  The file results/.again is an input of every rule.  Outdated products
+# and damaged batches are dated before it.  For all other files it is `ancient`, and so are all inputs
+# that are up to date.  So neither other dates nor .snakemake matter.
 
 from snakemake.utils import min_version
 
@@ -53,7 +53,7 @@ for target in PLAN.targets:
                 files_of_target(target),
 
 
-# Compiles the solver once, before jobs that would all do it at the same time.
+# Compiles the solver once, before several jobs would do it at the same time.
 rule warm_up:
     input:
         lambda wildcards: ancient(
@@ -65,7 +65,7 @@ rule warm_up:
         f"{RESULTS}/logs/warm_up/{{kernels}}.log",
     conda:
         "workflow/envs/microslip.yaml"
-    # What a job takes where a scheduler starts it, with Snakemake: see docs/how-to/cluster.md.
+    # Memory and time on a cluster, including Snakemake: see docs/how-to/cluster.md.
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
@@ -95,7 +95,7 @@ rule solve:
         "workflow/scripts/solve.py"
 
 
-# All points of a certified map, by several processes.
+# Solves all points of a certified map by several processes.
 rule map:
     input:
         ancient(lambda wildcards: kernels_for(wildcards.certified)),
@@ -173,7 +173,7 @@ rule draw:
         "workflow/scripts/draw.py"
 
 
-# One page to look behind every point of the maps; explorer_all.html has every other sweep, too.
+# Interactive page of the maps; explorer_all.html also has all other sweeps.
 rule explore:
     input:
         datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
@@ -201,7 +201,7 @@ rule explore:
         "workflow/scripts/explore.py"
 
 
-# Where the results of the rules are, with the prefix that a module may have.
+# Folder of results of the rules, with the prefix of a module.
 PLACE = os.path.dirname(str(rules.collect.output[0]))
 
 with refused_in_one_line():

@@ -81,7 +81,7 @@ def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
     assert done.returncode == 1
     assert line == (
         "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
-        "which the configuration has not"
+        "which the configuration does not have"
     )
 
 

@@ -2,14 +2,14 @@
 
 Output: netCDF-4, CF conventions; dimensionless (units 1, phases in rad) except for the seconds and
 bytes of studies.
-  NAME.nc            of a sweep: dims (amplitude, velocity), as far as the motion has them, after
-                     mass, damping, stiffness, poisson where these are axes; force for velocity
+  NAME.nc            a sweep: dims (amplitude, velocity), or those of them that the motion has, after
+                     mass, damping, stiffness, poisson if these are axes; force replaces velocity
   certified_NAME.nc  dims point, cell, node
   accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile
   stability.nc       dims (method, case); group axes
   propulsion.nc      dims (line, point)
   claims.nc          dim claim; groups parts, checks, runs, static limit, patches
-What has other axes is in groups of the file.  Beside it an HTML page that sums it up.
+Variables with other axes are in groups of the file.  An HTML page summarises it.
 """
 
 import logging
@@ -29,7 +29,7 @@ name, path = snakemake.wildcards.dataset, snakemake.output[0]
 
 def write_sweep(grid, paths) -> list[str]:
     """Write the dataset and the page of a sweep; return the lines of its report."""
-    of_points = len(plan.batch_files(name))  # those of single runs come after them
+    of_points = len(plan.batch_files(name))  # then come those of single runs
     points, runs = map(batches.records_in, (paths[:of_points], paths[of_points:]))
     sweep_dataset.write_sweep(path, grid, points, list(runs), configuration.of_sweep(name))
     with xr.open_dataset(path) as data:

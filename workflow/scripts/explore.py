@@ -1,6 +1,6 @@
-"""Put sweeps, and a period behind each point of the maps, on one page that answers questions.
+"""Make an interactive page of sweeps, with a period behind each point of the maps.
 
-Output: HTML, one file that needs no network; the numbers in it are dimensionless.
+Output: one HTML file that needs no network.  All numbers in it are dimensionless.
 """
 
 from microslip.app.job_log import job_log

@@ -1,12 +1,11 @@
-"""Plan of a configuration: batches of requests, products, and what each product is made of.
+"""Plan of a configuration: batches of requests, products, and the inputs of each product.
 
-The workflow's rules use it; nothing here depends on Snakemake.  Importing it is cheap, since the
-workflow is parsed by every process that Snakemake starts.
+The rules of the workflow use it.  It does not depend on Snakemake, and its import is cheap, since
+every process of Snakemake parses the workflow.
 
 A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
-explorer ("pages/explorer").  A group of batches is named like the sweep, the study or the certified
-map that it answers, or "bore_histories" for the single runs in a dataset and "bore_periods" for the
-explorer.
+explorer ("pages/explorer").  A group of batches has the name of a sweep, study or certified map.
+The group "bore_histories" holds the single runs in a dataset, "bore_periods" those of the explorer.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from microslip.sweeps import batches
 from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make the dataset of a sweep and its page, besides those that they import."""
+"""Modules that make the dataset of a sweep and its page, without their imports."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
@@ -35,18 +34,18 @@ REFINEMENT_CODE = ("sweeps/map_refinement.py",)
 
 
 class Product(NamedTuple):
-    """What a job makes from batches or datasets.
+    """Files that a job makes from batches or datasets.
 
     Attributes
     ----------
     files : list of str
-        Its files in the folder of results.
+        Paths inside the folder of results.
     code : tuple of str
-        Modules that make it, besides those that they import.
+        Modules that make the product, without their imports.
     datasets, groups : sequence of str
-        Names of the datasets and of the groups of batches that it is made of.
+        Names of the datasets and of the groups of batches that are the inputs.
     settings : dict
-        Settings that it depends on, for JSON.
+        Settings that influence the product, as values for JSON.
     """
 
     files: list[str]
@@ -65,7 +64,7 @@ class Plan:
     studies : dict of str to str
         Studies by the names of their datasets.
     figures : dict of str to tuple of str
-        Figures that there is data for, and the datasets of each.
+        Figures with data in this configuration, and the names of the datasets of each.
     products : dict of str to Product
         All products by name.
     """
@@ -91,34 +90,34 @@ class Plan:
         ]
 
     def _batches_in(self, group: str) -> dict[str, Batch]:
-        """Batches of a group by name, in the order of its requests; none for a certified map."""
+        """Batches of a group by name, in the order of its requests; {} for a certified map."""
         configuration = self.configuration
-        name, _, beside = group.rpartition("_")
+        name, _, runs = group.rpartition("_")
         if group in configuration.grids:
             points = batches.PointRequests(configuration.grids[group])
-            found = batches.batches_of_points(points, configuration.points_per_job[group])
-        elif beside == "histories":
-            runs = batches.history_requests(configuration, name)
-            found = [Batch(runs)] if runs else []
-        elif beside == "periods":
+            blocks = batches.batches_of_points(points, configuration.points_per_job[group])
+        elif runs == "histories":
+            histories = batches.history_requests(configuration, name)
+            blocks = [Batch(histories)] if histories else []
+        elif runs == "periods":
             periods = explorer.period_requests(configuration, name)
-            found = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
+            blocks = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
         elif group in configuration.certified:
-            found = []
+            blocks = []
         else:
             slow, fast = registry.pieces(group, configuration)
-            found = [Batch(piece) for piece in (*slow, *fast)]
-        return {batch.name: batch for batch in found}
+            blocks = [Batch(piece) for piece in (*slow, *fast)]
+        return {batch.name: batch for batch in blocks}
 
     def map_batch(self, name: str) -> str:
-        """Name of the batch that holds all points of a certified map."""
+        """Name of the batch with all points of a certified map."""
         map_ = self.configuration.certified[name]
         solver = source_digest.of_request(batches.PointRequests(map_.sweep).rows[0])
         code = source_digest.of_modules(*REFINEMENT_CODE)
         return fingerprint(map_.settings, code, solver)[:20]
 
     def batch_files(self, *groups: str) -> list[str]:
-        """Files of all batches of these groups, in their order."""
+        """Paths of all batches of these groups, in their order."""
         certified = self.configuration.certified
         return [
             f"batches/{group}/{name}.jsonl"
@@ -129,23 +128,26 @@ class Plan:
     # Products
 
     def _products(self) -> Iterator[tuple[str, Product]]:
-        given = self.configuration
+        configuration = self.configuration
         for name in self.datasets:
             files, groups = [f"{name}.nc", f"summaries/{name}.html"], [name]
-            if name in given.certified:
+            if name in configuration.certified:
                 yield name, Product(files, CERTIFIED_CODE, (), groups)
             elif name in self.studies:
-                settings = registry.settings(self.studies[name], given)
+                settings = registry.settings(self.studies[name], configuration)
                 yield name, Product(files, STUDY_CODE, (), [self.studies[name]], settings)
             else:  # batches of single runs come after those of points
-                groups += [f"{name}_histories"] * (name in given.sweeps)
-                yield name, Product(files, DATASET_CODE, (), groups, given.of_sweep(name))
+                groups += [f"{name}_histories"] * (name in configuration.sweeps)
+                yield name, Product(files, DATASET_CODE, (), groups, configuration.of_sweep(name))
         for name, datasets in self.figures.items():
             files = [f"figures/{name}.{form}" for form in ("png", "pdf")]
             yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
-        periods = [f"{name}_periods" for name in explorer.maps_of(given)]
+        periods = [f"{name}_periods" for name in explorer.maps_of(configuration)]
         for page in explorer.PAGES:
-            name, datasets = page.removesuffix(".html"), tuple(explorer.datasets_of(given, page))
+            name, datasets = (
+                page.removesuffix(".html"),
+                tuple(explorer.datasets_of(configuration, page)),
+            )
             yield f"pages/{name}", Product([page], PAGE_CODE, datasets, periods)
 
     @property
@@ -190,17 +192,14 @@ class Plan:
             if (set(names) - paper or set(names)) <= set(datasets)
         ]
 
-    # What products are made of
+    # Fingerprints of the inputs of products
 
     def _made_of(self, product: str) -> str:
-        """Fingerprint of the code, settings and points of a product.
-
-        It does not depend on how the points of a sweep are cut into batches.
-        """
-        of = self.products[product]
-        code = source_digest.of_modules(*of.code)
-        datasets, points = map(self.made_of, of.datasets), map(self._points_in, of.groups)
-        return fingerprint(product, code, of.settings, [*datasets], [*points])
+        """Fingerprint of the code, settings and points of a product, whatever the batches are."""
+        _, modules, datasets, groups, settings = self.products[product]
+        inputs = [self.made_of(dataset) for dataset in datasets]
+        points = [self._points_in(group) for group in groups]
+        return fingerprint(product, source_digest.of_modules(*modules), settings, inputs, points)
 
     def _points_in(self, group: str) -> object:
         if group not in self.configuration.grids:
@@ -209,9 +208,9 @@ class Plan:
         return [requests.rows, requests.last, source_digest.of_request(requests.rows[0])]
 
     def refuse_edited(self, product: str, made_of: str) -> None:
-        """Raise SourcesEdited if a product was to be made by other code when it was planned.
+        """Raise SourcesEdited if the fingerprint of a product has changed since it was planned.
 
-        made_of: what `made_of` gave then.
+        made_of: the fingerprint at that time.
         """
         if made_of != self.made_of(product):
             raise SourcesEdited("the code that makes it")

@@ -26,10 +26,10 @@ T = TypeVar("T")
 def modules_in(
     folder: str | os.PathLike, package: ModuleType, broken: dict[str, str]
 ) -> Iterator[tuple[str, ModuleType]]:
-    """Name and module of each file in a folder, which is one of the package's from now on.
+    """Name and module of each file in a folder, which becomes a folder of the package.
 
-    A file that cannot be imported is left out, so that it ends only the commands that name it.  So
-    is one whose name a file in another folder has: which of them was meant is not known.
+    A file that cannot be imported is left out, so that only commands that name it fail.  A file
+    with the name of a file in another folder is left out, too, since the name is ambiguous.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Registry(Generic[T]):
     Attributes
     ----------
     classes : dict of str to type
-        Classes by name.
+        Classes by their names.
     broken : dict of str to str
         Path and error of each file that cannot be used.
     """
@@ -167,7 +167,7 @@ class Registry(Generic[T]):
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
         try:
             return _made(cls, tuple(sorted(numbers.items())))
-        except InputError as error:  # about the text without its default numbers
+        except InputError as error:  # its text lacks numbers with default values
             raise InputError(self.argument, text, error.allowed) from None
         except Exception as error:  # in a file of the user
             path = str(import_module(cls.__module__).__file__)
@@ -176,5 +176,5 @@ class Registry(Generic[T]):
 
 @lru_cache(maxsize=128)
 def _made(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
-    """One object for equal numbers, which keeps its cached properties."""
+    """The object for these numbers; equal numbers share one object and its cached properties."""
     return cls(**dict(numbers))

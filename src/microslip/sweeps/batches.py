@@ -1,8 +1,8 @@
-"""From a configuration to results: requests, batches of them, and their answers from the store.
+"""From a configuration to results: requests, batches of requests, and their records.
 
-A request is a plain dict that says what to compute, with numbers as canonical strings; together
-with the digest of the solver it names a result. A job gets a batch of requests and computes those
-that the store does not hold, so how points are cut into batches never decides what is computed.
+A request is a plain dict of physical and numerical settings, with numbers as canonical strings.
+The name of its result is a hash of the request and the digest of the solver.  A job gets a batch of
+requests and computes the results that the store does not have, whatever batch computed the others.
 """
 
 import functools
@@ -29,7 +29,7 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Raised when the content of a record changes without any change in the solver."""
+"""Version of the content of records, to increase after a change outside the solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states of Figure 5."""
@@ -46,14 +46,14 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
-"""Folders of the store by kind of request.  Those of trials and scaling hold measured times."""
+"""Folders of the store by kind of request.  Records of trials and scaling hold measured times."""
 
 
 class PointRequests:
-    """Requests for all points of a records.Sweep, each made when it is asked for.
+    """Requests for all points of a records.Sweep, generated during iteration.
 
-    The order is that of the dataset: what pulls, Poisson's ratio, amplitude, velocity, the last one
-    fastest; a force stands in the place of the velocity.
+    Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
+    last one changes fastest.
     """
 
     def __init__(self, sweep: Sweep):
@@ -66,7 +66,7 @@ class PointRequests:
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
-        if pressure != "hertz":  # which goes without saying, as it did before there were others
+        if pressure != "hertz":  # the default is left out: names of older results stay
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
             self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
@@ -103,39 +103,37 @@ class PointRequests:
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
-    """List the requests for the single runs that go into the dataset of the sweep `name`; none for
-    one of `extended`."""
+    """Requests for the single runs in the dataset of the sweep `name`; [] for extended sweeps."""
     steady = {"motion": "continuous-bore"}
     kinds: dict[str, list[dict]] = {
         "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
         "field": [{"kind": "field"} | steady],
         "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
     }
-    counts, found = ("cells", "steps", "periods"), []
+    counts, requests = ("cells", "steps", "periods"), []
     for run in HISTORIES_OF_SWEEP.get(name, ()):
         settings = configuration.histories[run]
         numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-        found += [kind | settings | numbers for kind in kinds[run]]
-    return found
+        requests += [kind | settings | numbers for kind in kinds[run]]
+    return requests
 
 
 def key_of(request: dict) -> str:
-    """Name of the result that answers a request with the code that is running."""
+    """Name of the result of a request with the running code."""
     return result_key(request, source_digest.of_request(request))
 
 
 def result_key(request: dict, digest: str) -> str:
-    """Name of the result that answers a request with the code that has this digest.
+    """Name of the result of a request with code of this digest.
 
-    It is a hash of the physics, the tolerance, the model and resolution asked for, and the digest.
-    The versions of NumPy, SciPy and Numba are not part of it: they change results by rounding
-    errors, and each result records them.
+    It is a hash of the request and the digest.  The versions of NumPy, SciPy and Numba change
+    results by rounding errors.  They are recorded in each result and are no part of the name.
     """
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
     return sha256(canonical_json(content))
 
 
-# Batches: what a job answers
+# Batches: the requests of a job
 
 
 class Batch(NamedTuple):
@@ -164,13 +162,13 @@ class Batch(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Name that follows from the requests and the code that answers them."""
+        """Hash of the requests and of the code that computes their results."""
         code = sorted({source_digest.of_request(row) for row in self.rows})
         return fingerprint(code, self._asdict(), RECORD_FORMAT)[:20]
 
 
 def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
-    """Batches of whole rows, or of parts of rows longer than a job, in the order of the points.
+    """Batches of whole rows, or of parts of long rows, in the order of the points.
 
     size: mean number of points in a batch.
     """
@@ -181,9 +179,9 @@ def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
 
 
 def cut(items: Sequence, mean: int) -> list[list]:
-    """Lists of `mean` items on average.
+    """Consecutive items in lists, of `mean` items on average.
 
-    Each cut depends on the item after it alone, so that an item more changes one list.
+    Each cut depends only on the item after it, so that an additional item changes one list.
     """
     parts: list[list] = []
     for item in items:
@@ -194,18 +192,19 @@ def cut(items: Sequence, mean: int) -> list[list]:
 
 
 def group(request: dict) -> str:
-    """Name the subfolder of the store that a request's result goes to."""
+    """Subfolder of the store for the result of a request."""
     motion = request["motion"] if "motion" in request else request["model"]
-    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # numbers apart
+    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # without numbers
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
-    """Record that answers a request, and the CPU seconds that the solver took for it.
+    """Record of a request, and the CPU seconds of the solver.
 
-    It comes from the store if that has it (0 seconds), else it is computed and stored.  A record
-    has key, request, result and versions.  A result that is not final, see evaluate.is_final, is
-    not stored.  time_limit: of a point, as for microslip.solve.  Raises CacheError if the record
-    cannot be stored.
+    The record comes from the store (0 seconds), or is computed and stored.  It has the keys key,
+    request, result and versions.  A result that is not final, see evaluate.is_final, is not stored.
+    Raises CacheError if the record cannot be stored.
+
+    time_limit: largest time for a point, as for microslip.solve.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -215,7 +214,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
     started = time.process_time()
     result = evaluate.computed(request, time_limit)
     seconds = time.process_time() - started
-    # Times are left out, so that equal requests have equal records, except where they ask for one.
+    # Equal requests have equal records, so times are left out, except in measurements of time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
     edited = source_digest.LOADED.edited()
     if edited:
@@ -226,18 +225,18 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
 
 
 class SourcesEdited(CacheError):
-    """The code on disk is no longer the one that is running.
+    """The code on disk differs from the running code.
 
-    A result may then be of either code, so it is not kept under the name of one.
+    A result may then come from either code, so it is not stored under the name of one.
 
     Attributes
     ----------
     record : dict
-        What was computed, by code that was loaded before the edit or after it.
+        The computed record.
     """
 
     def __init__(self, file: str, record: dict | None = None):
-        super().__init__(file, record)  # as processes hand it on
+        super().__init__(file, record)  # for pickle
         self.record = record
 
     def __str__(self) -> str:
@@ -248,19 +247,17 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Records that answer the requests, and `statistics` of them.
-
-    The records depend on the requests and the solver alone.
-    """
+    """Records of the requests, which depend on the requests and the solver alone, and their
+    `statistics`."""
     answers = [answer(request, store) for request in requests]
     records = [record for record, _ in answers]
     return records, statistics(records, [took for _, took in answers])
 
 
 def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Counts, CPU seconds and finality of answers; logs points that did not converge.
+    """Counts, CPU seconds and finality of records; logs points that did not converge.
 
-    Raises SolverError where the solver failed at all of them.
+    Raises SolverError if the solver failed at all points.
     """
     results = [record["result"] for record in records]
     for record, result in zip(records, results, strict=True):
@@ -281,22 +278,22 @@ def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """A function that finds the record that answers a request among these."""
-    found = {record["key"]: record for record in records}
-    return lambda request: found[key_of(request)]
+    """A function from a request to its record, one of these."""
+    by_key = {record["key"]: record for record in records}
+    return lambda request: by_key[key_of(request)]
 
 
 def label(request: dict) -> str:
-    """Describe a request in a few words, for messages."""
+    """A request in a few words, for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
-    given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
-    return f"{request.get('motion', request['kind'])} at {given}"
+    place = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
+    return f"{request.get('motion', request['kind'])} at {place}"
 
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the numerical libraries that compute a result, as a dict."""
-    found = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
-    return {"python": platform.python_version(), **found}
+    """Versions of Python and of the numerical libraries, by name."""
+    libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
+    return {"python": platform.python_version(), **libraries}

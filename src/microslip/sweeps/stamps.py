@@ -1,7 +1,8 @@
-"""Stamps of products: what a dataset, page or figure was made of, and the checksums of its files.
+"""Stamps of products: fingerprint of the inputs of a dataset, page or figure, and file checksums.
 
-A product has plain names that do not change with its content, so its stamp, `.made/NAME.json` in
-the folder of results, says whether it is the right one.  The stamp is written last.
+The files of a product have plain names, which do not change with their content.  Its stamp
+`.made/NAME.json` in the folder of results shows whether they are up to date.  A job writes the
+stamp last.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ log = logging.getLogger(__name__)
 
 FOLDER = ".made"
 AGAIN = ".again"
-"""Name of a file in the folder of results that is newer than what has to be made again."""
+"""Name of a file in the folder of results that is newer than every outdated file."""
 WHEN = 1_000_000_000
-"""Date (s since 1970, in 2001) of AGAIN; what has to be made again is dated one second before."""
+"""Date of AGAIN (s since 1970, in 2001).  Outdated files are dated one second before."""
 HDF5 = b"\x89HDF"
 """First bytes of a netCDF file."""
 
@@ -35,13 +36,13 @@ def stamp_of(product: str) -> str:
 
 
 def write(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> None:
-    """Write a stamp; made_of: what the outputs were made of, see app.plan."""
+    """Write a stamp; made_of: fingerprint of the inputs, see app.plan."""
     sums = {Path(file).name: _checksum(file) for file in outputs}
     files.write_atomically(Path(stamp), canonical_json({"made_of": made_of, "sums": sums}).encode())
 
 
 def read(stamp: str | Path) -> dict:
-    """Content of a stamp: made_of and sums; empty where there is none or it is damaged."""
+    """Content of a stamp: made_of and sums; empty if the stamp is missing or damaged."""
     try:
         content = json.loads(Path(stamp).read_bytes())
     except (OSError, ValueError):
@@ -50,7 +51,7 @@ def read(stamp: str | Path) -> dict:
 
 
 def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool:
-    """Whether the outputs are there, whole, and made of this."""
+    """True if all outputs exist with the checksums of the stamp, and were made of `made_of`."""
     content = read(stamp)
     if content.get("made_of") != made_of:
         return False
@@ -88,10 +89,10 @@ def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
-    """Date files back that have to be made again, and to now what has a date in the future.
+    """Date outdated files (not right) back, and set a date in the future to the current time.
 
-    Snakemake makes again what is older than its input AGAIN, and refuses what is older than its
-    inputs, ancient or not.
+    Snakemake runs the job again for a file older than its input AGAIN.  It refuses files that are
+    older than an input, even an ancient one.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -101,7 +102,10 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
 
 
 def write_again(path: str | Path, dated: bool) -> None:
-    """Write the file AGAIN with new content: Snakemake trusts its date only if that differs."""
+    """Write the file AGAIN with new content, since Snakemake ignores the date of unchanged files.
+
+    dated: True to give it the date WHEN.
+    """
     files.write_atomically(Path(path), os.urandom(16).hex().encode())
     if dated:
         os.utime(path, (WHEN, WHEN))
