@@ -5,12 +5,12 @@
 #                       certified maps --> map ------------'          explore --> results/*.html
 #
 # The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
-# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which the
-# job writes last: the fingerprint of its inputs, and the checksums of its files.
+# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which
+# the job writes last: the fingerprint of its inputs, and the checksums of its files.
 #
 # Snakemake compares dates.  The file results/.again is an input of every rule.  Outdated products
-# and damaged batches are dated before it.  For all other files it is `ancient`, and so are all inputs
-# that are up to date.  So neither other dates nor .snakemake matter.
+# and damaged batches are dated before it.  For all other files it is `ancient`, and so are all
+# inputs that are up to date.  So neither other dates nor .snakemake matter.
 
 from snakemake.utils import min_version
 

@@ -48,7 +48,7 @@ from microslip.sweeps import batches, stamps, store
 
 @contextmanager
 def refused_in_one_line():
-    """Context in which an error that the user can fix ends the run with one line, before any job."""
+    """Context that ends the run with one line, before any job, for errors that the user can fix."""
     try:
         yield
     except load.ConfigError as error:
@@ -127,7 +127,7 @@ def is_right(product):
 
 
 def batches_for(product):
-    """Batches of a product.  Whole ones are ancient, so that they are no reason to collect again."""
+    """Batches of a product; whole ones are ancient, so that they start no job."""
     names = PLAN.batch_files(*PLAN.products[product].groups)
     if HERE and not is_right(product):
         missing = [f for f in names if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]

@@ -2,7 +2,7 @@
 
 Output: netCDF-4, CF conventions; dimensionless (units 1, phases in rad) except for the seconds and
 bytes of studies.
-  NAME.nc            a sweep: dims (amplitude, velocity), or those of them that the motion has, after
+  NAME.nc            a sweep: dims (amplitude, velocity), as far as the motion has them, after
                      mass, damping, stiffness, poisson if these are axes; force replaces velocity
   certified_NAME.nc  dims point, cell, node
   accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile

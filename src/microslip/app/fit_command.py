@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     from microslip.si.fitting.fitted import Fit
 
 OPTIONS = {
-    "speed": ("V", "forward speed of all rows, such as '1 mm/s', if it is no column"),
-    "amplitude": ("A", "half stroke of all rows, such as '1 um', or an angle for bore, likewise"),
-    "frequency": ("F", "frequency of all rows, such as '20 kHz', likewise"),
-    "load": ("L", "normal load of all rows, such as '10 N', likewise"),
-    "nu": ("NU", "Poisson's ratio of what gives way (0, or that of the map)"),
-    "radius": ("R", "of relative curvature, such as '5 mm': finds the shear modulus, too"),
-    "counterbody": ("BODY", "beside a radius: rigid (if not given) or same"),
-    "map": ("FILE", "dataset of a sweep of this motion, which answers in place of the solver"),
-    "confidence": ("P", "of the intervals (0.95)"),
-    "tolerance": ("T", "largest accepted error of mu_macro where the solver answers (1e-3)"),
+    "speed": ("V", "forward speed of all rows, such as '1 mm/s', in place of a column"),
+    "amplitude": ("A", "half stroke of all rows, such as '1 um'; an angle for bore"),
+    "frequency": ("F", "frequency of all rows, such as '20 kHz'"),
+    "load": ("L", "normal load of all rows, such as '10 N'"),
+    "nu": ("NU", "Poisson's ratio of the elastic body (0, or that of the map)"),
+    "radius": ("R", "radius of relative curvature, such as '5 mm', to fit the shear modulus"),
+    "counterbody": ("BODY", "with a radius: rigid (default) or same"),
+    "map": ("FILE", "dataset of a sweep of this motion, in place of the solver"),
+    "confidence": ("P", "confidence level of the intervals (0.95)"),
+    "tolerance": ("T", "largest accepted error of mu_macro of the solver (1e-3)"),
     "decimal": ("MARK", "the decimal mark of the table, a point or a comma (.)"),
     "encoding": ("NAME", "the encoding of the table, such as cp1252 (utf-8)"),
-    "figure": ("FILE", "draws measured and fitted friction into this .png or .pdf"),
-    "output": ("FILE", "writes rows, fitted friction and residuals into this .nc"),
+    "figure": ("FILE", "figure of measured and fitted friction, .png or .pdf"),
+    "output": ("FILE", "dataset of rows, fitted friction and residuals, .nc"),
 }
 FILES = ("map", "figure", "output")
 
@@ -40,15 +40,15 @@ FILES = ("map", "figure", "output")
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the description and the arguments of `fit` to its parser."""
     parser.description = (
-        "The coefficient of friction without vibration, and the displacement u_lim "
-        "that lets the whole contact slide, or the shear modulus, from friction that was measured "
-        "under vibration.  A row of the CSV file is a measurement; its heading names columns with "
+        "The coefficient of friction without vibration, and the displacement u_lim at "
+        "which the whole contact slides, or the shear modulus, from friction measured "
+        "under vibration.  A row of the CSV file is a measurement.  Its heading names columns with "
         "their units: some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; friction "
         "[N] or mu; friction_error [N] or mu_error."
     )
     parser.epilog = (
-        "Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
-        "were left out, 2 bad input, or rows that tell neither."
+        "Exit codes: 0 both numbers determined, 1 mu alone, or unreadable lines were left out, "
+        "2 bad input, or rows that determine neither number."
     )
     motions = ", ".join(UNIT_OF_AMPLITUDE)
     parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
@@ -58,7 +58,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
+    """Run the command; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
     titles = {"motion": "MOTION", "measured": "CSV"}
     return respond("microslip fit", options, _answer, titles)
 
@@ -90,7 +90,7 @@ def _opened(path: str) -> xr.Dataset:
 
 
 def _refuse_endings(options: argparse.Namespace) -> None:
-    """Before the answer is computed, and not after."""
+    """Raise InputError for an output file with an unknown ending."""
     for name, endings in (("figure", (".png", ".pdf")), ("output", (".nc",))):
         path = getattr(options, name)
         if path is not None and Path(path).suffix.lower() not in endings:
@@ -148,11 +148,11 @@ def _interval(value: float | None, low: float | None, high: float | None, unit: 
 
 
 def _scaled(value: float | None, unit: str) -> str:
-    """A value in the unit that suits it."""
+    """A value with a suitable prefix of its unit."""
     name, size = prefixed(value, unit) if unit and value else (unit, 1.0)
     return f"{_digits((value or 0.0) / size, 4)} {name}".strip()
 
 
 def _digits(value: float, count: int) -> str:
-    """A number with so many significant digits, zeros at its end included."""
+    """A number with `count` significant digits, including zeros at the end."""
     return f"{value:#.{count}g}".rstrip(".") if value else "0"

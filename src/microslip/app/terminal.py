@@ -79,8 +79,8 @@ def _code_of(command: Callable[[], int]) -> int:
 def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
-    Otherwise a file opened later would get the number of a stream, and receive its output.  With the
-    buffer, the output is complete or missing, and only `_written` has to handle a full device.
+    Otherwise a file opened later would get the number of a stream, and receive its output.  With
+    the buffer, the output is complete or missing, and only `_written` has to handle a full device.
     """
     missing = sys.stdout is None
     for number, mode in ((0, os.O_RDONLY), (1, os.O_WRONLY), (2, os.O_WRONLY)):

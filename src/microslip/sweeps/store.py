@@ -1,7 +1,7 @@
 """Records on disk: a file for each result, and files of many results.
 
-A file holds records as lines of JSON, then their checksum.  It is written atomically.  A file with a
-wrong checksum counts as missing.
+A file holds records as lines of JSON, then their checksum.  It is written atomically.  A file
+with a wrong checksum counts as missing.
 """
 
 from __future__ import annotations

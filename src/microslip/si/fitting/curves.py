@@ -12,21 +12,21 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
 PIECES = 96
-"""Number of points of a curve, approximately: a column of a journal is some 1000 pixels wide."""
+"""Approximate number of points of a curve, enough for a figure of 1000 pixels."""
 
 
 class Curve(NamedTuple):
-    """Friction of the fitted contact along its abscissa, one curve after another, shape (n,) each.
+    """Points of the model curves of a fit, one curve after another, shape (n,) each.
 
-    The abscissa is the condition with the most values.  Rows that agree in all other conditions
-    share a curve, if there are two of them at least.
+    The abscissa is the condition with the most values.  At least two rows with equal other
+    conditions share a curve.
 
     Attributes
     ----------
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray
         The conditions, as for the rows of a Fit.
     fitted, fitted_error : np.ndarray
-        Friction of the model and the largest error that it may have, in the unit of the rows.
+        Friction of the model and its error estimate, in the unit of the rows.
     """
 
     speed_m_s: np.ndarray
@@ -38,7 +38,7 @@ class Curve(NamedTuple):
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
-    """The name of the condition with the most values, the first of several."""
+    """Name of the condition with the most values; the first one of equals."""
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
@@ -50,7 +50,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     scale : Scale
         The second unknown, with the rows.
     model : FrictionModel
-        Anchored at the best fit.
+        Model, anchored at the best fit.
     mu, size : float
         Both unknowns at the best fit.
     """
@@ -59,7 +59,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     along = abscissa(columns)
     others = np.stack([values for name, values in columns.items() if name != along], axis=1)
     _, kinds = np.unique(others, axis=0, return_inverse=True)
-    # The solver answered for the rows alone: what the coarse map is off there is interpolated.
+    # The correction of the coarse map is known at the rows, and interpolated between them.
     at_rows = scale.points(mu, size)
     off, error = model.at(at_rows) - model.rough(at_rows), model.errors(at_rows)
     parts = []
@@ -84,12 +84,13 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
 
 
 def _count(rows: int) -> int:
-    """Number of points of a curve through so many rows, which are among them."""
+    """Number of points of a curve through a number of rows, including the rows."""
     return 1 + (rows - 1) * -(-PIECES // (rows - 1))
 
 
 def _between(values: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Values at places between their indices, in equal ratios where both neighbours are above 0."""
+    """Values at fractional indices: geometric interpolation between positive neighbours, else
+    linear."""
     cell = np.clip(place.astype(int), 0, len(values) - 2)
     share, low, high = place - cell, values[cell], values[cell + 1]
     ratio = np.divide(high, low, out=np.ones_like(low), where=low > 0.0)
