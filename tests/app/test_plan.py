@@ -1,4 +1,4 @@
-"""What a configuration leads to, asked without Snakemake."""
+"""The plan of a configuration, without Snakemake."""
 
 import pytest
 from stubs.workflow_project import AXES, TINY

@@ -8,7 +8,7 @@ from microslip.app import progress
 
 
 class Terminal(io.StringIO):
-    """Standard error of a terminal."""
+    """A stream that acts as the standard error of a terminal."""
 
     def isatty(self):
         return True

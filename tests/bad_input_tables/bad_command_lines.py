@@ -1,6 +1,6 @@
-"""Bad command lines of microslip, each with parts that its one line on standard error must have.
+"""Bad command lines of microslip, each with parts of the line on standard error.
 
-The option at fault, the value as it was given, and what is allowed.
+The parts are the option, its value, and the allowed values.
 """
 
 TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
@@ -20,7 +20,7 @@ RANGE = "at least 1e-06 and at most 0.1"
 NEARER_0 = "nearer 0 than floating-point numbers can be; allowed is 0 or a number further from it"
 BEYOND = "beyond the range of floating-point numbers; allowed is a number within it"
 
-# Arguments to what is right without them, or with a velocity, a force or an amplitude alone.
+# Arguments added to a valid command, or to one with only a velocity, force or amplitude.
 NUMBERS = [
     (f"{SHAKEN} --velocity -1", "--velocity = '-1'", FINITE),
     (f"{SHAKEN} --velocity -1e-3", "--velocity = '-1e-3'", FINITE),
@@ -103,7 +103,7 @@ NUMBERS = [
 
 MINUS, ARABIC_THREE, WIDE_ONE = "\N{MINUS SIGN}", "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"
 
-# What Python's float takes and people do not mean, and what people mean and it does not take.
+# Texts that float accepts although they are mistakes, and common texts that it refuses.
 GRAMMAR = [
     (f"{SHAKEN} --velocity {MINUS}1", f"--velocity = '{MINUS}1'", FINITE),
     (f"{SHAKEN} --velocity -1,5", "--velocity = '-1,5'", "with a point: -1.5"),
@@ -137,7 +137,7 @@ GRAMMAR = [
     (f"{TRANSVERSE} --pressure power:exponent=1_0", "'power:exponent=1_0'", "power:key=0.5"),
 ]
 
-# Python's float takes these for 0 and for infinity.
+# Python's float returns 0 or infinity.
 OUT_OF_RANGE = [
     (f"{SHAKEN} --velocity 1e-400", "--velocity = '1e-400'", NEARER_0),
     (f"{SHAKEN} --velocity -1e-400", "--velocity = '-1e-400'", NEARER_0),
@@ -270,7 +270,7 @@ OPTIONS = [
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
 ]
 
-# Of these the folder is as tests/config/test_bad_input.py makes it.
+# Cases in the folder of tests/config/test_bad_input.py.
 RESULTS = [
     (f"{TRANSVERSE} --results", "--results", "expected one argument"),
     (f"{TRANSVERSE} --results ''", "--results: ''", "the name of a folder"),

@@ -1,6 +1,6 @@
-"""Odd configurations, files of pressures and datasets, as strangers write them.
+"""Unusual configurations, files of pressures and datasets.
 
-A row says what is given, and what comes out: a value, or the words that the one line must have.
+A row has an input and its result: a value, or words of the error message.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ def refused(*words):
     return {"words": words}
 
 
-# Configurations: a line that is put into SWEEP for %s, and what `velocity` is then.
+# Configurations: a line for %s in SWEEP, and the resulting `velocity`.
 
 SWEEP = "sweeps:\n  bore:\n    amplitude: [1]\n    velocity: %s\n"
 VELOCITIES = [
@@ -51,7 +51,7 @@ VELOCITIES = [
     ("[1.0e-300, 1]", (1e-300, 1.0)),
 ]
 
-# Other keys, as YAML at the top level, and words of the line; None: all is well.
+# Other keys, as YAML at the top level, and words of the message; None: valid.
 KEYS = [
     ("results: ~/here", ("~/here", "~ in front")),
     ("results: '~'", ('"~"', "~ in front")),
@@ -104,7 +104,7 @@ KEYS = [
     ),
 ]
 
-# Files of pressures: text, and the shares of the load in the four quarters or words of the line.
+# Files of pressures: text, and the shares of the load in the four quarters, or words of the message.
 
 HEAD = "forward,lateral,pressure\n"
 ROWS = "0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
@@ -169,7 +169,7 @@ AXIS, VALUES = [0.0, 1.0], np.array([[1.0, 2.0], [3.0, 4.0]])
 
 
 def grid(values=VALUES, **attributes):
-    """A grid with attributes of its variables."""
+    """A grid with attributes for its variables."""
     data = xr.Dataset(
         {"pressure": (("forward", "lateral"), values)}, {"forward": AXIS, "lateral": AXIS}
     )
@@ -179,7 +179,7 @@ def grid(values=VALUES, **attributes):
 
 
 MM, UM = {"units": "mm"}, {"units": "um"}
-STRETCHED = grid(forward=MM, lateral=UM)  # what others are to be the same as
+STRETCHED = grid(forward=MM, lateral=UM)  # equal to the other stretched cases
 NETCDF = [
     (grid(forward={"Units": "mm"}, lateral={"Units": "um"}), "stretched"),
     (grid(forward={"unit": "mm"}, lateral={"UNIT": "um"}), "stretched"),
@@ -197,14 +197,14 @@ NETCDF = [
     (grid(pressure={"missing_value": 4.0}), refused("pressure is nan at forward 1, lateral 1")),
 ]
 
-# Datasets, as others hand them on: what is changed, and what `at` says.
+# Datasets of other origin: a change, and words of the message of `at`.
 
 VELOCITY, AMPLITUDE = np.geomspace(1e-3, 10, 13), np.linspace(0, 3, 13)
 DIMS = ("amplitude", "velocity")
 
 
 def whole(**attributes):
-    """A map of Eq 6 that answers at (0.15, 1.3)."""
+    """A map of Eq 6 that contains (0.15, 1.3)."""
     mu = paper.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
     return xr.Dataset(
         {
@@ -263,7 +263,7 @@ DATASETS = {
     ),
 }
 
-# Questions to a good one: arguments, words.
+# Arguments of `at` for a valid dataset, words.
 QUESTIONS = [
     ((True, 1), {}, "velocity = True"),
     (("0.5", 1), {}, "velocity = '0.5'"),
@@ -280,7 +280,7 @@ QUESTIONS = [
     ((1, 1), {"tolerance": [0.1]}, "tolerance = [0.1]"),
 ]
 
-# What open_map is given: name, more arguments, words.
+# Arguments of open_map: name, further arguments, words.
 OPENED = [
     (None, {}, "name = None"),
     (5, {}, "name = 5"),
@@ -300,7 +300,7 @@ DAMAGES = {
     "line ends changed": lambda content: content.replace(b"\n", b"\r\n"),
 }
 
-# Arguments of microslip gc, words of its one line.
+# Arguments of microslip gc, words of its message.
 GC = [
     (["--configfile", "a\0b"], "no name of a file"),
     (["--configfile", "nosuch.yaml"], "--configfile: nosuch.yaml: cannot be read"),

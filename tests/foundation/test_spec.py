@@ -1,4 +1,4 @@
-"""Numbers in texts: each is the float nearest to what is written, or it is refused."""
+"""Numbers in texts: the nearest float, or an error."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Other packages are used by their public interfaces, as imports and attributes show."""
+"""The source uses only public interfaces of other packages."""
 
 import ast
 import io
@@ -27,7 +27,7 @@ def is_private(name):
 
 
 def imported(tree):
-    """(bound name, full name) of what a file imports from the packages."""
+    """(bound name, full name) of each import of a file from these packages."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names = [(a.asname or a.name.partition(".")[0], a.name) for a in node.names]
@@ -39,7 +39,7 @@ def imported(tree):
 
 
 def private_uses(tree):
-    """Private names that a file imports from the packages, and private attributes of the others."""
+    """Private names that a file imports from these packages, and their private attributes."""
     names = dict(imported(tree))
     yield from filter(is_private, names.values())
     for node in ast.walk(tree):

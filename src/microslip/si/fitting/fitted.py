@@ -39,8 +39,8 @@ class Fit:
     confidence : float
         Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
-        Largest relative effect of model errors on mu, and on u_lim or the shear modulus; part of the
-        intervals.
+        Largest relative effect of model errors on mu, and on u_lim or the shear modulus, which the
+        intervals include.
     standard_error : float or None
         Standard error of one row, from the residuals of the fit, in the unit of the rows.  None for
         rows with standard errors.
