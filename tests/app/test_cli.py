@@ -216,7 +216,7 @@ def test_version_is_that_of_the_package():
 
 @pytest.mark.slow
 def test_help_and_bad_options_do_not_load_the_solver():
-    """Imports of --help and bad options, which must be fast, do not include compiled kernels."""
+    """Help and bad options do not wait for the import of compiled kernels."""
     code = (
         "import sys, microslip.app.cli as cli\n"
         "try: cli.main(['point', 'bore', '--help'])\n"
@@ -241,7 +241,7 @@ HEAVY = {"xarray", "pandas", "pint", "matplotlib", "dask", "jsonschema", "netCDF
     ],
 )
 def test_a_point_loads_only_what_answers_it(words, model, others):
-    """Slow libraries."""
+    """A point does not import slow libraries that it does not need."""
     code = (
         "import json, sys, microslip.app.cli as cli\n"
         f"cli.main(['point', *{words}, '--json'])\n"

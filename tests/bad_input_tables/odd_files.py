@@ -104,7 +104,7 @@ KEYS = [
     ),
 ]
 
-# Files of pressures: text, and the shares of the load in the four quarters, or words of the message.
+# Files of pressures: text, and the load shares of the four quarters, or words of the message.
 
 HEAD = "forward,lateral,pressure\n"
 ROWS = "0,0,1\n0,1,2\n1,0,3\n1,1,4\n"

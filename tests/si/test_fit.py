@@ -1,4 +1,4 @@
-"""Fits of friction with known parameters: the intervals contain them with the stated probability."""
+"""Fits of friction with known parameters, which the intervals contain with the stated probability."""
 
 import math
 from types import SimpleNamespace
@@ -174,7 +174,7 @@ def test_rows_under_several_loads_are_brought_together(closed):
     ],
 )
 def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence, seeds):
-    """Range of a binomial count, outside which it lies with a probability of 1e-4."""
+    """The number of intervals with the true value is in a range of probability 1 - 1e-4."""
     table, sigma = conditions(12), 0.05
     true, held = force(table), {"mu": 0, "u_lim": 0}
     for seed in range(seeds):
