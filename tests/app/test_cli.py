@@ -29,15 +29,6 @@ def run_process(*arguments):
     )
 
 
-def refused(*arguments):
-    """The line on standard error of a run that must end with exit code 2."""
-    done = run(*arguments)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr.endswith("\n") and done.stderr.count("\n") == 1
-    return done.stderr
-
-
 @pytest.mark.parametrize(
     ("motion", "arguments"),
     [
@@ -131,45 +122,6 @@ def test_tolerance_out_of_reach_is_exit_code_1():
 
 
 @pytest.mark.parametrize(
-    ("option", "arguments"),
-    [
-        ("--velocity", ("point", "transverse", "--velocity", "fast", "--amplitude", "1")),
-        ("--velocity", ("point", "transverse", "--velocity=-1", "--amplitude", "1")),
-        ("--velocity", ("point", "transverse", "--velocity", "nan", "--amplitude", "1")),
-        ("--velocity", ("point", "transverse", "--velocity", "inf", "--amplitude", "1")),
-        ("--velocity", ("point", "transverse", "--amplitude", "1")),
-        ("--amplitude", ("point", "transverse", "--velocity", "1")),
-        ("--amplitude", ("point", "transverse", "--velocity", "1", "--amplitude=-0.5")),
-        ("--amplitude", ("point", "continuous-bore", "--velocity", "1", "--amplitude", "1")),
-        ("--poisson", (*TRANSVERSE, "--poisson", "0.6")),
-        ("--poisson", (*TRANSVERSE, "--poisson", "steel")),
-        ("--model", (*TRANSVERSE, "--model", "best")),
-        ("--model", (*TRANSVERSE, "--model", "radial", "--poisson", "0.3")),
-        ("--model", ("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "slider")),
-        ("--tolerance", (*TRANSVERSE, "--tolerance", "0")),
-        ("--tolerance", (*TRANSVERSE, "--tolerance", "1e-12")),
-        ("--cells", (*TRANSVERSE, "--cells", "7")),
-        ("--cells", (*TRANSVERSE, "--cells", "8.5")),
-        ("--steps", (*TRANSVERSE, "--steps", "2")),
-        ("--step", (*TRANSVERSE, "--step", "8")),
-        ("--colour", (*TRANSVERSE, "--colour", "red")),
-        ("MOTION", ("point", "sideways", "--velocity", "1")),
-        ("MOTION", ("point",)),
-        ("COMMAND", ()),
-        ("COMMAND", ("solve",)),
-        ("extra", (*TRANSVERSE, "extra")),
-    ],
-)
-def test_bad_input_is_one_line_that_names_the_option(option, arguments):
-    assert option in refused(*arguments)
-
-
-def test_model_that_does_not_apply_says_to_which_motion():
-    line = refused("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "radial")
-    assert "bore" in line and "rotation" in line
-
-
-@pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (
@@ -251,12 +203,6 @@ def test_a_point_loads_only_what_answers_it(words, model, others):
     answer, modules = map(json.loads, done.stdout.splitlines())
     assert answer["model"] == model
     assert not (HEAVY | others) & set(modules)
-
-
-def test_a_negative_number_with_an_exponent_is_a_number(capsys):
-    """A negative number is a value, although argparse takes it for an option."""
-    assert cli.main(["point", "transverse", "--velocity", "-1e-3", "--amplitude", "1"]) == 2
-    assert "velocity = '-1e-3'" in capsys.readouterr().err
 
 
 def test_a_negative_number_that_was_joined_to_its_option_counts_once(capsys):

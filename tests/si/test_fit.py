@@ -1,4 +1,4 @@
-"""Fits of friction with known parameters, which the intervals contain with the stated probability."""
+"""Fits of friction with known parameters: intervals contain them with the stated probability."""
 
 import math
 from types import SimpleNamespace

@@ -50,7 +50,7 @@ def steady(request):
 
 
 def period(request):
-    """Four steps forward and four back; least contact sticks at the end of a stroke, on one side."""
+    """Four steps each way; the smallest contact sticks on one side at the end of a stroke."""
     points = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     share = np.where(np.cos(points) < 0, 0.5, 1.0)
     right = [0.0, 0.5, 0.4, 0.2, 0.0, 0.5, 0.4, 0.3, 0.1]
