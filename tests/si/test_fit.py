@@ -279,7 +279,7 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
     [
         ("bore", {}, "radius"),
         ("continuous-bore", {}, "allowed is one of transverse"),
-        ("transverse", {"counterbody": "same"}, "beside a radius"),
+        ("transverse", {"counterbody": "same"}, "with a radius"),
         ("transverse", {"radius": "5 mm"}, "nu"),
         ("transverse", {"radius": "5 mm", "nu": 0.3, "counterbody": "glass"}, "rigid or same"),
         ("transverse", {"confidence": 1.0}, "confidence"),

@@ -91,7 +91,7 @@ RESULTS = os.path.normpath(CONFIGURATION.results)
 
 HERE = exists(os.devnull)  # False for results in a storage, where stamps cannot be read
 AGAIN = f"{RESULTS}/{stamps.AGAIN}"
-kept = update if HERE else str  # keeps the old file until a job has written the new one
+updated = update if HERE else str  # keeps the old file until a job has written the new one
 marked = str if HERE else local
 TO_SOLVE = {}
 
@@ -154,8 +154,8 @@ def batch_of(group, name):
 
 def kernels_for(group):
     """Marks of the compiled code that a group needs."""
-    pulled = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
-    return compiled("rings", "angles", *["pulled"] * (group in pulled))
+    with_drive = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
+    return compiled("rings", "angles", *["pulled"] * (group in with_drive))
 
 
 def compiled(*kernels, place=RESULTS):

@@ -16,13 +16,11 @@ import logging
 
 import xarray as xr
 
-from microslip.app.job_log import job_log
-from microslip.app.plan import Plan
-from microslip.config import load
+from microslip.app.plan import product_job
 from microslip.datasets import certified_map, sweep_dataset
 from microslip.report import dataset_page, study_page
 from microslip.studies import registry
-from microslip.sweeps import batches, stamps
+from microslip.sweeps import batches
 
 name, path = snakemake.wildcards.dataset, snakemake.output[0]
 
@@ -56,11 +54,8 @@ def write_study(study, records) -> list[str]:
     return lines
 
 
-with job_log(snakemake.log[0], shown=logging.INFO) as log:
-    configuration = load.from_mapping(snakemake.config, ask_solver=False)
-    plan = Plan(configuration)
-    plan.refuse_edited(name, snakemake.params.made_of)
-    stamps.set_aside(snakemake.output.stamp, snakemake.output[:2])
+with product_job(snakemake, name, shown=logging.INFO) as (plan, log):
+    configuration = plan.configuration
     records = batches.records_in(snakemake.input.batches)
     if name in configuration.grids:
         report = write_sweep(configuration.grids[name], snakemake.input.batches)
@@ -70,4 +65,3 @@ with job_log(snakemake.log[0], shown=logging.INFO) as log:
         report = write_study(plan.studies[name], records)
     for line in report:
         log.info(line)
-    stamps.write(snakemake.output.stamp, snakemake.params.made_of, snakemake.output[:2])

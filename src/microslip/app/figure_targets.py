@@ -26,14 +26,14 @@ TARGETS = {
 
 def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
     """Figures with data in the configuration, and the names of the datasets of each."""
-    known = _datasets(configuration)
-    found = {
+    datasets = _datasets(configuration)
+    figures = {
         figure: names
         for figure, names in drawing.FIGURES.items()
-        if known >= set(names) and _is_drawable(figure, names, configuration)
+        if datasets >= set(names) and _is_drawable(figure, names, configuration)
     }
-    found |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
-    return found | {name: (name,) for name in configuration.certified}
+    figures |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
+    return figures | {name: (name,) for name in configuration.certified}
 
 
 def _datasets(configuration: Configuration) -> set[str]:
@@ -48,10 +48,12 @@ def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configurati
     the same amplitude and velocity.
     """
     if figure == "drives":
-        moved, *pulled, body = (configuration.grids[name] for name in names)
-        same = {grid.amplitude for grid in (*pulled, body)} == {body.amplitude}
+        reference, *drives, body = (configuration.grids[name] for name in names)
+        same = {grid.amplitude for grid in (*drives, body)} == {body.amplitude}
         return (
-            same and _has(moved.amplitude, body.amplitude) and _has(moved.velocity, body.velocity)
+            same
+            and _has(reference.amplitude, body.amplitude)
+            and _has(reference.velocity, body.velocity)
         )
     if figure == "pairs":
         return len({configuration.grids[name].amplitude for name in names}) == 1
@@ -64,11 +66,11 @@ def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configurati
     return few or figure != "poisson"
 
 
-def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
-    """True if there is one wanted value, and an axis has it up to rounding."""
-    if axis is None or wanted is None:
+def _has(axis: Sequence[float] | None, values: Sequence[float] | None) -> bool:
+    """True if `values` has one value, and an axis has it up to rounding."""
+    if axis is None or values is None:
         return False
-    return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)
+    return len(values) == 1 and any(math.isclose(value, values[0]) for value in axis)
 
 
 def why_no_figure(configuration: Configuration, figure: str) -> str:

@@ -70,12 +70,12 @@ def _answer(options: argparse.Namespace) -> Answer:
     arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
     if options.map is not None:
         arguments["map"] = _opened(options.map)
-    found = fit(options.motion, options.measured, **arguments)
-    _write(found, options)
-    for text in found.left_out:
+    result = fit(options.motion, options.measured, **arguments)
+    _write(result, options)
+    for text in result.left_out:
         complain(f"microslip fit: {format_as_options(text)}; left out")
-    complete = len(found.told) == 2 and not found.left_out
-    return Answer(found.to_dict(), _as_text(found), complete)
+    complete = len(result.told) == 2 and not result.left_out
+    return Answer(result.to_dict(), _as_text(result), complete)
 
 
 def _opened(path: str) -> xr.Dataset:
@@ -98,10 +98,10 @@ def _refuse_endings(options: argparse.Namespace) -> None:
             raise InputError(name, path, allowed)
 
 
-def _write(found: Fit, options: argparse.Namespace) -> None:
+def _write(result: Fit, options: argparse.Namespace) -> None:
     if not (options.figure or options.output):
         return
-    dataset = found.to_xarray()
+    dataset = result.to_xarray()
     if options.output:
         from microslip.foundation.files import writing_beside
 
@@ -113,34 +113,34 @@ def _write(found: Fit, options: argparse.Namespace) -> None:
         save(draw("fit", {"fit": dataset}), options.figure)
 
 
-def _as_text(found: Fit) -> str:
-    friction = found.quantity == "friction"
+def _as_text(result: Fit) -> str:
+    friction = result.quantity == "friction"
     name = "the friction force" if friction else "the coefficient of friction"
-    load = in_unit(found.load_N, 0.0, force_unit(found.load_N))
-    lines = [line(name.replace("_", " "), text) for name, text in found.understood.items()]
-    lines += [line("rows", f"{len(found.measured)}, of {name}; mean load {load}"), ""]
-    lines.append(line("mu", _interval(found.mu, found.mu_low, found.mu_high, "")))
-    u_lim = found.u_lim_m, found.u_lim_low_m, found.u_lim_high_m
-    modulus = found.shear_modulus_Pa, found.shear_modulus_low_Pa, found.shear_modulus_high_Pa
+    load = in_unit(result.load_N, 0.0, force_unit(result.load_N))
+    lines = [line(name.replace("_", " "), text) for name, text in result.understood.items()]
+    lines += [line("rows", f"{len(result.measured)}, of {name}; mean load {load}"), ""]
+    lines.append(line("mu", _interval(result.mu, result.mu_low, result.mu_high, "")))
+    u_lim = result.u_lim_m, result.u_lim_low_m, result.u_lim_high_m
+    modulus = result.shear_modulus_Pa, result.shear_modulus_low_Pa, result.shear_modulus_high_Pa
     for title, parts, unit in (("u_lim", u_lim, "m"), ("shear modulus", modulus, "Pa")):
         if parts[0] is not None:
             lines.append(line(title, _interval(*parts, unit)))
-    shares = {found.told[-1]: found.scale_model_share, "mu": found.mu_model_share}
+    shares = {result.told[-1]: result.scale_model_share, "mu": result.mu_model_share}
     model = ", ".join(
-        f"of {name.replace('_', ' ')} {_digits(100.0 * shares[name], 2)} %" for name in found.told
+        f"of {name.replace('_', ' ')} {_digits(100.0 * shares[name], 2)} %" for name in result.told
     )
-    share = f"{100.0 * found.confidence:g} %, and what the model may be off: {model}"
+    share = f"{100.0 * result.confidence:g} %, and what the model may be off: {model}"
     lines.append(line("intervals", share))
-    if found.standard_error is not None:
-        scatter = _scaled(found.standard_error, "N" if friction else "")
+    if result.standard_error is not None:
+        scatter = _scaled(result.standard_error, "N" if friction else "")
         lines.append(line("scatter", f"{scatter} a row"))
     else:
-        chance = "" if found.p_value is None else f", p = {found.p_value:.2g}"
-        text = f"{found.chi_square:.3g} for {found.degrees_of_freedom} degrees of freedom{chance}"
+        chance = "" if result.p_value is None else f", p = {result.p_value:.2g}"
+        text = f"{result.chi_square:.3g} for {result.degrees_of_freedom} degrees of freedom{chance}"
         lines.append(line("chi square", text))
-    if found.reason:
-        lines.append(f"NOT TOLD: {found.reason}")
-    return "\n".join(lines + [f"warning: {text}" for text in found.warnings])
+    if result.reason:
+        lines.append(f"NOT TOLD: {result.reason}")
+    return "\n".join(lines + [f"warning: {text}" for text in result.warnings])
 
 
 def _interval(value: float | None, low: float | None, high: float | None, unit: str) -> str:

@@ -82,12 +82,12 @@ def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
 
     Links, files behind links and folders with the name of a file belong to the user.
     """
-    wanted = {file for plan in plans for file in requested(plan, folder)}
+    needed = {file for plan in plans for file in requested(plan, folder)}
     paths: dict[str, list[Path]] = {kind: [] for kind in KINDS}
     for kind, path in _named(folder):
         inner = path.relative_to(folder)
         is_own = path.is_file() and path.resolve() == folder.resolve() / inner
-        if is_own and inner.as_posix() not in wanted:
+        if is_own and inner.as_posix() not in needed:
             paths[kind].append(path)
     return paths
 
@@ -149,16 +149,16 @@ def _parser() -> OneLineParser:
     parser = OneLineParser(
         prog="microslip gc",
         description="List points, batches, datasets and figures in a folder of results that none "
-        "of the configurations asks for, with this version of the solver. Points that only the "
-        "command line or solve_stored has kept there are among them.",
+        "of the configurations requests, with this version of the solver. This includes "
+        "points that the command line or solve_stored has stored there.",
         allow_abbrev=False,
     )
     parser.add_argument(
         "--configfile",
         nargs="+",
-        action="extend",  # of an option given twice none may be forgotten: its results would go
+        action="extend",  # a repeated option adds files, so that no results are lost
         metavar="FILE",
-        help="configurations whose results are to stay (config/config.yaml)",
+        help="configurations whose results stay (config/config.yaml)",
     )
     parser.add_argument("--list", action="store_true", help="list every file")
     parser.add_argument("--delete", action="store_true", help="remove them")

@@ -81,10 +81,10 @@ class OneLineParser(argparse.ArgumentParser):
         self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
-def _hint(given: str, known: Iterable[str]) -> str:
+def _hint(name: str, known: Iterable[str]) -> str:
     """'did you mean NAME? ' for the most similar known name, '' if there is none."""
-    synonym = [name for name in [SYNONYMS.get(given)] if name is not None and name in known]
-    near = synonym or difflib.get_close_matches(given, known, n=1)
+    synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in known]
+    near = synonym or difflib.get_close_matches(name, known, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 

@@ -10,18 +10,22 @@ The group "bore_histories" holds the single runs in a dataset, "bore_periods" th
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache, cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from microslip.app import figure_targets
+from microslip.app.job_log import job_log
+from microslip.config import load
 from microslip.config.records import ConfigError, Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
-from microslip.sweeps import batches
+from microslip.sweeps import batches, stamps
 from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
@@ -207,10 +211,28 @@ class Plan:
         requests = batches.PointRequests(self.configuration.grids[group])
         return [requests.rows, requests.last, source_digest.of_request(requests.rows[0])]
 
-    def refuse_edited(self, product: str, made_of: str) -> None:
-        """Raise SourcesEdited if the fingerprint of a product has changed since it was planned.
 
-        made_of: the fingerprint at that time.
-        """
-        if made_of != self.made_of(product):
+@contextmanager
+def product_job(
+    job: Any, product: str, shown: int = logging.WARNING
+) -> Iterator[tuple[Plan, logging.Logger]]:
+    """Context of a job that makes a product; yields the plan and a logger.
+
+    It renames damaged files of the product first, and writes the stamp last.  Raises SourcesEdited
+    if the fingerprint of the product has changed since it was planned.
+
+    Parameters
+    ----------
+    job : snakemake.script.Snakemake
+        The job, whose last output is the stamp.
+    shown : int
+        Lowest level of messages on standard error.
+    """
+    outputs, made_of = job.output[:-1], job.params.made_of
+    with job_log(job.log[0], shown) as log:
+        plan = Plan(load.from_mapping(job.config, ask_solver=False))
+        if made_of != plan.made_of(product):
             raise SourcesEdited("the code that makes it")
+        stamps.set_aside(job.output.stamp, outputs)
+        yield plan, log
+        stamps.write(job.output.stamp, made_of, outputs)

@@ -52,8 +52,8 @@ def modules_in(
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
         if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
-            taken = f"{path}: {module.__file__} has the same name; allowed is another name"
-            broken[file.name] = taken
+            problem = f"{path}: {module.__file__} has the same name; allowed is another name"
+            broken[file.name] = problem
             continue
         broken.pop(file.name, None)
         yield file.name, module

@@ -143,8 +143,8 @@ class Sources:
     @cached_property
     def _known(self) -> dict[str, tuple[str, list[str]]]:
         with contextlib.suppress(OSError, ValueError):
-            reader, known = json.loads(self._file.read_bytes())
-            return known if reader == _READER else {}
+            reader, results = json.loads(self._file.read_bytes())
+            return results if reader == _READER else {}
         return {}
 
     def _write_parsed(self) -> None:

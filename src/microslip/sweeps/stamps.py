@@ -85,7 +85,7 @@ def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
         if path.is_file() and _checksum(path) != _stamped(stamp, path):
             aside = path.with_name(f"{path.name}.damaged")
             os.replace(path, aside)
-            log.warning("%s differs from what the workflow made: it is kept as %s", path, aside)
+            log.warning("%s differs from what the workflow made: renamed to %s", path, aside)
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:

@@ -135,27 +135,27 @@ class Fit:
         names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
         units = dict.fromkeys(names, "N" if self.quantity == "friction" else "1")
         units["amplitude_si"] = "rad" if self.motion == "bore" else "m"
-        found: dict[str, tuple] = {}
-        about: dict[str, str] = {}
+        variables: dict[str, tuple] = {}
+        attributes: dict[str, str] = {}
         for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
             if isinstance(value, Curve):
                 for part, values in value._asdict().items():
-                    found[f"curve_{part}"] = (
+                    variables[f"curve_{part}"] = (
                         "curve_point",
                         values,
                         {"units": units.get(part, unit_of(part))},
                     )
             elif isinstance(value, np.ndarray):
-                found[name] = ("row", value, {"units": units.get(name, unit_of(name))})
+                variables[name] = ("row", value, {"units": units.get(name, unit_of(name))})
             elif name == "labels":
-                found |= {label: ("row", texts) for label, texts in value.items()}
+                variables |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
-                about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
+                attributes[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
             elif isinstance(value, tuple):
-                about[name] = "; ".join(value)
+                attributes[name] = "; ".join(value)
             elif isinstance(value, str):
-                about[name] = value
+                attributes[name] = value
             else:
                 number = np.nan if value is None else value
-                found[name] = ((), number, {"units": units.get(name, unit_of(name))})
-        return xr.Dataset(found, attrs=about)
+                variables[name] = ((), number, {"units": units.get(name, unit_of(name))})
+        return xr.Dataset(variables, attrs=attributes)

@@ -103,12 +103,12 @@ class MapFriction(FrictionModel):
 
         velocity, amplitude = (DataArray(part, dims="row") for part in points)
         try:
-            found = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
+            answer = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
         except InputError as error:
             if error.argument == "poisson":
                 raise error.renamed("nu") from None
             raise
-        return found.mu_macro.values, found.mu_macro_error.values
+        return answer.mu_macro.values, answer.mu_macro_error.values
 
 
 class SolvedFriction(FrictionModel):
@@ -154,8 +154,8 @@ class SolvedFriction(FrictionModel):
         return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
 
     def anchor(self, points: Points) -> None:
-        found = [self._solved(v, a) for v, a in zip(*points, strict=True)]
-        values, self._errors = np.array(found).T
+        answers = [self._solved(v, a) for v, a in zip(*points, strict=True)]
+        values, self._errors = np.array(answers).T
         self._off = values - self._coarse(points)
 
     def errors(self, points: Points) -> np.ndarray:
@@ -204,12 +204,12 @@ def _solution(
     if amplitude == 0.0:
         return 1.0, 0.0
     point = (min(part, LARGEST["velocity"]) for part in (velocity, amplitude))
-    found = solve(motion, *point, **settings)
-    if not np.isfinite(found.mu_macro):
+    result = solve(motion, *point, **settings)
+    if not np.isfinite(result.mu_macro):
         where = f"velocity {velocity:.3g} and amplitude {amplitude:.3g}"
-        problem = f"no answer at {where}: {found.reason}"
+        problem = f"no answer at {where}: {result.reason}"
         raise InputError("tolerance", settings["tolerance"], problem)
-    return found.mu_macro, found.mu_macro_error
+    return result.mu_macro, result.mu_macro_error
 
 
 def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:

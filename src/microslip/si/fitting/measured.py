@@ -85,7 +85,7 @@ class Measured:
 
 
 def read_measured(
-    motion: str, given: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
+    motion: str, source: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
 ) -> Measured:
     """The rows of a CSV file or of a table of columns, checked; raises InputError.
 
@@ -93,20 +93,20 @@ def read_measured(
     ----------
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
-    given : path, mapping or pandas DataFrame
+    source : path, mapping or pandas DataFrame
         The file, or columns by their names: in SI units, or with a unit as in "speed [mm/s]".
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
         Values of speed, amplitude, frequency and load in place of columns.
     """
-    if not is_table(given):
-        raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
+    if not is_table(source):
+        raise InputError("measured", source, "allowed is the path of a CSV file, or its columns")
     units = {name: column.unit for name, column in COLUMNS.items()}
     units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
     needed = {name: bool(unit) for name, unit in units.items()}
-    table = table_of("measured", given, needed, decimal=decimal, encoding=encoding)
-    columns, labels, left_out = _numbers(table, given, units)
+    table = table_of("measured", source, needed, decimal=decimal, encoding=encoding)
+    columns, labels, left_out = _numbers(table, source, units)
     count = len(next(iter(columns.values())))
     texts: dict[str, str] = {}
     conditions: dict[str, Any] = {}
@@ -123,8 +123,8 @@ def read_measured(
             conditions[name], texts[name] = np.full(count, one.si), one.text
     if not (conditions["amplitude"] > 0.0).any():
         allowed = "no row with an amplitude above 0, so that nothing vibrates"
-        raise InputError("measured", named(given), allowed)
-    quantity = _quantity(columns, given)
+        raise InputError("measured", named(source), allowed)
+    quantity = _quantity(columns, source)
     return Measured(
         **conditions,
         value=columns[quantity],
@@ -137,7 +137,7 @@ def read_measured(
 
 
 def _numbers(
-    table: Table, given: object, units: Mapping[str, str]
+    table: Table, source: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
     """Columns in SI units, labels, and messages about unreadable lines of a file.
 
@@ -149,13 +149,13 @@ def _numbers(
     if unknown or not names:
         which = repr(unknown[0]) if unknown else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
-        raise InputError("measured", named(given), allowed)
+        raise InputError("measured", named(source), allowed)
     for name, column in table.columns.items():
         if not isinstance(column, list):
             allowed = f"allowed is a sequence of numbers, in {units.get(name, 'a text each')}"
             raise InputError(name, column, allowed)
     if len({len(column) for column in table.columns.values()}) > 1:
-        raise InputError("measured", named(given), "columns of several lengths; allowed is one")
+        raise InputError("measured", named(source), "columns of several lengths; allowed is one")
     rows, indices, left_out = [], [], []
     for index, row in enumerate(zip(*(table.columns[name] for name in names), strict=True)):
         if index in table.errors:
@@ -172,7 +172,7 @@ def _numbers(
                 left_out.append(f"line {table.lines[index]}: {problem}")
     if not rows:
         problem = left_out[0] if left_out else "no rows; allowed is a row for each measurement"
-        raise InputError("measured", named(given), problem)
+        raise InputError("measured", named(source), problem)
     if len(rows) > MOST_ROWS:
         raise InputError("measured", len(rows), f"allowed are at most {MOST_ROWS} rows")
     columns = dict(zip(names, np.array(rows).T, strict=True))
@@ -189,18 +189,18 @@ def _number(name: str, value: object, units: Mapping[str, str]) -> float:
     return read(name, value, units[name], low=column.low, low_open=column.low_open).si
 
 
-def _quantity(table: Mapping[str, np.ndarray], given: object) -> str:
+def _quantity(table: Mapping[str, np.ndarray], source: object) -> str:
     """The measured quantity, friction or mu."""
     columns = [name for name in ("friction", "mu") if name in table]
     if len(columns) != 1:
         many = "both friction and mu" if columns else "neither friction nor mu"
-        raise InputError("measured", named(given), f"has {many}; allowed is one of them")
+        raise InputError("measured", named(source), f"has {many}; allowed is one of them")
     for name in ("friction", "mu"):
         if f"{name}_error" in table and name not in columns:
-            raise InputError("measured", named(given), f"has {name}_error without {name}")
+            raise InputError("measured", named(source), f"has {name}_error without {name}")
     return columns[0]
 
 
-def named(given: Any) -> str | list:
+def named(source: Any) -> str | list:
     """A table in messages: its path, or the names of its columns."""
-    return str(given) if isinstance(given, str | os.PathLike) else list(given)
+    return str(source) if isinstance(source, str | os.PathLike) else list(source)
