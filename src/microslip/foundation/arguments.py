@@ -24,7 +24,7 @@ def is_real(value: object) -> TypeGuard[float]:
     """True for real numbers, except booleans and NumPy's time spans."""
     if isinstance(value, int | float):
         return not isinstance(value, bool)
-    import numpy as np  # only now, since configurations are read without it
+    import numpy as np  # late, since configurations do not need NumPy
 
     return isinstance(value, np.integer | np.floating) and not isinstance(value, np.timedelta64)
 

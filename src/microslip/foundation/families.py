@@ -135,7 +135,7 @@ class Registry(Generic[T]):
         self.classes.update({name: self.classes.pop(name) for name in order})
 
     def _is_class_of(self, one: object, module: ModuleType) -> bool:
-        """Whether an object is a class that the module defines."""
+        """True for a class of this family that the module defines."""
         return (
             isinstance(one, type)
             and issubclass(one, self.base)

@@ -86,7 +86,7 @@ def folder() -> Path:
 
 
 def _is_usable(place: Path) -> bool:
-    """Whether a folder exists or can be made, and files can be written to it."""
+    """True if a folder exists or can be made, and files can be written to it."""
     try:
         place.mkdir(parents=True, exist_ok=True, mode=0o700)
         with tempfile.TemporaryFile(dir=place):
@@ -96,7 +96,7 @@ def _is_usable(place: Path) -> bool:
 
 
 def _is_private(place: Path) -> bool:
-    """Whether a folder belongs to this user, and no other user can write to it."""
+    """True if a folder belongs to this user, and no other user can write to it."""
     if not hasattr(os, "getuid"):
         return True
     about = place.stat()

@@ -62,7 +62,7 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
 
 
 def is_damaged(dataset: Path) -> bool:
-    """Whether a netCDF file differs from its stamp, or without a stamp is no netCDF file.
+    """True if a netCDF file differs from its stamp; without a stamp, if it is no netCDF file.
 
     Raises CacheError if the file cannot be read.
     """
