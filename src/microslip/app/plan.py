@@ -223,8 +223,8 @@ def product_job(
 
     Parameters
     ----------
-    job : snakemake.script.Snakemake
-        The job, whose last output is the stamp.
+    job : object
+        The variable `snakemake` of the script; the last output is the stamp.
     shown : int
         Lowest level of messages on standard error.
     """
