@@ -4,13 +4,13 @@
 #                       results/points (the store) <--'    ^             draw --> results/figures
 #                       certified maps --> map ------------'          explore --> results/*.html
 #
-# A batch is named by its requests and by the digest of the code that answers them, so a batch that
-# is there is right.  Datasets, figures and pages have plain names, so that each has a stamp,
-# results/.made/NAME.json, written last: what it was made of, and the checksums of its files.
+# The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
+# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which
+# the job writes last: the fingerprint of its inputs, and the checksums of its files.
 #
-# Snakemake decides by dates, and only by one: results/.again is an input of every rule.  A product
-# without the right stamp and a damaged batch are dated back behind it; for all others it is
-# `ancient`, and so are all right inputs.  Neither other dates nor .snakemake count.
+# Snakemake compares dates.  The file results/.again is an input of every rule.  Outdated products
+# and damaged batches are dated before it.  For all other files it is `ancient`, and so are all
+# inputs that are up to date.  So neither other dates nor .snakemake matter.
 
 from snakemake.utils import min_version
 
@@ -42,27 +42,18 @@ rule all:
         files_of_target("all"),
 
 
-# snakemake certified, and all other targets that `microslip sweep --help` lists.
-for target in figure_targets.TARGETS.keys() - {"all"}:
+# snakemake certified, snakemake fig2, and all other targets that `microslip sweep --help` lists.
+for target in PLAN.targets:
+    if target != "all":
 
-    rule:
-        name:
-            target
-        input:
-            files_of_target(target),
-
-
-# snakemake fig2, or the name of any other figure.
-for target, figure in figure_targets.targets_of(CONFIGURATION).items():
-
-    rule:
-        name:
-            target
-        input:
-            files_of_figure(figure),
+        rule:
+            name:
+                target
+            input:
+                files_of_target(target),
 
 
-# Compiles the solver once, before jobs that would all do it at the same time.
+# Compiles the solver once, before several jobs would do it at the same time.
 rule warm_up:
     input:
         lambda wildcards: ancient(
@@ -74,7 +65,7 @@ rule warm_up:
         f"{RESULTS}/logs/warm_up/{{kernels}}.log",
     conda:
         "workflow/envs/microslip.yaml"
-    # What a job takes where a scheduler starts it, with Snakemake: see docs/how-to/cluster.md.
+    # Memory and time on a cluster, including Snakemake: see docs/how-to/cluster.md.
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
@@ -104,7 +95,7 @@ rule solve:
         "workflow/scripts/solve.py"
 
 
-# All points of a certified map, by several processes.
+# Solves all points of a certified map by several processes.
 rule map:
     input:
         ancient(lambda wildcards: kernels_for(wildcards.certified)),
@@ -132,14 +123,14 @@ rule collect:
         batches=lambda wildcards: batches_for(wildcards.dataset),
         again=lambda wildcards: made_again(is_right(wildcards.dataset)),
     output:
-        kept(f"{RESULTS}/{{dataset}}.nc"),
+        updated(f"{RESULTS}/{{dataset}}.nc"),
         summary=report(
-            kept(f"{RESULTS}/summaries/{{dataset}}.html"),
+            updated(f"{RESULTS}/summaries/{{dataset}}.html"),
             caption="workflow/report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{dataset}.nc"},
         ),
-        stamp=kept(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
+        stamp=updated(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
     log:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
@@ -159,15 +150,15 @@ rule draw:
         again=lambda wildcards: made_again(is_right(f"figures/{wildcards.figure}")),
     output:
         report(
-            kept(f"{RESULTS}/figures/{{figure}}.png"),
+            updated(f"{RESULTS}/figures/{{figure}}.png"),
             caption="workflow/report/figure.rst",
             category=lambda wildcards: figure_targets.heading_of(
                 CONFIGURATION, PLAN.figures[wildcards.figure][0]
             ),
             labels={"figure": "{figure}"},
         ),
-        kept(f"{RESULTS}/figures/{{figure}}.pdf"),
-        stamp=kept(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
+        updated(f"{RESULTS}/figures/{{figure}}.pdf"),
+        stamp=updated(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
     log:
         f"{RESULTS}/logs/draw/{{figure}}.log",
     conda:
@@ -182,7 +173,7 @@ rule draw:
         "workflow/scripts/draw.py"
 
 
-# One page to look behind every point of the maps; explorer_all.html has every other sweep, too.
+# Interactive page of the maps; explorer_all.html also has all other sweeps.
 rule explore:
     input:
         datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
@@ -190,12 +181,12 @@ rule explore:
         again=lambda wildcards: made_again(is_right(f"pages/{wildcards.page}")),
     output:
         report(
-            kept(f"{RESULTS}/{{page}}.html"),
+            updated(f"{RESULTS}/{{page}}.html"),
             caption="workflow/report/explorer.rst",
             category="Explorer",
             labels={"page": "{page}.html"},
         ),
-        stamp=kept(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
+        stamp=updated(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
     log:
         f"{RESULTS}/logs/explore/{{page}}.log",
     conda:
@@ -210,7 +201,7 @@ rule explore:
         "workflow/scripts/explore.py"
 
 
-# Where the results of the rules are, with the prefix that a module may have.
+# Folder of results of the rules, with the prefix of a module.
 PLACE = os.path.dirname(str(rules.collect.output[0]))
 
 with refused_in_one_line():

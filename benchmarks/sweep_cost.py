@@ -4,7 +4,7 @@
 
 Solves every point of every sweep once, the single runs beside them and some of the periods that the
 explorer shows, and sums up the CPU time spent in the solver. The datasets leave it out, because it
-differs from run to run. The mean times are the typical values in microslip/app/dry_run.py.
+differs from run to run. The mean over all requests is TYPICAL in microslip/app/dry_run.py.
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
-"""What all tests share: which of them run, the order in which files of them are handed out, and a
-finished run.
+"""Selection and order of the tests, and a finished run for all of them.
 
-A file is one process's, since its tests share what is slow to make (--dist loadfile).
+All tests of a file run in one process, since they share expensive fixtures (--dist loadfile).
 
-Tests that are marked `long` take a second to a minute each: whole workflows, pages, figures, and
-finer runs of what something quicker shows, too. A run that names nothing leaves them out, and takes
-the first and the last case only of a test that is marked `slow`.
-Whatever is named on the command line runs whole, be it a file, a folder, an expression of -k or
-one of -m; `.ci/whole` runs everything.
+Tests marked `long` take a second to a minute each: workflows, pages, figures, and fine runs of
+behaviour that a faster test checks, too. `pytest` without arguments omits them, and runs only
+the first and the last case of a test marked `slow`. With a file, a folder, -k or -m, all
+selected tests run; `.ci/whole` runs everything.
 """
 
 import gc
@@ -22,40 +20,44 @@ from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
-"""Whoever runs the tests sees the same random inputs; campaigns look at others."""
+"""Everyone gets the same random inputs; campaigns use others."""
 
 for library in ("OMP", "OPENBLAS", "MKL"):
-    # As in jobs of the workflow: each process has a core, and threads that wait would take another.
-    # NumPy, which reads this when it is loaded, is not loaded yet.
+    # One thread per process, as in jobs of the workflow.
+    # NumPy reads these variables at import, which comes later.
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    # A shell starts what runs in its background so, and processes that tests interrupt inherit it.
+    # Shells ignore SIGINT in background processes, and tests that send it need the default.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 FIRST = (
-    "test_workflow.py",  # compiles the solver, which takes a fresh clone a minute or two
-    *("test_figures", "test_odd_files", "test_bad", "test_compiled", "test_terminal"),  # need none
+    "test_workflow.py",  # compiles the solver, for a minute or two in a new clone
+    *(
+        "test_figures",
+        "test_odd_files",
+        "test_bad",
+        "test_compiled",
+        "test_terminal",
+    ),  # need no compiled solver
     *("test_workflow_", "test_docs", "test_explorer", "test_coupled", "test_point"),
     *("test_pressure", "test_side_by_side", "test_static_loop", "test_normal", "test_period"),
     *("test_stability", "test_sweep_command", "test_fit", "test_drives"),
 )
-"""Files that take long, by how their names begin: they come first, so that all processes end at
-about the same time."""
+"""Beginnings of the names of long files, which run first, so that all processes end together."""
 
 
 def pytest_configure(config):
-    """Leave out what is long where nothing is named; processes that run tests are told the same."""
+    """Omit long tests unless the command line selects tests; pytest-xdist passes the option on."""
     option = config.option
-    is_named = config.args_source == config.ArgsSource.ARGS  # and not what pyproject.toml names
+    is_named = config.args_source == config.ArgsSource.ARGS  # and not those of pyproject.toml
     if not (is_named or option.markexpr or option.keyword):
         option.markexpr = "not long"
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest leaves out what it is asked to leave out
+@pytest.hookimpl(tryfirst=True)  # before pytest applies -m
 def pytest_collection_modifyitems(items):
-    """What is long is slow, too, and what lies between the ends of slow cases is long; files that
-    take long come first."""
+    """Mark long tests as slow, and the middle cases of slow tests as long; put long files first."""
     cases = defaultdict(list)
     for item in items:
         if item.get_closest_marker("long"):
@@ -74,7 +76,7 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish(session):
-    """What is loaded by now stays: to look through it again and again for garbage takes long."""
+    """Exclude the objects that exist now from garbage collection, which would take long."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
@@ -82,18 +84,18 @@ def pytest_collection_finish(session):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers():
-    """As many processes as there are cores for this one, though no more than there is work for."""
+    """Number of processes: one per core, at most 16."""
     cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count())
     return min(len(cores), 16)
 
 
 def made_once(tmp_path_factory, name, make):
-    """A folder that whichever process needs it first fills, by `make(folder)`; others wait."""
+    """A folder that the first process fills by `make(folder)`; other processes wait."""
     import fcntl
 
     top = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
-        top = top.parent  # which the processes share
+        top = top.parent  # the folder that all processes share
     folder = top / name
     with open(top / f"{name}.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -107,7 +109,7 @@ def made_once(tmp_path_factory, name, make):
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory):
-    """A project after its first run; `said` holds what that run said. To be left as it is."""
+    """A project after its first run, with its output in `said`. Tests must not change it."""
     from stubs.workflow_project import TINY, Project
 
     def run(place):
@@ -123,13 +125,13 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def project(finished, tmp_path):
-    """A copy of the finished project to edit."""
+    """A copy of the finished project for edits."""
     return finished.copied(tmp_path / "copy")
 
 
 @pytest.fixture
 def unplaced(monkeypatch):
-    """Figures are drawn without looking for room for what they hold, which takes the longest."""
+    """Draw figures without the layout engine, which takes most of the time."""
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)

@@ -25,14 +25,15 @@ GAMMA = 1.0 - np.sqrt(0.5)
 
 
 def projected(q, bound):
-    """The nearest tractions with |q| <= bound, point by point."""
+    """Projection of tractions on the disc |q| <= bound, point by point."""
     return q * np.minimum(1.0, bound / np.maximum(np.hypot(*q), 1e-300))
 
 
 def solved_stage(matrix, b, bound, start):
-    """Tractions of a stage: projected gradients, accelerated by Nesterov's momentum.
+    """Tractions of a stage, by projected gradients with Nesterov's acceleration.
 
-    The step 1 / (largest eigenvalue) lets the energy fall; where momentum overshoots it is dropped.
+    With the step 1 / (largest eigenvalue) the energy decreases. After an increase the momentum
+    is reset.
     """
     length = 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
     q, ahead, momentum = start, start, 1.0
@@ -50,9 +51,9 @@ def solved_stage(matrix, b, bound, start):
 
 
 def march(matrix, bound, displacement, phases, q, stages=2):
-    """Tractions at every phase, shape (len(phases), 2, ...), from those at the first one.
+    """Tractions at every phase, shape (len(phases), 2, ...), from those at the first phase.
 
-    displacement(phase): w, of the shape of q.  stages: 1 for backward Euler, 2 for SDIRK2.
+    displacement(phase): w, in the shape of q. stages: 1 for backward Euler, 2 for SDIRK2.
     """
 
     def elastic(q):
@@ -60,7 +61,7 @@ def march(matrix, bound, displacement, phases, q, stages=2):
 
     found = [q]
     for start, end in pairwise(phases):
-        before = elastic(q) - displacement(start)  # what the contact remembers
+        before = elastic(q) - displacement(start)  # minus the slip so far
         carried = 0.0
         if stages == 2:
             b = before + displacement(start + GAMMA * (end - start))
@@ -72,10 +73,10 @@ def march(matrix, bound, displacement, phases, q, stages=2):
 
 
 def periodic(matrix, bound, displacement, phases, q, mirrored):
-    """Tractions over half a period of the state that repeats itself, as `march` gives them.
+    """Tractions over half a period of the periodic state, as from `march`.
 
-    mirrored(q): the mirror image, which the next half period begins with.  It is marched until
-    nothing changes: only where the forward motion is not slow does that end soon.
+    mirrored(q): mirror image of q, the start of the next half period. It marches until the state
+    repeats, which takes few periods unless the forward motion is slow.
     """
     for _ in range(1000):
         found = march(matrix, bound, displacement, phases, q)

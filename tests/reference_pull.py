@@ -23,7 +23,7 @@ def forward_force(weight, q):
 
 
 def solved_pulled_stage(matrix, weight, b, bound, q, stiffness, load):
-    """Tractions of a stage, and x."""
+    """Tractions of a stage, and the position x."""
     ahead = np.zeros_like(b)
     ahead[0] = 1.0
     if stiffness > 0.0:
@@ -41,10 +41,10 @@ def solved_pulled_stage(matrix, weight, b, bound, q, stiffness, load):
 
 
 def pulled_march(contact, displacement, phases, q, body, start, stages=2):
-    """Tractions and x at every phase, from those at the first one.
+    """Tractions and x at every phase, from those at the first phase.
 
-    contact: matrix, weight and bound.  body: k, c, m and load.  start: x and x', which a body
-    without m and c does not have: its x is what the force on the spring makes it.
+    contact: matrix, weight and bound. body: k, c, m and load. start: x and x'. Without mass and
+    damping, x follows from the force on the spring.
     """
     matrix, weight, bound = contact
     k, c, m, load = body

@@ -1,4 +1,4 @@
-"""Declared dependencies: each has a lower bound that works, and the workflow tool an upper one."""
+"""Declared dependencies: each has a lower bound, and Snakemake an upper one."""
 
 import re
 import subprocess
@@ -19,7 +19,7 @@ OPTIONAL = {"matplotlib": "plot", "plotly": "plot", "snakemake": "workflow", "ji
 
 @pytest.mark.parametrize("name", LISTS)
 def test_every_requirement_has_a_lower_bound(name):
-    """.ci/lowest derives the versions that it installs from them."""
+    """.ci/lowest installs these lower bounds."""
     for requirement in LISTS[name]:
         if not requirement.startswith("microslip["):
             operators = {bound.operator for bound in Requirement(requirement).specifier}
@@ -29,12 +29,12 @@ def test_every_requirement_has_a_lower_bound(name):
 @pytest.mark.parametrize(
     ("name", "version"),
     [
-        ("pint", "0.24.3"),  # cannot be imported beside the flexparser of today
+        ("pint", "0.24.3"),  # cannot be imported with current versions of flexparser
         ("matplotlib", "3.9.4"),
-        ("xarray", "2024.11.0"),  # interp fails along two axes of a dataset
+        ("xarray", "2024.11.0"),  # interp of a dataset along two axes fails
         ("netCDF4", "1.7.0"),  # withdrawn
-        ("snakemake", "9.3.5"),  # prints "Waiting for more resources" once a job
-        ("snakemake", "10.0.0"),  # interfaces of plug-ins change with it
+        ("snakemake", "9.3.5"),  # prints "Waiting for more resources" for every job
+        ("snakemake", "10.0.0"),  # changes the interfaces of plug-ins
     ],
 )
 def test_releases_that_fail_are_excluded(name, version):

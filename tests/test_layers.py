@@ -1,4 +1,4 @@
-"""Data flows one way: a package imports only from those to its left in one line."""
+"""Imports between packages: only from those to the left in RULE."""
 
 import ast
 from functools import cache
@@ -14,16 +14,16 @@ RULE = (
 ROOMS = RULE.split(" < ")
 PHYSICS = ROOMS[1 : ROOMS.index("si")]
 FROM_FILES = {"from_file", "grid_csv", "grid_netcdf", "grid_units"}
-"""The one pressure that is read from a file, found by its name like every other one: what marches
-gets the record that all pressures have, and cannot tell."""
+"""Modules of the pressure from a file, the only physics that reads files."""
 LISTS_FILES = Path("solver", "method_names.py")
-"""Methods are listed without importing them."""
+"""Module that lists the files of methods without importing them."""
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
 
 @cache
 def imported(path):
-    """Modules of the package that a file imports, as tuples of names, and all others by name."""
+    """Imported modules of the package, as tuples of names, and names of all other imported
+    packages."""
     inside, outside = set(), set()
     for node in ast.walk(ast.parse((PACKAGE / path).read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
@@ -49,7 +49,7 @@ def test_every_module_is_in_a_room():
 def test_imports_follow_the_rule():
     against = set()
     for path in MODULES:
-        if path.parts[0] in ROOMS:  # and not the public names, and the command
+        if path.parts[0] in ROOMS:  # all except the modules at the top of the package
             right = ROOMS[ROOMS.index(path.parts[0]) + 1 :]
             against |= {(str(path), *name) for name in imported(path)[0] if name[0] in right}
     assert not against
@@ -80,3 +80,7 @@ def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
     assert {p for p in users if p.parts[0] in PHYSICS} == {Path("pressures", "from_file.py")}
+
+
+def test_type_checkers_find_the_type_hints():
+    assert (PACKAGE / "py.typed").is_file()

@@ -1,4 +1,4 @@
-"""What comments, docstrings and pages name is there: modules, what is in them, files."""
+"""Names of modules, classes, constants and files in comments, docstrings and pages exist."""
 
 import ast
 import io
@@ -21,13 +21,13 @@ PAGES = sorted(
     [*ROOT.glob("*.md"), *(ROOT / "config").glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 )
 FOREIGN = {"microslip", "np", "numpy", "numba", "pint", "xarray", "xr", "yaml", "snakemake"}
-"""Packages whose names are taken as they are written."""
+"""Packages whose names are not checked."""
 DOTTED = re.compile(r"(?<![\w./])(?:[a-z_]+\.)*([a-z_]+)\.([A-Za-z_]+)\b(?![\w./])")
 A_FILE = re.compile(r"`((?:src|tests|workflow|config|docs|benchmarks|profiles)/[\w./-]+)`")
 
 
 def names_in(path):
-    """Names that a module defines, imports or gives to arguments and fields."""
+    """Names of definitions, imports, arguments and fields in a module."""
     for node in ast.walk(ast.parse(path.read_text())):
         match node:
             case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
@@ -40,7 +40,7 @@ def names_in(path):
 
 @pytest.fixture(scope="module")
 def modules():
-    """Names in the modules of a name, and the modules in the packages of one."""
+    """Names in the modules by the name of a module, and modules by the name of a package."""
     found = defaultdict(set)
     for path in PACKAGE.rglob("*.py"):
         own = path.parent.name if path.stem == "__init__" else path.stem
@@ -51,7 +51,7 @@ def modules():
 
 
 def prose(path):
-    """Comments and docstrings of a file of Python, (line, text)."""
+    """Comments and docstrings of a Python file, as (line, text)."""
     text = path.read_text()
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
@@ -63,7 +63,7 @@ def prose(path):
 
 
 def is_there(owner, name, modules):
-    """Whether owner.name may stand for something: of ours, of a library, or of a variable."""
+    """True if owner.name exists in the package, or may belong to a library or a variable."""
     if owner in FOREIGN or owner in sys.stdlib_module_names:
         return True
     if owner in modules:
@@ -81,7 +81,7 @@ def test_classes_and_constants_named_in_prose_exist(modules):
     gone = [
         f"{path.relative_to(ROOT)}: line {line}: {name}"
         for path in PYTHON
-        if unknown(path.read_text())  # in the code or in the prose, which takes longer to tell
+        if unknown(path.read_text())  # fast test of the whole file before its prose is extracted
         for line, words in prose(path)
         for name in unknown(words)
     ]

@@ -1,4 +1,4 @@
-"""Files that are not what they should be: one line, before any work starts, and nothing lost."""
+"""Unusable files and folders: one line before any work, and no loss of data."""
 
 import errno
 import logging
@@ -40,7 +40,7 @@ def one_line(error):
     return str(error.value)
 
 
-# A folder for results that cannot be used
+# Unusable folders of results
 
 
 def full(*_):
@@ -73,7 +73,7 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     assert str(tmp_path / name) in message and part in message and "another folder" in message
     assert cli.main([*POINT, "--results", str(tmp_path / name)]) == 2
     out, line = capfd.readouterr()
-    if name in ("file", "file/new", "link"):  # the command looks at the folder itself
+    if name in ("file", "file/new", "link"):  # the command checks the folder first
         place = tmp_path / name.removesuffix("/new")
         message = f"{place} is not a folder; allowed: a folder, or a new name"
     assert out == "" and line == f"microslip point continuous-bore: --results: {message}\n"
@@ -139,7 +139,7 @@ def test_a_log_that_cannot_be_written_is_one_line(tmp_path):
         pytest.fail("work has started")
 
 
-# Damage to what is there
+# Damaged files
 
 
 def test_a_damaged_point_is_computed_again_and_said(tmp_path, capsys, caplog):
@@ -163,7 +163,7 @@ def data():
 
 @pytest.fixture
 def dataset(tmp_path):
-    """A dataset as the workflow leaves it."""
+    """A dataset of the workflow."""
     path = tmp_path / "bore.nc"
     data().to_netcdf(path)
     return path
@@ -203,7 +203,7 @@ except CacheError as error:
 
 @pytest.mark.slow
 def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
-    """A limit on the size of files stands for the disk: both end a write half-way."""
+    """A limit on the size of files stands for a full disk: both interrupt a write."""
     before = dataset.read_bytes()
     done = subprocess.run(
         [sys.executable, "-c", FULL_DISK, dataset],
@@ -218,7 +218,7 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     assert {p.name for p in dataset.parent.iterdir()} == {"bore.nc"}
 
 
-# Datasets that a figure cannot be drawn from
+# Unsuitable datasets for figures
 
 
 @pytest.mark.parametrize(

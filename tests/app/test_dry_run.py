@@ -1,4 +1,4 @@
-"""What a dry run says about the work that there is to do."""
+"""Output of a dry run: number of points, and the estimated time."""
 
 import pytest
 
@@ -21,7 +21,7 @@ def jobs(group="bore", **changed):
 
 
 def seconds_in(lines):
-    """The time that the first line says, in seconds."""
+    """The estimated time in the first line, in seconds."""
     count, unit = lines[0].partition("about ")[2].split()[:2]
     return float(count) * {"seconds": 1, "minutes": 60, "hours": 3600}[unit]
 
@@ -45,15 +45,11 @@ def test_points_that_are_stored_are_not_counted(tmp_path):
 
 
 def test_the_time_comes_from_earlier_batches_if_there_are_any(tmp_path):
-    typical = summary(jobs(), tmp_path, 1)
-    assert typical[1] == (
-        "The time is derived from typical values at a tolerance of 1e-3 (benchmarks/sweep_cost.py)."
-    )
+    assert seconds_in(summary(jobs(), tmp_path, 1)) == 10.0
     log(tmp_path, "a.log", "10 points, 10 computed in 3000.00 s of CPU time\n")
     log(tmp_path, "b.log", "not converged: bore\n40 points, 20 computed in 6000.00 s of CPU time\n")
     log(tmp_path, "c.log", "40 points, 0 computed in 0.00 s of CPU time\n")
     lines = summary(jobs(), tmp_path, 1)
-    assert lines[1] == "The time is derived from earlier batches in this folder."
     assert seconds_in(lines) == pytest.approx(6 * 300.0, rel=0.05)  # 9000 s for 30 points
 
 
@@ -66,13 +62,12 @@ def test_jobs_share_the_cores_and_none_is_shorter_than_its_batch(tmp_path):
     assert seconds_in(summary(jobs(), tmp_path, 3)) == pytest.approx(600, rel=0.1)
 
 
-def test_what_is_not_known_is_said(tmp_path):
+def test_the_time_is_a_lower_bound_where_requests_have_no_typical_time(tmp_path):
     trials = Batch([{"kind": "trial", "motion": "bore", "velocity": "1"}] * 3)
-    map_ = ("certified_bore", None)
-    lines = summary([("accuracy", trials), map_], tmp_path, 2, compiles=True)
-    assert lines[0] == "To solve: 3 other runs."
-    assert lines[1] == "There is no time yet for some other runs: 3 of accuracy."
-    assert "number is known at the end" in lines[2]
-    assert lines[3].startswith("Compiling the solver comes first: about ")
-    (line,) = summary([map_], tmp_path, 2)
-    assert line.startswith("To solve: the points of certified maps, ")
+    certified = ("certified_bore", None)
+    lines = summary([("accuracy", trials), certified], tmp_path, 2, compiles=True)
+    assert lines[0].startswith("To solve: 3 other runs, at least ")
+    assert "certified maps" in lines[1]
+    assert lines[2].startswith("Compiling the solver comes first: about ")
+    (line,) = summary([certified], tmp_path, 2)
+    assert line.startswith("To solve: the points of certified maps")

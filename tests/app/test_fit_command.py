@@ -1,4 +1,4 @@
-"""`microslip fit`: one command from a table to both numbers, a figure and a dataset."""
+"""`microslip fit`: from a table to both numbers, a figure and a dataset."""
 
 import json
 
@@ -15,7 +15,7 @@ SHARED = ("--load", "10 N", "--frequency", "1 kHz")
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A map whose nodes are 1e-3 off at most, and friction that it says of a contact."""
+    """A map with errors of at most 1e-3, and the friction of a contact according to it."""
     monkeypatch.chdir(tmp_path)
     dataset = eq6_map(1e-3)
     dataset.to_netcdf("map.nc")
@@ -45,7 +45,7 @@ def test_a_table_gives_both_numbers_a_figure_and_a_dataset(folder, capsys):
     assert cli.main([*words, *files, "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     assert said["told"] == ["mu", "u_lim"]
-    # The map is off by nothing from itself, and by no more than it says from anything else.
+    # The rows are exact values of the map, and its error estimates are bounds.
     assert said["mu"] == pytest.approx(MU, rel=1e-5)
     assert said["u_lim_m"] == pytest.approx(U_LIM, rel=1e-5)
     assert said["u_lim_low_m"] < U_LIM < said["u_lim_high_m"]
@@ -69,7 +69,7 @@ def test_rows_that_tell_mu_alone_are_exit_code_1(folder, capsys):
     table(velocity, np.full(6, 0.06), force)
     assert cli.main(["fit", "transverse", "measured.csv", *SHARED, "--map", "map.nc"]) == 1
     said = capsys.readouterr().out
-    assert "NOT TOLD: the rows tell mu alone: any u_lim above" in said
+    assert "NOT TOLD: the rows determine mu alone: any u_lim above" in said
     assert "\nmu                0.3" in said and "\nu_lim" not in said
 
 
@@ -92,7 +92,7 @@ BAD = [
 def test_bad_input_is_one_line(folder, capsys, words, said):
     try:
         code = cli.main(["fit", "transverse", *words])
-    except SystemExit as end:  # of the parser
+    except SystemExit as end:  # raised by the parser
         code = end.code
     streams = capsys.readouterr()
     assert code == 2 and streams.out == ""

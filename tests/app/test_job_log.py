@@ -1,4 +1,4 @@
-"""What a job says when it fails, also where its log cannot be written."""
+"""Messages of failed jobs, with and without a writable log."""
 
 import errno
 import logging

@@ -1,4 +1,4 @@
-"""``microslip gc``: what nothing asks for is found, and nothing else is ever removed."""
+"""``microslip gc``: finds and removes results that no configuration requests, and nothing else."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 
 
 def configured(folder, name, **bore):
-    """A file of a configuration with one small sweep."""
+    """Write a configuration with one small sweep."""
     path = folder / f"{name}.yaml"
     given = {"results": str(folder / "results"), "sweeps": {"bore": AXES | bore}}
     path.write_text(yaml.safe_dump(given))
@@ -24,7 +24,7 @@ def configured(folder, name, **bore):
 
 
 def made(folder, *products):
-    """Write the files of products, and their stamps."""
+    """Write the files and stamps of products."""
     for product in products:
         kind, _, name = product.rpartition("/")
         files = ["figures/{}.png"] if kind else ["{}.nc", "summaries/{}.html"]
@@ -36,7 +36,7 @@ def made(folder, *products):
 
 @pytest.fixture
 def results(tmp_path, monkeypatch):
-    """A folder with the points, the batches and a dataset of two configurations."""
+    """A folder with points and batches of two configurations, and a dataset."""
     Solver(monkeypatch)
     folder = tmp_path / "results"
     for name, more in (("first", {}), ("second", {"velocity": [0.5, 3]})):
@@ -63,8 +63,8 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
     assert names(results) == before
     said = capsys.readouterr().out
-    assert "2 points and single runs that nothing asks for" in said
-    assert "1 batches that nothing asks for" in said
+    assert "2 points and single runs that no configuration requests" in said
+    assert "1 batches that no configuration requests" in said
     assert "3 datasets, pages and figures" in said and "pendulum.nc" in said
     assert "nothing is removed without --delete" in said
     assert "mine" not in said
@@ -96,7 +96,7 @@ def test_two_folders_of_results_are_refused(results, tmp_path, capsys):
     other = tmp_path / "other.yaml"
     other.write_text(yaml.safe_dump({"results": "elsewhere", "sweeps": {"bore": AXES}}))
     first, before = str(tmp_path / "first.yaml"), names(results)
-    for second in ([], ["--configfile"]):  # given twice, it holds the files of both
+    for second in ([], ["--configfile"]):  # a repeated option adds files
         words = ["--configfile", first, *second, str(other), "--delete"]
         assert leftovers.main(words) == 2
         assert "several folders" in capsys.readouterr().err
@@ -111,7 +111,7 @@ def test_a_configuration_that_cannot_be_read_removes_nothing(results, tmp_path, 
 
 
 def only_one_dataset(results, tmp_path):
-    """A configuration, of another sweep, and a folder of results with a dataset alone."""
+    """A configuration, and a folder of results that has only a dataset of another sweep."""
     path = tmp_path / "one.yaml"
     path.write_text(yaml.safe_dump({"results": str(results), "sweeps": {"bore": AXES}}))
     made(results, "pendulum")
@@ -119,7 +119,7 @@ def only_one_dataset(results, tmp_path):
 
 
 def test_no_folder_above_the_results_is_removed(tmp_path):
-    """Nor the folder of results itself, however its path is written."""
+    """The folder of results stays as well, however its path is written."""
     results = tmp_path / "above" / "results"
     configuration = only_one_dataset(results, tmp_path)
     given = f"{tmp_path}/above/results/../results/."
@@ -182,4 +182,4 @@ def test_without_the_batch_of_a_map_the_points_of_its_motion_stay(
         record = {"key": "0" * 64, "request": {"kind": "point", "motion": "bore"}, "result": {}}
         store.write(results / file, [record])
         assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
-        assert len(names(results / "points")) == 1 + 2  # which the sweep itself asks for
+        assert len(names(results / "points")) == 1 + 2  # the points of the sweep itself

@@ -1,4 +1,4 @@
-"""What strangers write, give and damage: right, or refused in one line that says why."""
+"""Unusual files and damaged files: the right result, or one line with the reason."""
 
 import os
 import subprocess
@@ -53,7 +53,7 @@ def test_odd_settings(text, words, tmp_path):
         return
     with pytest.raises(ConfigError) as caught:
         load.load(path)
-    one_line(caught, [str(path), *words]).encode()  # it can be printed
+    one_line(caught, [str(path), *words]).encode()  # the message can be printed
 
 
 @pytest.mark.slow
@@ -78,7 +78,7 @@ def test_odd_pressures_as_netcdf(data, expected, tmp_path):
     path = tmp_path / "p.nc"
     data.to_netcdf(path)
     if expected == "stretched":
-        # a thousand times as long as wide: the mean distance is a quarter of the length, over half
+        # a thousand times as long as wide: mean distance of length / 4, divided by length / 2
         assert pressure_named(f"file:{path}").torque == pytest.approx(0.5, abs=1e-4)
         return
     with pytest.raises(InputError) as caught:
@@ -125,7 +125,9 @@ def test_a_dataset_that_no_sweep_has_made_is_refused(case):
     with pytest.raises(InputError) as caught:
         change(odd.whole()).microslip.at(0.15, 1.3)
     one_line(caught, [word])
-    assert odd.whole().microslip.at(0.15, 1.3).mu_macro_error < 0.1  # the same, unchanged
+    assert (
+        odd.whole().microslip.at(0.15, 1.3).mu_macro_error < 0.1
+    )  # the dataset without the change
 
 
 @pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)
@@ -143,7 +145,7 @@ def test_odd_names_of_datasets(name, more, word):
 
 
 @pytest.mark.parametrize("case", odd.DAMAGES)
-def test_a_damaged_dataset_without_a_seal_is_one_line(case, tmp_path):
+def test_a_damaged_dataset_without_a_stamp_is_one_line(case, tmp_path):
     path = tmp_path / "map.nc"
     odd.whole().to_netcdf(path)
     path.write_bytes(odd.DAMAGES[case](path.read_bytes()))

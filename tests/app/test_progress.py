@@ -8,7 +8,7 @@ from microslip.app import progress
 
 
 class Terminal(io.StringIO):
-    """Standard error of a terminal."""
+    """A stream that acts as the standard error of a terminal."""
 
     def isatty(self):
         return True
@@ -18,7 +18,7 @@ def elapsed(monkeypatch, stream):
     for name in ("FIRST_LINE", "BETWEEN_LINES", "BETWEEN_LINES_OF_A_FILE"):
         monkeypatch.setattr(progress, name, 0.02)
     monkeypatch.setattr(sys, "stderr", stream)
-    with progress.Elapsed("microslip predict"):
+    with progress.elapsed_time("microslip predict"):
         time.sleep(0.1)
     return stream.getvalue()
 

@@ -1,4 +1,4 @@
-"""``microslip sweep``: what is refused before Snakemake starts, what its help says, how it ends."""
+"""``microslip sweep``: refused arguments, help, and the end of a run."""
 
 import contextlib
 import os
@@ -39,7 +39,7 @@ def test_help_and_pages_name_every_target():
         assert f"`{target}`" in table
 
 
-# What is refused
+# Refused arguments and configurations
 
 CORES = "allowed is a whole number of at least 1, or all"
 REFUSED = [
@@ -79,9 +79,9 @@ SHOWN = ["empty", "not UTF-8", "UTF-16", "binary", "tabs", "a key twice", "nothi
 
 @pytest.fixture
 def here(monkeypatch, tmp_path):
-    """A folder of its own, in which Snakemake does not begin."""
+    """An empty working directory; Snakemake must not start."""
     monkeypatch.chdir(tmp_path)
-    # First, since some of its plugins start a process when they are imported.
+    # This comes first, since some plugins of Snakemake start a process at import.
     monkeypatch.setattr("snakemake.cli.main", lambda *_: pytest.fail("Snakemake has started"))
     return tmp_path
 
@@ -116,7 +116,7 @@ def test_a_file_that_is_no_configuration_is_one_line(case, here):
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["sweeps.transverse.velocities", "sweeps.bores", "claims.cells"])
 def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(key, here):
-    """The line is that of the reader alone, see tests/config/test_bad_input.py."""
+    """The line is that of the reader of configurations, see tests/config/test_bad_input.py."""
     (here / "config").mkdir()
     for file, arguments in (
         ("given.yaml", ["--configfile", "given.yaml"]),
@@ -156,9 +156,9 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
     assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
 
 
-# How it ends
+# The end of a run
 
-# Hours of work for two jobs.
+# Two jobs of hours.
 SLOW = """
 sweeps:
   bore: {velocity: [1.0e-3, 2.0e-3], amplitude: [0.5, 0.6], poisson: 0.3, tolerance: 1.0e-6}
@@ -167,7 +167,7 @@ points_per_job: 2
 
 
 def session(leader):
-    """Processes of a session that have not ended, as the system's table of processes shows them."""
+    """Running processes of a session, according to /proc."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
@@ -187,7 +187,7 @@ def is_job(process):
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
 @pytest.mark.parametrize("command", [SWEEP, SNAKEMAKE], ids=["microslip sweep", "snakemake"])
 def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command, tmp_path):
-    """The system tells the first process of a session, and a shell all that it has started."""
+    """A terminal signals the first process of a session, and a shell all of its processes."""
     (tmp_path / "slow.yaml").write_text(SLOW)
     with subprocess.Popen(
         [*command, "-c1", "--configfile", "slow.yaml"],

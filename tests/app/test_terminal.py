@@ -1,4 +1,4 @@
-"""How a command ends: Ctrl-C, closed pipes, full devices, streams that it is started without."""
+"""The end of a command: Ctrl-C, closed pipes, full devices, closed streams."""
 
 import contextlib
 import os
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices 
 
 
 def shell(line, **changes):
-    """Run a line of bash, in which $M stands for the command; returns what subprocess returns."""
+    """Run a line of bash, in which $M is the command; return the result of subprocess."""
     return subprocess.run(
         ["bash", "-c", line],
         env={**ENVIRONMENT, "M": " ".join(COMMAND), **changes},
@@ -38,9 +38,9 @@ def shell(line, **changes):
 
 
 def stopped(command, ready, number=signal.SIGINT):
-    """Exit code, output and errors of a process that gets a signal once it is ready.
+    """Exit code, output and errors of a process that receives a signal once it is ready.
 
-    ready: function of the process that says so.  What goes on for a minute afterwards is killed.
+    ready: function of the process. A process that runs for another minute is killed.
     """
     options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, env=ENVIRONMENT, **options) as process:
@@ -56,7 +56,7 @@ def stopped(command, ready, number=signal.SIGINT):
 
 
 def loaded(part):
-    """Whether a library is loaded, as Linux shows it: the process has come so far."""
+    """True once the process has loaded a library, according to /proc."""
 
     def ready(process):
         with contextlib.suppress(OSError):
@@ -92,7 +92,7 @@ def test_an_interrupt_is_one_line_also_while_the_solver_is_loaded(case, moment):
     assert stopped(command, loaded(moment)) == INTERRUPTED
 
 
-# Compiled code that holds no lock and lets no handler of Python run, as a long kernel.
+# Compiled code that releases the GIL and runs no Python handler, like a long kernel.
 KERNEL = """
 import hashlib, signal
 from microslip.app import terminal
@@ -174,7 +174,7 @@ terminal.run(command)
 
 
 def test_an_interrupt_that_a_library_swallows_is_one(tmp_path):
-    """Python cannot raise it while it tidies up, and says so in three lines."""
+    """A KeyboardInterrupt during the shutdown of Python would print three lines."""
     ready = tmp_path / "ready"
     command = [sys.executable, "-c", SWALLOWING.format(ready=str(ready))]
     assert stopped(command, lambda _: ready.exists()) == INTERRUPTED
@@ -187,7 +187,7 @@ CLOSED = "microslip: cannot write to standard output: it is closed\n"
 BAD = "microslip point continuous-bore: --nu = "
 ANSWER = "$M point continuous-bore --velocity 1"
 
-# A line of bash, its exit code, what is on standard error; the first of a pipe counts.
+# A line of bash, its exit code (of the first command of a pipe), and its standard error.
 ENDINGS = [
     (f"{ANSWER} | true", 141, ""),
     ("sleep 0.1 | $M --help | true", 141, ""),

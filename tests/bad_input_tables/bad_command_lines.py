@@ -1,6 +1,6 @@
-"""Bad command lines of microslip, each with parts that its one line on standard error must have.
+"""Bad command lines of microslip, each with parts of the line on standard error.
 
-The option at fault, the value as it was given, and what is allowed.
+The parts are the option, its value, and the allowed values.
 """
 
 TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
@@ -20,34 +20,24 @@ RANGE = "at least 1e-06 and at most 0.1"
 NEARER_0 = "nearer 0 than floating-point numbers can be; allowed is 0 or a number further from it"
 BEYOND = "beyond the range of floating-point numbers; allowed is a number within it"
 
-# Arguments to what is right without them, or with a velocity, a force or an amplitude alone.
+# Arguments added to a valid command, or to one with only a velocity, force or amplitude.
 NUMBERS = [
     (f"{SHAKEN} --velocity -1", "--velocity = '-1'", FINITE),
     (f"{SHAKEN} --velocity -1e-3", "--velocity = '-1e-3'", FINITE),
-    (f"{SHAKEN} --velocity=-1e-3", "--velocity = '-1e-3'", FINITE),
     (f"{SHAKEN} --velocity nan", "--velocity = 'nan'", FINITE),
-    (f"{SHAKEN} --velocity inf", "--velocity = 'inf'", FINITE),
-    (f"{SHAKEN} --velocity -inf", "--velocity = '-inf'", FINITE),
     (f"{SHAKEN} --velocity 1e7", "--velocity = '1e7'", "at most 1e+06"),
     (f"{SHAKEN} --velocity fast", "--velocity = 'fast'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 0,5", "--velocity = '0,5'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 0.1:1", "--velocity = '0.1:1'", "allowed is a number"),
     (f"{SHAKEN} --velocity ''", "--velocity = ''", "allowed is a number"),
     (f"{SHAKEN} --velocity '1\n2'", r"--velocity = '1\n2'", "allowed is a number"),
     (f"{SHAKEN} --velocity", "--velocity", "expected one argument"),
     (f"{SPUN} --amplitude -0.5", "--amplitude = '-0.5'", FINITE),
-    (f"{SPUN} --amplitude NaN", "--amplitude = 'NaN'", FINITE),
     (f"{SPUN} --amplitude 1e999", "--amplitude = '1e999'", BEYOND),
-    (f"{SPUN} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
-    (f"{SPUN} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
     (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
     (f"{SHAKEN} --force -0.1", "--force = '-0.1'", "at least 0: transverse propels nothing"),
     (f"{SHAKEN} --force nan", "--force = 'nan'", "a finite number"),
-    (f"{SHAKEN} --force 5N", "--force = '5N'", "allowed is a number"),
     (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
     (f"{SHAKEN} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
     (f"{SHAKEN} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
-    (f"{SHAKEN} --force -1 --results new", "--force = '-1'", "at least 0: transverse propels"),
     (f"{SHAKEN} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
     (
         f"{SHAKEN} --force 0.1 --contacts 'phase=1;'",
@@ -68,14 +58,12 @@ NUMBERS = [
     (f"{SHAKEN} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
     (f"{SHAKEN} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
     (f"{TRANSVERSE} --stiffness 0", "--stiffness = '0'", "a finite number of at least 1e-09"),
-    (f"{TRANSVERSE} --stiffness -1", "--stiffness = '-1'", "at least 1e-09"),
     (f"{TRANSVERSE} --stiffness 1e7", "--stiffness = '1e7'", "at most 1e+06"),
     (f"{TRANSVERSE} --stiffness 1 --mass inf", "--mass = 'inf'", FINITE),
     (f"{TRANSVERSE} --stiffness 1 --damping -1", "--damping = '-1'", FINITE),
     (f"{TRANSVERSE} --mass 1", "--mass = '1'", "beside a stiffness alone"),
     (f"{TRANSVERSE} --damping 1", "--damping = '1'", "beside a stiffness alone"),
     (f"{TRANSVERSE} --poisson 0.7", "--poisson = '0.7'", RATIO),
-    (f"{TRANSVERSE} --poisson 0.5000001", "--poisson = '0.5000001'", RATIO),
     (f"{BORE} --poisson -0.1", "--poisson = '-0.1'", RATIO),
     (f"{STEADY} --poisson nan", "--poisson = 'nan'", RATIO),
     (f"{TRANSVERSE} --poisson steel", "--poisson = 'steel'", "allowed is a number"),
@@ -84,52 +72,28 @@ NUMBERS = [
     (f"{TRANSVERSE} --tolerance 1e-9", "--tolerance = '1e-9'", RANGE),
     (f"{TRANSVERSE} --tolerance -1e-3", "--tolerance = '-1e-3'", RANGE),
     (f"{STEADY} --tolerance nan", "--tolerance = 'nan'", RANGE),
-    (f"{STEADY} --tolerance 1%", "--tolerance = '1%'", "allowed is a number"),
     (f"{TRANSVERSE} --cells 7", "--cells = '7'", "an even number"),
     (f"{TRANSVERSE} --cells 2", "--cells = '2'", "at least 4"),
-    (f"{TRANSVERSE} --cells 0", "--cells = '0'", "at least 4"),
-    (f"{TRANSVERSE} --cells -8", "--cells = '-8'", "at least 4"),
     (f"{TRANSVERSE} --cells 1002", "--cells = '1002'", "at most 1000"),
     (f"{TRANSVERSE} --cells 8.5", "--cells = '8.5'", "a whole number"),
-    (f"{TRANSVERSE} --cells 1e3", "--cells = '1e3'", "a whole number"),
     (f"{TRANSVERSE} --steps 9", "--steps = '9'", "an even number"),
     (f"{TRANSVERSE} --steps 6", "--steps = '6'", "at least 8"),
     (f"{TRANSVERSE} --steps 2000000", "--steps = '2000000'", "at most 1e+06"),
-    (f"{TRANSVERSE} --steps many", "--steps = 'many'", "a whole number"),
     (f"{TRANSVERSE} --time-limit 0", "--time-limit = '0'", "a number above 0"),
     (f"{TRANSVERSE} --time-limit nan", "--time-limit = 'nan'", "a number above 0"),
     (f"{TRANSVERSE} --time-limit 5s", "--time-limit = '5s'", "a number"),
 ]
 
-MINUS, ARABIC_THREE, WIDE_ONE = "\N{MINUS SIGN}", "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"
+MINUS = "\N{MINUS SIGN}"
 
-# What Python's float takes and people do not mean, and what people mean and it does not take.
+# Forms of numbers; tests/foundation/test_spec.py has more.
 GRAMMAR = [
     (f"{SHAKEN} --velocity {MINUS}1", f"--velocity = '{MINUS}1'", FINITE),
     (f"{SHAKEN} --velocity -1,5", "--velocity = '-1,5'", "with a point: -1.5"),
     (f"{SHAKEN} --velocity 0,5", "--velocity = '0,5'", "with a point: 0.5"),
-    (f"{SHAKEN} --velocity 1,000.5", "--velocity = '1,000.5'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 1_000", "--velocity = '1_000'", "allowed is a number"),
-    (f"{SHAKEN} --velocity {ARABIC_THREE}", f"'{ARABIC_THREE}'", "allowed is a number"),
-    (f"{SHAKEN} --velocity {WIDE_ONE}", f"'{WIDE_ONE}'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 0x1", "--velocity = '0x1'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 1d-3", "--velocity = '1d-3'", "allowed is a number"),
-    (f"{SHAKEN} --velocity 1/2", "--velocity = '1/2'", "allowed is a number"),
-    (f"{SHAKEN} --velocity '1 2'", "--velocity = '1 2'", "allowed is a number"),
-    (f"{SHAKEN} --velocity '- 1'", "--velocity = '- 1'", "allowed is a number"),
     (f"{SHAKEN} --velocity --1", "unknown option --1;", "allowed: --help"),
     (f"{SHAKEN} --velocity 1e400", "--velocity = '1e400'", BEYOND),
-    (f"{SHAKEN} --velocity -infinity", "--velocity = '-infinity'", FINITE),
-    (f"{SHAKEN} --velocity .", "--velocity = '.'", "allowed is a number"),
-    (f"{SHAKEN} --velocity e5", "--velocity = 'e5'", "allowed is a number"),
-    (f"{TRANSVERSE} --tolerance 1e-3\N{EN SPACE}1", "1'", "allowed is a number"),
-    (f"{TRANSVERSE} --nu 0.7", "--nu = '0.7'", RATIO),
-    (f"{TRANSVERSE} --nu=steel", "--nu = 'steel'", "allowed is a number"),
     (f"{TRANSVERSE} --nu 0,3", "--nu = '0,3'", "with a point: 0.3"),
-    (f"{TRANSVERSE} --cells 1_0", "--cells = '1_0'", "a whole number"),
-    (f"{TRANSVERSE} --cells 16.0", "--cells = '16.0'", "a whole number"),
-    (f"{TRANSVERSE} --cells {ARABIC_THREE}2", f"'{ARABIC_THREE}2'", "a whole number"),
-    (f"{TRANSVERSE} --cells {'9' * 5000}", "--cells = '999", "a whole number"),
     (f"{TRANSVERSE} --steps {MINUS}8", f"--steps = '{MINUS}8'", "at least 8"),
     ("point elliptic:phase=1_0 --velocity 1 --amplitude 1", "MOTION", "elliptic:key=0.5"),
     ("point elliptic:forward=2 --velocity 1 --amplitude 1", "'elliptic:forward=2'", "0..1"),
@@ -137,30 +101,16 @@ GRAMMAR = [
     (f"{TRANSVERSE} --pressure power:exponent=1_0", "'power:exponent=1_0'", "power:key=0.5"),
 ]
 
-# Python's float takes these for 0 and for infinity.
+# Python's float returns 0 or infinity.
 OUT_OF_RANGE = [
     (f"{SHAKEN} --velocity 1e-400", "--velocity = '1e-400'", NEARER_0),
-    (f"{SHAKEN} --velocity -1e-400", "--velocity = '-1e-400'", NEARER_0),
-    (f"{SHAKEN} --velocity {MINUS}.001e-322", f"--velocity = '{MINUS}.001e-322'", NEARER_0),
-    (f"{SHAKEN} --velocity 1E-99999999999999999999", "--velocity = '1E-999", NEARER_0),
-    (f"{SHAKEN} --velocity 0.{'0' * 400}1", "--velocity = '0.000", NEARER_0),
-    (f"{SPUN} --amplitude 1e-400", "--amplitude = '1e-400'", NEARER_0),
-    (f"{SHAKEN} --force 2e-400", "--force = '2e-400'", NEARER_0),
     (f"{SHAKEN} --force -1e400", "--force = '-1e400'", BEYOND),
-    (f"{SHAKEN} --force 1{'0' * 400}", "--force = '1000", BEYOND),
-    (f"{TRANSVERSE} --stiffness 1 --mass 1e-400", "--mass = '1e-400'", NEARER_0),
-    (f"{TRANSVERSE} --stiffness 1 --damping 1e-400", "--damping = '1e-400'", NEARER_0),
-    (f"{TRANSVERSE} --stiffness 1e-400", "--stiffness = '1e-400'", NEARER_0),
-    (f"{TRANSVERSE} --nu 1e-400", "--nu = '1e-400'", NEARER_0),
-    (f"{TRANSVERSE} --tolerance 1e-400", "--tolerance = '1e-400'", NEARER_0),
-    (f"{TRANSVERSE} --time-limit 1e-400", "--time-limit = '1e-400'", NEARER_0),
     (f"{TRANSVERSE} --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
     (f"{TRANSVERSE} --contacts phase=1e-400", "--contacts", "'phase=1e-400'", NEARER_0),
     (f"{TRANSVERSE} --pressure power:exponent=1e400", "'exponent=1e400'", BEYOND, "power:key=0.5"),
     (f"{TRANSVERSE} --method admm:penalty=1e-400", "'penalty=1e-400'", NEARER_0, "admm:key=0.5"),
     ("point elliptic:phase=1e-400 --velocity 1 --amplitude 1", "MOTION", NEARER_0),
     ("propulsion elliptic:forward_cycles=2,phase=1e-400 --amplitude 1", "MOTION", NEARER_0),
-    (f"{DRIVEN} --amplitude 1e-400", "--amplitude = '1e-400'", NEARER_0),
     (f"{DRIVEN} --amplitude 1 --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
     (f"{PREDICTED} --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
     (f"{PREDICTED} --nu 1e-400", "--nu = '1e-400'", "below the range"),
@@ -170,20 +120,12 @@ OUT_OF_RANGE = [
 # argparse takes the last of two values.
 TWICE = [
     (f"{TRANSVERSE} --velocity 0.2", "--velocity is given twice; allowed: once"),
-    (f"{TRANSVERSE} --velocity=0.5", "--velocity is given twice; allowed: once"),
     (f"{TRANSVERSE} --velocity -0.2", "--velocity is given twice; allowed: once"),
     (f"{BORE} --amplitude 1", "--amplitude is given twice; allowed: once"),
-    (f"{TRANSVERSE} --cells 8 --cells 16", "--cells is given twice; allowed: once"),
-    (f"{TRANSVERSE} --nu 0.1 --nu 0.2", "--nu is given twice; allowed: once"),
     (f"{TRANSVERSE} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time;"),
-    ("point elliptic:phase=0 --velocity 1 --amplitude 1 --velocity 2", "--velocity is given twice"),
-    (f"{DRIVEN} --amplitude 1 --amplitude 1", "--amplitude is given twice; allowed: once"),
-    (f"{DRIVEN} --amplitude 1 --nu 0 --poisson 0", "--poisson is given twice, as --nu the first"),
     (f"{PREDICTED} --speed '-1 mm/s'", "--speed is given twice; allowed: once"),
-    (f"{PREDICTED} --nu 0.3 --poisson 0.2", "--poisson is given twice, as --nu the first time;"),
     (f"{PREDICTED} --table a-file --table a-file", "--table is given twice; allowed: once"),
     ("fit transverse a-file --load '1 N' --load '2 N'", "--load is given twice; allowed: once"),
-    ("fit transverse a-file --poisson 0.3 --nu 0.2", "--nu is given twice, as --poisson the first"),
 ]
 
 NAMES = [
@@ -191,19 +133,14 @@ NAMES = [
     (f"{TRANSVERSE} --pressure power:exponent=0.5", "exponent = 0.5", "allowed is a number in 1.."),
     (f"{TRANSVERSE} --pressure ellipse --model radial", "--model = 'radial'", "rings cannot"),
     (f"{TRANSVERSE} --model best", "--model = 'best'", "auto, rigid, slider"),
-    (f"{TRANSVERSE} --model Polar", "--model = 'Polar'", "polar"),
-    (f"{TRANSVERSE} --model ''", "--model = ''", "auto, rigid, slider"),
     (f"{TRANSVERSE} --model radial --poisson 0.3", "--model = 'radial'", "transverse", "nu"),
     (f"{BORE} --model radial", "--model = 'radial'", "does not apply to bore", "rotation"),
     (f"{BORE} --model slider", "--model = 'slider'", "does not apply to bore"),
-    (f"{STEADY} --model mdr", "--model = 'mdr'", "does not apply to continuous-bore"),
     (f"{TRANSVERSE} --method shiped", "--method = 'shiped'", "did you mean shipped?", "admm,"),
     (f"{TRANSVERSE} --method full_newton", "'full_newton'", "did you mean full-newton?"),
     (f"{TRANSVERSE} --method ../euler", "--method = '../euler'", "allowed is one of shipped,"),
     (f"{TRANSVERSE} --method admm:", "--method = 'admm:'", "admm:key=0.5"),
-    (f"{TRANSVERSE} --method admm:penalty", "'admm:penalty'", "admm:key=0.5"),
     (f"{TRANSVERSE} --method admm:penalty=high", "'admm:penalty=high'", "admm:key=0.5"),
-    (f"{TRANSVERSE} --method admm:penalty=nan", "'admm:penalty=nan'", "admm:key=0.5"),
     (f"{TRANSVERSE} --method admm:penalt=1", "penalt;", "allowed: penalty, relaxation"),
     (f"{TRANSVERSE} --method admm:penalty=1,penalty=2", "penalty occurs twice", "once"),
     (f"{TRANSVERSE} --method shipped:order=2", "unknown number order", "allowed: none"),
@@ -218,12 +155,10 @@ OPTIONS = [
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "MOTION before other options"),
-    ("--verion", "--verion", "did you mean --version?"),
     ("--velocity 1 point transverse", "--velocity", "COMMAND before other options"),
     ("point", "MOTION is missing", "transverse, longitudinal, zigzag, bore, continuous-bore,"),
     ("point bores --velocity 1", "MOTION = 'bores'", "did you mean bore?"),
     ("point transverse --speed 1 --amplitude 1", "option --speed;", "did you mean --velocity?"),
-    ("point transverse -speed=1 --amplitude 1", "option -speed;", "did you mean --velocity?"),
     ("propulsion", "required: MOTION, --amplitude"),
     (DRIVEN, "required: --amplitude"),
     (f"{DRIVEN} --velocity 1 --amplitude 1", "unknown option --velocity;", "allowed: --help"),
@@ -236,7 +171,6 @@ OPTIONS = [
     (f"{DRIVEN} --amplitude 1 --nu 0.3 --model radial", "--model = 'radial'", "elliptic"),
     ("propulsion transverse --amplitude 1", "MOTION = 'transverse'", "a self-propelled motion"),
     ("propulsion elliptic:phase=0 --amplitude 1", "MOTION = 'elliptic:phase=0'", "self-propelled"),
-    ("propulsion eliptic --amplitude 1", "MOTION = 'eliptic'", "allowed is one of transverse"),
     ("predict transverse --velocity 1", "option --velocity;", "did you mean --speed?"),
     ("point sideways --velocity 1", "MOTION", "'sideways'", "zigzag"),
     ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),
@@ -247,11 +181,8 @@ OPTIONS = [
         "or a force in its place",
     ),
     ("point transverse --velocity 1", "required: --amplitude"),
-    ("point bore", "required: --amplitude"),
     (f"{STEADY} --amplitude 1", "unknown option --amplitude", "allowed: --help, --velocity"),
     ("point bore --velo 1 --amplitude 1", "option --velo;", "did you mean --velocity?"),
-    ("point bore --vleocity=1 --amplitude 1", "option --vleocity;", "did you mean --velocity?"),
-    ("point bore -velocity 1 --amplitude 1", "option -velocity;", "did you mean --velocity?"),
     (f"{TRANSVERSE} --step 8", "unknown option --step;", "did you mean --steps?"),
     (f"{TRANSVERSE} --colour red", "unknown option --colour;", "allowed: --help"),
     (f"{TRANSVERSE} '--a\nb'", "unknown option --a b;", "allowed: --help"),
@@ -270,21 +201,16 @@ OPTIONS = [
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
 ]
 
-# Of these the folder is as tests/config/test_bad_input.py makes it.
+# Cases in the folder of tests/config/test_bad_input.py.
 RESULTS = [
     (f"{TRANSVERSE} --results", "--results", "expected one argument"),
     (f"{TRANSVERSE} --results ''", "--results: ''", "the name of a folder"),
-    (f"{TRANSVERSE} --results ' '", "--results: ' '", "the name of a folder"),
     (f"{TRANSVERSE} --results a-file", "--results", "a-file is not a folder", "a new name"),
-    (f"{TRANSVERSE} --results a-file/deep", "--results", "a-file is not a folder"),
     (f"{TRANSVERSE} --results lost-link", "--results", "lost-link is not a folder", "a new name"),
     (f"{TRANSVERSE} --results /proc/none", "--results", "/proc/none", "another folder"),
     (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
     (f"{TRANSVERSE} --results kept --method admm", "--method = 'admm'", "shipped with --results"),
     (f"{TRANSVERSE} --results kept --poisson 0.7", "--poisson = '0.7'", RATIO),
-    (f"{SHAKEN} --results kept --velocity nan", "--velocity = 'nan'", FINITE),
-    (f"{TRANSVERSE} --results kept --cells 7", "--cells = '7'", "an even number"),
-    (f"{BORE} --results kept --model slider", "--model = 'slider'", "does not apply to bore"),
 ]
 
 COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS, *RESULTS]

@@ -1,7 +1,6 @@
-"""Bad configurations, each with parts that its one line must have beside the name of the file.
+"""Bad configurations, each with parts of its one line after the name of the file.
 
-A line starts with the key at fault; its parts are the value as it was given, what is wrong with it
-and what is allowed.
+A line starts with the key. Its parts are the value, the reason, and the allowed values.
 """
 
 import json
@@ -132,7 +131,7 @@ STUDIES = [
 
 E = "extended.circle"
 
-# What the solver says of motions and pressures, and names that others have.
+# Messages of the solver about motions and pressures, and names in use.
 EXTENDED = [
     ("extended", "[circle]", '["circle"] is not allowed', "a mapping of names"),
     ("extended", "{Circle: {}}", '"Circle" is not allowed', "small letters, digits and _"),
@@ -149,7 +148,7 @@ EXTENDED = [
     (f"{E}.amplitude", None, "missing; required for elliptic"),
 ]
 
-# What GOOD lacks and cases above change a part of.
+# Keys that GOOD lacks and that cases above change.
 STUDIED = """
 accuracy:
   methods: [shipped, admm]
@@ -189,12 +188,12 @@ def changed(settings):
 
 SPACED = "{start: 1, stop: 2, count: %d}"
 GRID = f"{{linear: {SPACED}}}"
-CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six digits that are kept
+CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six stored digits
 RATIOS = str([0.04 * i for i in range(11)])
 EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
 PROPULSION = "propulsion.motions"
 
-# Settings that are fine one by one, the key that is named, parts.
+# Settings that are valid one by one, the key in the message, parts.
 TOGETHER = [
     ({f"{T}.model": "radial", f"{T}.poisson": "[0, 0.2]"}, f"{T}.poisson", "0.2", "allowed: 0"),
     ({f"{B}.velocity.linear": SPACED % 2}, f"{B}.velocity", '{"log": {', "linear or log"),

@@ -1,6 +1,6 @@
-"""Odd configurations, files of pressures and datasets, as strangers write them.
+"""Unusual configurations, files of pressures and datasets.
 
-A row says what is given, and what comes out: a value, or the words that the one line must have.
+A row has an input and its result: a value, or words of the error message.
 """
 
 import numpy as np
@@ -13,25 +13,19 @@ def refused(*words):
     return {"words": words}
 
 
-# Configurations: a line that is put into SWEEP for %s, and what `velocity` is then.
+# Configurations: a line for %s in SWEEP, and the resulting `velocity`.
 
 SWEEP = "sweeps:\n  bore:\n    amplitude: [1]\n    velocity: %s\n"
 VELOCITIES = [
     ("[0.1, 010]", refused("010", "base 8", "line 4")),
-    ("[0.1, 0777]", refused("0777", "base 8", "line 4")),
     ("[0.1, 1:30]", refused("1:30", "base 60", "line 4")),
-    ("[0.1, -1:30]", refused("-1:30", "base 60")),
-    ("[0.1, 1:30.5]", refused("1:30.5", "base 60")),
     ("[0.1, 1.0e-400]", refused("1.0e-400", "nearer 0")),
     ("{log: {start: 0.1, stop: 10, count: 010}}", refused("010", "base 8")),
     ("[0.1, 0o10]", refused('velocity[1]: "0o10" is text', "allowed: a number")),
     ("[0.1, +.5]", refused('"+.5" is text', "write the number without quotes: 0.5")),
-    ("[0.1, '010']", refused('"010" is text', "write the number without quotes: 10")),
     ("[0.1, '\uff11']", refused("is text", "write the number without quotes: 1")),
-    ("[0.1, '1_0']", refused("is text", "write the number without quotes: 10")),
     ("[0.1, '1,5']", refused('"1,5" is text', "allowed: a number")),
     ("[0.1, 1.5 mm/s]", refused('"1.5 mm/s" is text')),
-    ("[0.1, 2/3]", refused('"2/3" is text')),
     ("[0.1, \u22121]", refused("is text", "allowed: a number")),
     ("[0.1, yes]", refused("true is not allowed")),
     ("[0.1, 2026-01-01]", refused('"2026-01-01" is not allowed')),
@@ -42,7 +36,6 @@ VELOCITIES = [
     ("{0: 0.1, 1: 1}", refused("velocity.0: unknown key", "linear, log")),
     ("{log: [0.1, 10, 3]}", refused("velocity.log", "start, stop, count")),
     ("0.1 1 10", refused('"0.1 1 10" is not allowed')),
-    ("[[0.1, 1]]", refused("velocity[0]", "a number")),
     ("[0.1, 0x10]", (0.1, 16.0)),
     ("[0.1, 1_000]", (0.1, 1000.0)),
     ("[0.1, 1.e-3]", (0.001, 0.1)),
@@ -51,12 +44,11 @@ VELOCITIES = [
     ("[1.0e-300, 1]", (1e-300, 1.0)),
 ]
 
-# Other keys, as YAML at the top level, and words of the line; None: all is well.
+# Other keys, as YAML at the top level, and words of the message; None: valid.
 KEYS = [
     ("results: ~/here", ("~/here", "~ in front")),
     ("results: '~'", ('"~"', "~ in front")),
     ("results: s3://bucket/x", ("s3://bucket/x", "://")),
-    ("results: file:///tmp/x", ("file:///tmp/x", "://")),
     ("results: $HOME/x", ("$HOME/x", "$NAME")),
     ('results: "\\ud800"', ("results", "\\ud800", "text for a folder")),
     ('results: "a\\u2028b"', ("results", "line breaks")),
@@ -104,7 +96,7 @@ KEYS = [
     ),
 ]
 
-# Files of pressures: text, and the shares of the load in the four quarters or words of the line.
+# Files of pressures: text, and the load shares of the four quarters, or words of the message.
 
 HEAD = "forward,lateral,pressure\n"
 ROWS = "0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
@@ -125,10 +117,8 @@ CSV = [
     (SEMI + "0;0;1\n0;1;2.0\n1;0;3.000\n1;1;4\n", PLAIN),
     (HEAD + "0,0,1\n0,1,2\n1,0,3.000\n1,1,4\n", PLAIN),
     (SEMI + "0;0;1 000\n", refused("line 2: pressure is '1 000'")),
-    (SEMI + "0;0;1\u00a0000\n", refused("line 2: pressure is '1\\xa0000'")),
     (HEAD + "#N/A,0,5\n" + ROWS, refused("line 2: forward is '#N/A'")),
     (HEAD + ROWS + "#DIV/0!,0,5\n", refused("line 6: forward is '#DIV/0!'")),
-    (HEAD + ROWS + "#REF!,0,5\n", refused("line 6: forward is '#REF!'")),
     ("pressure;forward;lateral\n#NV;5;5\n1;0;0\n", refused("line 2: pressure is '#NV'")),
     (HEAD + ROWS + "#0,0,7\n# NOTE: end\n#end\n", PLAIN),
     (HEAD + ROWS + ",,\n,,\n", PLAIN),
@@ -142,13 +132,8 @@ CSV = [
     ("x,y,pressure\n" + ROWS, refused("line 1: the heading is 'x,y,pressure'")),
     ("lat,lon,pressure\n" + ROWS, refused("allowed: forward,lateral,pressure")),
     (HEAD + "mm,mm,MPa\n" + ROWS, refused("line 2: forward is 'mm'")),
-    (HEAD + "0x0,0,1\n", refused("line 2: forward is '0x0'")),
-    (HEAD + "0.0D0,0,1\n", refused("line 2: forward is '0.0D0'")),
     (HEAD + "\u22121,0,1\n", refused("line 2: forward is '\u22121'")),
-    (HEAD + "\u0660,0,1\n", refused("line 2: forward is")),
-    (HEAD + "0,0,1%\n", refused("line 2: pressure is '1%'")),
     (HEAD + "0,0,NA\n", refused("line 2: pressure is 'NA'")),
-    (HEAD + "0,0,TRUE\n", refused("line 2: pressure is 'TRUE'")),
     ("forward [deg],lateral [deg],pressure\n" + ROWS, refused("[deg] is no known unit of length")),
     ("forward [2 mm],lateral [mm],pressure\n" + ROWS, refused("[2 mm] is no known unit")),
     ("forward [mm],lateral [mm],pressure [degC]\n" + ROWS, refused("no known unit of pressure")),
@@ -157,10 +142,8 @@ CSV = [
     ((HEAD + ROWS).replace(",", "|"), refused("line 1: the heading")),
     ('{"forward": [0, 1]}', refused("line 1: the heading")),
     ("version https://git-lfs.github.com/spec/v1\n", refused("line 1: the heading")),
-    (HEAD + "0,0,1e308\n0,1,1e308\n1,0,1e308\n1,1,1e308\n", [[0.25, 0.25], [0.25, 0.25]]),
     (HEAD + "0,0,1\n0,1e-200,2\n1e-200,0,3\n1e-200,1e-200,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e-310,2\n1e-310,0,3\n1e-310,1e-310,4\n", PLAIN),
-    (HEAD + "0,0,1\n0,1e300,2\n1e300,0,3\n1e300,1e300,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps of one unit")),
     (HEAD + "1e9,0,1\n1e9,1,2\n1000000001,0,3\n1000000001,1,4\n", PLAIN),
 ]
@@ -169,7 +152,7 @@ AXIS, VALUES = [0.0, 1.0], np.array([[1.0, 2.0], [3.0, 4.0]])
 
 
 def grid(values=VALUES, **attributes):
-    """A grid with attributes of its variables."""
+    """A grid with attributes for its variables."""
     data = xr.Dataset(
         {"pressure": (("forward", "lateral"), values)}, {"forward": AXIS, "lateral": AXIS}
     )
@@ -179,7 +162,7 @@ def grid(values=VALUES, **attributes):
 
 
 MM, UM = {"units": "mm"}, {"units": "um"}
-STRETCHED = grid(forward=MM, lateral=UM)  # what others are to be the same as
+STRETCHED = grid(forward=MM, lateral=UM)  # equal to the other stretched cases
 NETCDF = [
     (grid(forward={"Units": "mm"}, lateral={"Units": "um"}), "stretched"),
     (grid(forward={"unit": "mm"}, lateral={"UNIT": "um"}), "stretched"),
@@ -197,14 +180,14 @@ NETCDF = [
     (grid(pressure={"missing_value": 4.0}), refused("pressure is nan at forward 1, lateral 1")),
 ]
 
-# Datasets, as others hand them on: what is changed, and what `at` says.
+# Datasets of other origin: a change, and words of the message of `at`.
 
 VELOCITY, AMPLITUDE = np.geomspace(1e-3, 10, 13), np.linspace(0, 3, 13)
 DIMS = ("amplitude", "velocity")
 
 
 def whole(**attributes):
-    """A map of Eq 6 that answers at (0.15, 1.3)."""
+    """A map of Eq 6 that contains (0.15, 1.3)."""
     mu = paper.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
     return xr.Dataset(
         {
@@ -263,28 +246,24 @@ DATASETS = {
     ),
 }
 
-# Questions to a good one: arguments, words.
+# Arguments of `at` for a valid dataset, words.
 QUESTIONS = [
     ((True, 1), {}, "velocity = True"),
     (("0.5", 1), {}, "velocity = '0.5'"),
     ((0.5, "1_0"), {}, "amplitude = '1_0'"),
-    ((None, 1), {}, "velocity = None"),
     ((1j, 1), {}, "velocity = 1j"),
     ((np.datetime64("2026-01-01"), 1), {}, "datetime64"),
-    ((10**400, 1), {}, "velocity = 1000"),
     ((np.ma.masked, 1), {}, "velocity = masked"),
     ((np.ma.array([1.0, 2.0], mask=[False, True]), 1), {}, "allowed is a finite number"),
     ((xr.DataArray(["a"], dims="n"), 1), {}, "velocity"),
     ((1, 1), {"tolerance": "x"}, "tolerance = 'x'"),
     ((1, 1), {"tolerance": True}, "tolerance = True"),
-    ((1, 1), {"tolerance": [0.1]}, "tolerance = [0.1]"),
 ]
 
-# What open_map is given: name, more arguments, words.
+# Arguments of open_map: name, further arguments, words.
 OPENED = [
     (None, {}, "name = None"),
     (5, {}, "name = 5"),
-    (["a.nc"], {}, "name = ['a.nc']"),
     ("", {}, "name = ''"),
     ("s3://b/x.nc", {}, "is not there"),
     ("x" * 300 + ".nc", {}, "File name too long"),
@@ -292,7 +271,7 @@ OPENED = [
     ("transverse", {"results": "x" * 300}, "File name too long"),
     ("transverse", {"results": "~"}, "'~'"),
 ]
-# What is done to the bytes of a dataset without a seal.
+# Damage to the bytes of a dataset without a stamp.
 DAMAGES = {
     "the signature alone": lambda content: content[:8],
     "cut off": lambda content: content[: len(content) // 2],
@@ -300,7 +279,7 @@ DAMAGES = {
     "line ends changed": lambda content: content.replace(b"\n", b"\r\n"),
 }
 
-# Arguments of microslip gc, words of its one line.
+# Arguments of microslip gc, words of its message.
 GC = [
     (["--configfile", "a\0b"], "not the name of a file"),
     (["--configfile", "nosuch.yaml"], "--configfile: nosuch.yaml: cannot be read"),
@@ -310,7 +289,5 @@ GC = [
     (["--configfile", "/dev/null"], "is empty"),
     (["--configfile"], "expected at least one argument"),
     (["first.yaml"], "unrecognized arguments"),
-    (["-n"], "unknown option -n"),
-    (["--delete", "--lst"], "did you mean --list?"),
     (["--results", "r"], "unknown option --results"),
 ]

@@ -1,4 +1,4 @@
-"""Canonical texts of numbers, and what the workflow loads to plan."""
+"""Canonical texts of numbers, and the imports of the workflow during planning."""
 
 import math
 import subprocess

@@ -1,4 +1,4 @@
-"""Compiled code on disk: it belongs to the sources that are running, wherever it can be kept."""
+"""Compiled code on disk: it matches the running sources, wherever its folder is."""
 
 import os
 import shutil
@@ -17,7 +17,7 @@ FOLDER = "from microslip.foundation import compiled; print(compiled.folder())"
 
 
 def copied(folder):
-    """A copy of the package in this folder."""
+    """Copy the package to a folder."""
     place = folder / "source" / "microslip"
     shutil.copytree(PACKAGE, place, ignore=shutil.ignore_patterns("__pycache__"))
     return place
@@ -25,7 +25,7 @@ def copied(folder):
 
 @pytest.fixture
 def copy(tmp_path):
-    """A copy of the package that may be edited."""
+    """A copy of the package for edits."""
     return copied(tmp_path)
 
 
@@ -41,19 +41,13 @@ def run(program, package, **environment):
 
 
 def of_kernels(package):
-    """What names the folder of compiled code, of the sources in a package."""
+    """Digest in the name of the folder of compiled code, for a package."""
     return Sources(package).of_kernels()
-
-
-def test_there_are_kernels_to_speak_of():
-    assert len(KERNELS) > 10
-    some = {"contacts/coulomb.py", "contacts/march.py", "models/squares/convolution.py"}
-    assert some <= set(KERNELS)
 
 
 @pytest.fixture(scope="module")
 def unedited(tmp_path_factory):
-    """A copy of the package to be left as it is, and what names its compiled code."""
+    """An unedited copy of the package, and its digest of kernels."""
     package = copied(tmp_path_factory.mktemp("unedited"))
     return package, of_kernels(package)
 
@@ -79,7 +73,7 @@ def test_an_edit_of_what_a_kernel_takes_its_numbers_from_does_so_too(copy):
 
 @pytest.mark.long
 def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
-    """Edited in one file, inlined into another: the code on disk of the other is as old as it."""
+    """After an edit of an inlined function, the compiled code of its caller is not used."""
     (copy / "caller.py").write_text(
         "from microslip.foundation.compiled import kernel\n"
         "from microslip.contacts.coulomb import shrink\n\n\n"
@@ -109,7 +103,7 @@ def test_the_package_comes_next(copy):
     assert Path(said).parent == copy / "__pycache__"
 
 
-# A file in the place of a folder stands for one that cannot be written to: root may write anywhere.
+# A file with the name of the folder makes writing fail, even for root.
 
 
 @pytest.mark.slow
@@ -128,7 +122,7 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     folder, number = done.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")
     assert float(number) == 0.25
-    assert list(Path(folder).rglob("*.nbi"))  # it was kept
+    assert list(Path(folder).rglob("*.nbi"))  # the compiled code is on disk
     (line,) = done.stderr.splitlines()
     assert folder in line and "NUMBA_CACHE_DIR" in line
     again = run(program, copy, **environment)
@@ -183,7 +177,7 @@ for question, one in found[:: int(sys.argv[1])]:
 
 @pytest.mark.long
 def test_equal_inputs_give_equal_bits_whatever_was_compiled_before(tmp_path):
-    """Kernels are compiled while they are needed, read from disk, and needed in another order."""
+    """Kernels are compiled on demand, then read from disk, then compiled in another order."""
     program = [sys.executable, "-c", ANSWERS]
 
     def answers(place, order):

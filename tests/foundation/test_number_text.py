@@ -1,4 +1,4 @@
-"""Errors behind +-: what is read back is never less than what is claimed."""
+"""Printed errors: at least as large as the exact ones."""
 
 import math
 import random
@@ -11,11 +11,11 @@ import pytest
 from microslip.foundation.number_text import error_text, interval_text, number_text
 
 LARGEST_PRINTED = 1.7e308
-"""Two digits of a larger error may be more than any float."""
+"""The rounded error may exceed the largest float."""
 
 
 def some_errors():
-    """Of all sizes, of two digits at most among them, and their neighbours."""
+    """Floats of all sizes, floats of at most two digits, and their neighbours."""
     draw = random.Random(1)
     for _ in range(3000):
         yield 10.0 ** draw.uniform(-300.0, 300.0)
@@ -28,7 +28,7 @@ def test_the_text_is_at_least_the_error_and_at_most_a_tenth_more():
     for error in some_errors():
         text = error_text(error)
         assert len(re.sub(r"e.*|^[0.]+|\.", "", text)) <= 2, text
-        if error > 1e-320:  # below, floats are further apart than a tenth of them
+        if error > 1e-320:  # smaller floats have a relative spacing above 0.1
             assert Fraction(error) <= Fraction(float(text)) <= Fraction(error) * Fraction(11, 10)
         assert float(text) >= error
 
@@ -67,7 +67,7 @@ def test_an_error_is_rounded_up_and_keeps_its_second_digit(error, text):
     ],
 )
 def test_a_number_has_the_digits_that_its_error_allows(value, error, text):
-    """A number that is 0 within its error is 0, within an error that covers both."""
+    """A number that is 0 within its error is printed as 0, with an error that covers both."""
     assert number_text(value, error) == text
 
 
@@ -89,6 +89,6 @@ def test_a_number_has_the_digits_that_its_error_allows(value, error, text):
     ],
 )
 def test_an_interval_is_rounded_outwards_to_two_digits_of_its_width(low, high, error, text):
-    """The width is that of the interval and its error: no digit is smaller than the error."""
+    """The printed digits are not smaller than the error of the interval."""
     assert interval_text(low, high, error=error) == text
     assert interval_text(low, high, "N", error=error) == f"{text} N"

@@ -1,4 +1,4 @@
-"""Digests of sources: which files a result depends on, as they were loaded."""
+"""Digests of sources: the files that influence a result, as they were when loaded."""
 
 import ast
 import json
@@ -37,7 +37,7 @@ class Thing:
 
 @pytest.fixture
 def digest_of(tmp_path):
-    """Digest of a package of one module with this text."""
+    """Function from the text of a module to the digest of a package of this module alone."""
 
     def digest_of(text):
         (tmp_path / "module.py").write_text(text)
@@ -109,7 +109,7 @@ NONE = {"motion": "none"}
 
 @pytest.fixture
 def package(tmp_path):
-    """A made-up package."""
+    """A small package for tests."""
     for name, text in FILES.items():
         (tmp_path / "toy" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "toy" / name).write_text(text)
@@ -148,7 +148,7 @@ def test_a_product_depends_on_what_it_imports(package):
 
 def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
     names = Sources(package).contents.keys()
-    (package / ".#point.py").symlink_to("nobody@nowhere.1:2")  # as an editor marks a file
+    (package / ".#point.py").symlink_to("nobody@nowhere.1:2")  # lock file of an editor
     (package / ".ipynb_checkpoints").mkdir()
     (package / ".ipynb_checkpoints" / "point-checkpoint.py").write_text("not Python at all (")
     (package / "point copy.py").write_text("neither (")
@@ -162,7 +162,7 @@ def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
 
 @pytest.mark.slow
 def test_a_scratch_file_is_no_motion(tmp_path):
-    """The real package, with what editors leave in its folders."""
+    """The real package, with temporary files of editors in its folders."""
     copy = tmp_path / "microslip"
     ignored = shutil.ignore_patterns("__pycache__")
     shutil.copytree(PACKAGE, copy, ignore=ignored)
@@ -220,7 +220,7 @@ NAMES = ("solver/methods/", "motions/", "pressures/")
 
 @pytest.mark.slow
 def test_all_that_answering_a_request_loads_counts_for_it():
-    """What Python really loads is held against the rule of the rooms."""
+    """The modules that Python loads are compared with those of the digest."""
     asked = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
     for request in asked:
         if request["kind"] == "field":
@@ -230,7 +230,7 @@ def test_all_that_answering_a_request_loads_counts_for_it():
     )
     assert done.returncode == 0, done.stderr
     naming = source_digest.NAMING | {"sweeps/__init__.py", "config/__init__.py", "config/axes.py"}
-    naming |= {"config/records.py"}  # constants, and classes that no answer holds
+    naming |= {"config/records.py"}  # constants, and classes that do not occur in results
     for request, line in zip(asked, done.stdout.splitlines(), strict=True):
         files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(line)}
         listed = {f for f in files if f.startswith(NAMES) and "__init__" not in f}
@@ -238,7 +238,7 @@ def test_all_that_answering_a_request_loads_counts_for_it():
         assert files - listed - naming <= source_digest.LOADED.of_request(request), request
 
 
-# What was parsed is kept beside the compiled modules
+# Results of parsing are kept in __pycache__
 
 
 def test_a_second_process_parses_only_what_was_edited(package, monkeypatch):
@@ -276,7 +276,7 @@ def test_where_nothing_can_be_written_nothing_is_kept(package):
     assert Sources(package).digest(SOLVER) == Sources(package).digest(SOLVER)
 
 
-# A process whose sources are edited while it runs
+# Edits of the sources of a running process
 
 
 def test_a_digest_is_of_the_sources_as_they_were_read(package):

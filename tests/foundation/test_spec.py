@@ -1,4 +1,4 @@
-"""Numbers in texts: each is the float nearest to what is written, or it is refused."""
+"""Numbers in texts: the nearest float, or an error."""
 
 import math
 
@@ -33,13 +33,32 @@ def test_the_ends_of_the_range_are_read(text, number):
         ("2e-324", "nearer 0"),
         ("-1e-400", "nearer 0"),
         ("0.001e-330", "nearer 0"),
+        (f"0.{'0' * 400}1", "nearer 0"),
+        ("1E-99999999999999999999", "nearer 0"),
         ("1.8e308", "beyond the range"),
         ("-1E400", "beyond the range"),
     ],
 )
 def test_a_number_that_would_be_0_or_infinite_is_refused(text, problem):
-    with pytest.raises(InputError, match=f"^size = '{text}': {problem}.*; allowed is "):
+    with pytest.raises(InputError, match=f"^size = .*: {problem}.*; allowed is "):
         spec.read("size", text)
+
+
+ARABIC_THREE, WIDE_ONE = "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"
+NO_NUMBERS = ["", "fast", "1,000.5", "1_000", ARABIC_THREE, WIDE_ONE, "0x1", "1d-3", "1/2", "1 2"]
+NO_NUMBERS += ["- 1", ".", "e5", "30deg", "1%", "1\n2", "0.1:1", "1e-3\N{EN SPACE}1"]
+
+
+@pytest.mark.parametrize("text", NO_NUMBERS)
+def test_other_texts_are_refused(text):
+    with pytest.raises(InputError, match="allowed is a number$"):
+        spec.read("size", text)
+
+
+@pytest.mark.parametrize("text", ["8.5", "1e3", "16.0", "1_0", f"{ARABIC_THREE}2", "9" * 5000])
+def test_other_texts_than_whole_numbers_are_refused(text):
+    with pytest.raises(InputError, match="allowed is a whole number$"):
+        spec.read("cells", text, whole=True)
 
 
 @pytest.mark.parametrize("value", ["1e-400", "1e400"])

@@ -1,4 +1,4 @@
-"""Numbers from measured friction: known truth is found again, as often as the intervals say."""
+"""Fits of friction with known parameters: intervals contain them with the stated probability."""
 
 import math
 from types import SimpleNamespace
@@ -23,7 +23,7 @@ OMEGA = 2.0 * math.pi * FREQUENCY
 
 
 class Closed(SolvedFriction):
-    """A friction that costs nothing: Eq 6 with an amplitude that counts more the larger it is."""
+    """Closed-form friction: Eq 6, with an effective amplitude."""
 
     off = 0.0
 
@@ -55,7 +55,7 @@ def closed(monkeypatch):
 
 
 def conditions(rows=16):
-    """Two amplitudes, from slow to fast."""
+    """Rows at two amplitudes, from slow to fast."""
     speed = np.tile(np.geomspace(0.03, 3.0, rows // 2), 2) * OMEGA * U_LIM
     return {"speed": speed, "amplitude": np.repeat([0.7, 2.0], rows // 2) * U_LIM}
 
@@ -96,7 +96,7 @@ def test_rows_that_share_no_condition_have_no_curve(closed):
     assert len(microslip.fit("transverse", table, **SHARED).curve.fitted) == 0
 
 
-# The groups
+# Dimensionless groups
 
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
@@ -125,7 +125,7 @@ def test_under_the_mean_load_u_lim_is_itself_and_goes_like_hertz():
     assert points.amplitude[0] / points.amplitude[1] == pytest.approx(contact[1] / contact[0])
 
 
-# Without noise, and with it
+# Data without and with noise
 
 
 def test_rows_without_noise_give_the_truth(closed):
@@ -174,7 +174,7 @@ def test_rows_under_several_loads_are_brought_together(closed):
     ],
 )
 def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence, seeds):
-    """Counts of that many seeds lie where a binomial one of that chance does but once in 10^4."""
+    """The number of intervals with the true value is in a range of probability 1 - 1e-4."""
     table, sigma = conditions(12), 0.05
     true, held = force(table), {"mu": 0, "u_lim": 0}
     for seed in range(seeds):
@@ -191,13 +191,13 @@ def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidenc
 
 
 def test_intervals_hold_what_the_model_is_off(closed, monkeypatch):
-    """A model that is off by 0.01 everywhere, and says so, still covers the truth."""
+    """Intervals include the error estimate of the model, here a constant error of 0.01."""
     table = conditions()
     given = table | {"friction": force(table)}
     for off in (-0.01, 0.01):
         monkeypatch.setattr(Closed, "off", off)
         found = fitted(given)
-        assert abs(found.mu / MU - 1.0) > 1e-3  # it is off
+        assert abs(found.mu / MU - 1.0) > 1e-3  # a constant error
         assert found.mu_low <= MU <= found.mu_high
         assert found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
         assert 0.0 < found.mu_model_share < 0.1
@@ -214,11 +214,11 @@ def test_chi_square_tells_errors_that_are_too_small(closed):
     assert "larger than the errors of the rows allow" in bad.warnings[0]
 
 
-# What rows cannot tell
+# Undetermined numbers
 
 
 def test_rows_on_the_plateau_tell_mu_alone(closed):
-    """Of small amplitudes, friction is mu times the load whatever u_lim, if that is large."""
+    """At small amplitudes and a large u_lim, friction is mu times the load."""
     table = {
         "speed": np.geomspace(0.01, 0.1, 8) * OMEGA * U_LIM,
         "amplitude": np.full(8, 0.02 * U_LIM),
@@ -226,13 +226,13 @@ def test_rows_on_the_plateau_tell_mu_alone(closed):
     noise = 0.01 * np.random.default_rng(1).standard_normal(8)
     found = fitted(table | {"friction": MU * LOAD + noise})
     assert found.told == ("mu",) and found.u_lim_m is None and found.u_lim_high_m is None
-    assert found.reason.startswith("the rows tell mu alone: any u_lim above")
+    assert found.reason.startswith("the rows determine mu alone: any u_lim above")
     assert found.u_lim_low_m < U_LIM
     assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.02 * found.mu_low
 
 
 def test_large_amplitudes_tell_no_u_lim(closed):
-    """Far beyond u_lim friction follows Eq 6, which has no u_lim in it."""
+    """At amplitudes far above u_lim, friction follows Eq 6, which does not contain u_lim."""
     table = {"amplitude": np.full(8, 1e-3), "speed": np.geomspace(0.1, 3.0, 8) * OMEGA * 1e-3}
     noise = 0.02 * np.random.default_rng(2).standard_normal(8)
     found = fitted(table | {"friction": force(table) + noise})
@@ -243,7 +243,7 @@ def test_large_amplitudes_tell_no_u_lim(closed):
 
 def test_rows_that_tell_neither_are_refused(closed):
     table = {"speed": [1e-4, 1.0001e-4, 1.0002e-4], "amplitude": [U_LIM] * 3}
-    with pytest.raises(InputError, match="tell neither number"):
+    with pytest.raises(InputError, match="determine neither number"):
         fitted(table | {"friction": [1.0, 1.1, 0.9]})
 
 
@@ -260,7 +260,7 @@ def test_rows_that_tell_neither_are_refused(closed):
         ({"friction_error": [0.1] * 15 + [0.0]}, "above 0"),
         ({"time": np.ones(16)}, "a column 'time'"),
         ({"speed": 1e-3}, "a sequence of numbers"),
-        ({"load": np.ones(16)}, "load = 10.0: it is both a column and given for all rows"),
+        ({"load": np.ones(16)}, "load = 10.0: it is both a column and an argument"),
         ({"speed": None}, "speed = None: it is missing"),
         ({"amplitude": np.zeros(16)}, "nothing vibrates"),
     ],
@@ -279,7 +279,7 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
     [
         ("bore", {}, "radius"),
         ("continuous-bore", {}, "allowed is one of transverse"),
-        ("transverse", {"counterbody": "same"}, "beside a radius"),
+        ("transverse", {"counterbody": "same"}, "with a radius"),
         ("transverse", {"radius": "5 mm"}, "nu"),
         ("transverse", {"radius": "5 mm", "nu": 0.3, "counterbody": "glass"}, "rigid or same"),
         ("transverse", {"confidence": 1.0}, "confidence"),
@@ -298,12 +298,12 @@ def test_more_rows_than_the_solver_answers_for_need_a_map():
         fitted(table | {"friction": np.ones(201)})
 
 
-# By the solver
+# Fits by the solver
 
 
 @pytest.mark.long
 def test_the_solver_finds_the_truth_that_it_made():
-    """Friction by the solver itself at a tolerance far below the noise; mu and G come back."""
+    """Friction by the solver at a small tolerance: the fit recovers mu and G."""
     contact = TwoBodies(Material(2.1e11, 0.0), RIGID, 5e-3, LOAD, MU)
     table = {"speed": np.geomspace(0.03, 2.0, 6) * OMEGA * contact.u_lim}
     table["amplitude"] = np.full(6, 1.5 * contact.u_lim)
@@ -312,7 +312,7 @@ def test_the_solver_finds_the_truth_that_it_made():
     table["friction"] = MU * LOAD * np.array(ratios)
     found = microslip.fit("transverse", table, **SHARED, nu=0.0, radius="5 mm")
     assert found.told == ("mu", "shear_modulus")
-    # Within what an error of 1e-3 of mu_macro can move, which the intervals hold.
+    # Within the effect of an error of 1e-3 of mu_macro, which the intervals include.
     assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.01 * found.mu_low
     assert found.shear_modulus_low_Pa <= contact.G <= found.shear_modulus_high_Pa
     assert found.u_lim_low_m <= contact.u_lim <= found.u_lim_high_m
@@ -320,4 +320,6 @@ def test_the_solver_finds_the_truth_that_it_made():
     again = microslip.fit("transverse", table, **SHARED, nu=0.0)
     assert again.u_lim_m == pytest.approx(found.u_lim_m, rel=2e-3)
     once_more = microslip.fit("transverse", table, **SHARED, nu=0.0)
-    assert str(once_more.to_dict()) == str(again.to_dict())  # to the last bit; NaN is NaN
+    assert str(once_more.to_dict()) == str(
+        again.to_dict()
+    )  # equal to the last bit, with NaN equal to NaN

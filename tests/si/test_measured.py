@@ -1,4 +1,4 @@
-"""Tables of measured friction in the SI, completed by what all rows share."""
+"""Tables of measured friction in SI units, with values that all rows share."""
 
 import math
 
@@ -52,7 +52,7 @@ def test_angles_and_coefficients(tmp_path):
 def test_a_line_that_cannot_be_read_is_left_out_with_its_reason(tmp_path, changed, said):
     try:
         problem = measured(tmp_path, GOOD.replace(*changed)).left_out[0]
-    except InputError as error:  # of every line
+    except InputError as error:  # one for each line
         problem = str(error)
     assert said in problem and "\n" not in problem
 
@@ -61,7 +61,7 @@ def test_a_pandas_table_is_read_as_its_file(tmp_path):
     text = "label," + GOOD.replace("\n1", "\nx,1").replace("\n2", "\ny,2")
     of_file = measured(tmp_path, text)
     frame = pd.read_csv(tmp_path / "m.csv")
-    frame.loc[2] = [None] * 4  # an empty row at the end
+    frame.loc[2] = [None] * 4  # an empty last row
     of_frame = read_measured("transverse", frame, **SHARED)
     for name in ("speed", "amplitude", "value"):
         assert getattr(of_frame, name).tolist() == getattr(of_file, name).tolist()

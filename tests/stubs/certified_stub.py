@@ -21,13 +21,13 @@ def record(request, mu, error=1e-4):
 
 
 def configured(motion, **given):
-    """The certified map of a sweep with these settings."""
+    """Certified map of a sweep with some settings."""
     (map_,) = load.from_mapping({"sweeps": {motion: given}}).certified.values()
     return map_
 
 
 def played(map_, answer):
-    """The records of all its points; answer: from a request to its record."""
+    """Records of all points of a map; answer: function from a request to its record."""
     records = []
 
     def ask(requests):
@@ -39,7 +39,7 @@ def played(map_, answer):
 
 
 def first_requests(map_):
-    """Requests of the first round, which is the only one of what is the same everywhere."""
+    """Requests of the first round, the only round for a constant."""
     result = {"mu_macro": 0.5, "velocity": 0.5, "converged": True}
     result |= {"mu_macro_error": 0.0, "velocity_error": 0.0}
     return [
@@ -48,7 +48,7 @@ def first_requests(map_):
 
 
 def bore(**given) -> xr.Dataset:
-    """The dataset of a map of a bore whose friction is (v + 0.1) / (v + 0.1 + A), made up."""
+    """Dataset of a bore map with the friction (v + 0.1) / (v + 0.1 + A)."""
 
     def answer(request):
         velocity, amplitude = (float(request[name]) for name in ("velocity", "amplitude"))
@@ -60,15 +60,15 @@ def bore(**given) -> xr.Dataset:
 
 
 def drift(force, amplitude):
-    """A velocity under a force, made up: 0 up to the threshold, from there on like its power 3/2,
-    and infinite at 1."""
+    """Velocity under a force: 0 up to the threshold, then proportional to the power 3/2 of the
+    excess, infinite at 1."""
     least = threshold("transverse", amplitude)
     share = np.clip((force - least) / np.where(least < 1.0, 1.0 - least, 1.0), 0.0, 1.0)
     return amplitude * share**1.5 / np.sqrt(1.0 - share)
 
 
 def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
-    """The dataset of a map of that; fails: at which places no velocity is found."""
+    """Dataset of a map of this velocity; fails: places without a result."""
 
     def answer(request):
         place = [float(request[name]) for name in ("force", "amplitude")]
@@ -85,6 +85,6 @@ def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
 
 
 def solved(request):
-    """The record of a request, from the solver."""
+    """Record of a request, from the solver."""
     result = evaluate.computed(request)
     return {"key": key_of(request), "request": request, "result": result, "versions": {}}

@@ -1,4 +1,4 @@
-"""A small configuration of the claims, and answers made up from the formulas that it judges."""
+"""A small configuration of the claims, and results from the formulas that the claims test."""
 
 import numpy as np
 from stubs.studies_stub import SWEEPS
@@ -17,7 +17,7 @@ CLAIMS = {
 
 
 def configured(**changes):
-    """A configuration of the claims with some settings changed."""
+    """Configuration of the claims with some settings changed."""
     return load.from_mapping({"sweeps": SWEEPS, "claims": CLAIMS | changes})
 
 
@@ -25,7 +25,7 @@ LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limi
 
 
 def friction(request):
-    """Rises with velocity, from the exact limit to above Eq 6 or Eq 29."""
+    """Friction that increases with velocity from the exact limit to above Eq 6 or Eq 29."""
     motion, velocity = request["motion"], float(request["velocity"])
     if motion == "continuous-bore":
         return float(paper.bore_forward(velocity))
@@ -39,7 +39,7 @@ def friction(request):
 
 
 def steady(request):
-    """Tractions that slip everywhere along the rigid motion, as Eq 15 has them."""
+    """Tractions that slip everywhere along the rigid motion (Eq 15)."""
     lateral, forward = np.array([-0.5, 0.1, 0.6, 0.2]), np.array([0.1, -0.4, 0.3, 0.7])
     velocity = float(request["velocity"])
     one, other = paper.steady_bore_traction(lateral, forward, velocity)
@@ -50,7 +50,7 @@ def steady(request):
 
 
 def period(request):
-    """Four steps there and four back; least sticks at the end of a stroke, on one side."""
+    """Four steps each way; the smallest contact sticks on one side at the end of a stroke."""
     points = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     share = np.where(np.cos(points) < 0, 0.5, 1.0)
     right = [0.0, 0.5, 0.4, 0.2, 0.0, 0.5, 0.4, 0.3, 0.1]
@@ -72,7 +72,8 @@ def period(request):
 
 
 def result(request):
-    """What an exact solver might say, with errors of 1e-4 and squares that are off by 0.002."""
+    """Results of an exact solver with error estimates of 1e-4, and of squares with an error of
+    0.002."""
     kind = request["kind"]
     if kind == "history":
         force = [0.0, *[float(paper.bore_forward(0.8))] * 30]
@@ -91,7 +92,7 @@ def result(request):
 
 
 def answered(results=result):
-    """A function that answers requests by `results(request)`, and a list of what it was asked."""
+    """Function from a request to the record of `results(request)`, and the list of its requests."""
     seen = []
 
     def answer(request):

@@ -1,4 +1,4 @@
-"""Datasets of what pulls the contact, with numbers that are known."""
+"""Datasets of drives with values of closed forms."""
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,7 @@ FORCES = np.linspace(0.1, 0.9, 9)
 
 
 def drift(motion):
-    """A map of the velocity that a rigid contact has above the threshold, 0 below it."""
+    """Map of the velocity of a rigid contact under a force: 0 below the threshold."""
     amplitude = np.linspace(0.25, 3.0, 6)
     force, across = np.meshgrid(FORCES, amplitude)
     rigid = DRIFT_FORMS[motion].function(force, across)
@@ -33,7 +33,7 @@ def drift(motion):
 
 
 def pulled():
-    """Datasets of the figure of drives: friction v / (1 + v), less 0.1 on the softest spring."""
+    """Datasets of the figure of drives: friction v / (1 + v), 0.1 less on the softest spring."""
     velocity, stiffness, mass = np.geomspace(1e-3, 10, 7), np.array([0.1, 10.0]), [0.1, 1.0, 10.0]
     mu = velocity / (1 + velocity)
     both = np.stack([mu - 0.1, mu])[:, None]
@@ -66,8 +66,8 @@ def pulled():
 
 
 def pairs():
-    """Datasets of the figure of pairs: friction v / (1 + v), half of it on the softest spring of
-    the pair; under a force the pair is a tenth faster than its closed form."""
+    """Datasets of the figure of pairs: friction v / (1 + v), half of it for the pair on the softest
+    spring. Under a force the pair is 10 % faster than its closed form."""
     velocity, stiffness = np.geomspace(1e-2, 10, 7), np.array([0.1, 1e6])
     mu, amplitude = velocity / (1 + velocity), {"amplitude": [1.0]}
     dims = ("stiffness", "amplitude", "velocity")

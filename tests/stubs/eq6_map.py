@@ -1,4 +1,4 @@
-"""The dataset of a made-up sweep: Eq 6 with less of small amplitudes, known to within an error."""
+"""Dataset of a sweep: Eq 6, reduced at small amplitudes, with an error estimate."""
 
 import numpy as np
 import xarray as xr
@@ -9,14 +9,14 @@ FINE = {"velocity": np.geomspace(0.01, 10, 41), "amplitude": np.linspace(0.05, 4
 
 
 def eq6_map(error, velocity=FINE["velocity"], amplitude=FINE["amplitude"]):
-    """Friction that rises with the velocity and falls with the amplitude."""
+    """Friction that increases with velocity and decreases with amplitude."""
     v, a = np.meshgrid(velocity, amplitude)
-    mu = paper.large_amplitude_transverse(v, a**2 / (1.0 + a))  # Eq 6 itself for large ones
+    mu = paper.large_amplitude_transverse(v, a**2 / (1.0 + a))  # Eq 6 itself for large amplitudes
     return map_of(mu, velocity, amplitude, error)
 
 
 def map_of(mu, velocity, amplitude, error=0.0, **attributes):
-    """The dataset of friction (amplitudes, velocities), all converged, known to within an error."""
+    """Dataset of friction (amplitudes, velocities) with an error estimate; all points converged."""
     dims = ("amplitude", "velocity")
     return xr.Dataset(
         {

@@ -1,4 +1,4 @@
-"""Small maps with periods behind their points, computed or made up, for tests of the explorer."""
+"""Small maps with periods of their points, computed or from formulas, for tests of the explorer."""
 
 import numpy as np
 from stubs.sweep_stub import EFFORT
@@ -9,7 +9,7 @@ from microslip.report.explorer import explorer
 from microslip.sweeps import batches, evaluate
 
 AXES = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
-BAD_POINT = ("transverse", 1, 3)  # a map and a place on it that is made not to have converged
+BAD_POINT = ("transverse", 1, 3)  # a map, and a point of it to mark as not converged
 NO_PERIOD = ("transverse", 2, 3)
 BAD_PERIOD = ("bore", 2, 1)
 
@@ -19,7 +19,7 @@ def configured(**axes):
 
 
 def computed(folder, store):
-    """Datasets and periods of both maps as the workflow would make them, but for what went wrong.
+    """Datasets and periods of both maps as made by the workflow, with one unconverged point.
 
     Returns (datasets, periods), each by the names of maps.
     """
@@ -49,7 +49,7 @@ def place(record):
 
 
 def made_up(folder, configuration):
-    """Datasets of a whole configuration with made-up points, and every period the same one.
+    """Datasets of a whole configuration with points from formulas, and one period for all points.
 
     Without bores under other pressures, whose limits take a minute each.
     """
@@ -67,7 +67,7 @@ def made_up(folder, configuration):
 
 
 def made_up_sweep(folder, configuration, name):
-    """Dataset of a sweep whose k-th point has mu_macro = 1 / (3 + k), and the velocity k."""
+    """Dataset of a sweep with mu_macro = 1 / (3 + k) at point k, whose velocity is k."""
     grid = configuration.grids[name]
     result = EFFORT | {"mu_macro_error": 1e-4, "velocity_error": 1e-5, "converged": True}
     result |= {f"error_{part}": 1 / 7 for part in ("resolution", "periodicity", "solver")}
@@ -82,5 +82,5 @@ def made_up_sweep(folder, configuration, name):
 
 
 def mean_over(phase, values):
-    """Mean over a period of values at phases that need not be even."""
+    """Mean over a period of values at uneven phases."""
     return np.trapezoid(values, phase) / (phase[-1] - phase[0])

@@ -1,4 +1,4 @@
-"""Small datasets of figures, made up from closed forms, with every variable that a figure needs."""
+"""Small datasets for figures, from closed forms, with all variables that the figures need."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def fake_transverse(n: int = 9) -> xr.Dataset:
 
 
 def fake_bore(n: int = 9) -> xr.Dataset:
-    """A bore sweep that runs between the exact static limit and Eq 29."""
+    """A bore sweep between the exact static limit and Eq 29."""
     amplitude, velocity = np.linspace(0, 5, n), np.geomspace(1e-3, 10, n)
     large, exact = paper.large_amplitude_bore(velocity), paper.static_limit_bore(amplitude)
     return xr.Dataset(
@@ -58,7 +58,7 @@ def fake_bore(n: int = 9) -> xr.Dataset:
 
 
 def fake_map(mu: np.ndarray) -> dict:
-    """mu_macro with its certificates, every point converged."""
+    """Variables mu_macro, mu_macro_error and converged, with all points converged."""
     both = ("amplitude", "velocity")
     return {
         "mu_macro": (both, mu),
@@ -68,7 +68,7 @@ def fake_map(mu: np.ndarray) -> dict:
 
 
 def fake_continuous_bore(n: int = 9, rings: int = 8) -> xr.Dataset:
-    """A steady bore: Eqs 15, 21 and 22, and starts that decay to them."""
+    """A steady bore (Eqs 15, 21 and 22), and transients that decay to it."""
     velocity = np.geomspace(0.1, 10, n)
     force, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
     end = paper.bore_forward(0.8), paper.bore_torque(0.8)
@@ -117,7 +117,7 @@ def at_ratios(dataset, *ratios):
 
 
 def spanning(title="", shift=0.0, amplitude_label="x0 / u_lim", group="motions") -> xr.Dataset:
-    """A map that falls from 1 to `shift`."""
+    """A map that decreases from 1 to `shift`."""
     amplitude, velocity = np.linspace(0, 2, 7), np.geomspace(1e-3, 10, 9)
     mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return labelled(
@@ -164,7 +164,7 @@ AXES = ["steps", "slow-bore", "critical-amplitude", "poisson", "rotation-centre"
 
 
 def studies() -> dict[str, xr.Dataset]:
-    """The datasets of all studies, of made-up answers."""
+    """Datasets of all studies."""
     stability = {"axes": AXES, "methods": ["shipped", "admm", "euler", "jacobi", "gauss-seidel"]}
     configuration = studies_stub.configured({"points": POINTS, "methods": METHODS}, stability)
     answers = {"accuracy": studies_stub.accuracy_result, "stability": studies_stub.stability_result}
@@ -184,11 +184,11 @@ def studies() -> dict[str, xr.Dataset]:
 
 
 def pulled() -> dict[str, xr.Dataset]:
-    """The datasets of the figures of drives."""
+    """Datasets of the figures of drives."""
     maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
     return maps | drives_stub.pulled() | drives_stub.pairs()
 
 
 def artists(where, gid: str) -> list:
-    """The artists of a figure or a panel with that id."""
+    """Artists of a figure or a panel with an id."""
     return where.findobj(lambda artist: artist.get_gid() == gid)

@@ -1,14 +1,14 @@
-"""The rows of a made-up fit, with errors or without, at two amplitudes."""
+"""Rows of a fit, with or without errors, at two amplitudes."""
 
 import numpy as np
 import xarray as xr
 
 FINE = 50
-"""Points of each curve of the model."""
+"""Number of points of each model curve."""
 
 
 def fitted(rows=12, errors=True):
-    """Friction that rises with the speed, and residuals of up to two standard errors."""
+    """Friction that increases with speed, with residuals of up to two standard errors."""
     speed = np.tile(np.geomspace(1e-3, 0.3, rows // 2), 2)
     amplitude = np.repeat([3e-7, 6e-7], rows // 2)
     force = 3.0 * speed / (speed + 1e4 * amplitude)

@@ -1,4 +1,4 @@
-"""How a fork ends that stands for a process of its own."""
+"""End of a forked process that acts as a process of its own."""
 
 import atexit
 import os
@@ -7,7 +7,7 @@ import threading
 
 
 def end_with(work, tell=lambda code: None):
-    """Do the work, which may raise SystemExit as a program does, tell the code, and end with it."""
+    """Call a function that may raise SystemExit, report its exit code, and end the process."""
     code = 1
     try:
         work()

@@ -1,4 +1,4 @@
-"""Functions of the explorer's scripts, called outside of a browser."""
+"""Functions of the explorer's scripts, called without a browser."""
 
 import json
 import shutil
@@ -13,7 +13,7 @@ from microslip.report.explorer.page import FOLDER
 
 NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed: apt install nodejs")
-"""For every test that runs scripts of the page."""
+"""Mark for tests that run scripts of the page."""
 
 CALLS = """
 const { given, calls, call } = JSON.parse(require("fs").readFileSync(0, "utf8"));
@@ -32,10 +32,10 @@ process.stdout.write(JSON.stringify(calls.map((one) => {
 
 
 def answers(scripts, call, given, calls):
-    """What a function of the page's scripts answers.
+    """Results of JavaScript calls, as a list of values or {"refused": message}.
 
-    scripts: names of files, in their order; call: JavaScript of a function of `given` and what is
-    in one of `calls`. Returns a list: an answer each, or {"refused": message}.
+    scripts: names of files, in their order. call: JavaScript function of `given` and one of
+    `calls`.
     """
     code = ["'use strict';", *((FOLDER / name).read_text(encoding="utf-8") for name in scripts)]
     done = subprocess.run(
@@ -50,7 +50,7 @@ def answers(scripts, call, given, calls):
 
 
 class _Ids(HTMLParser):
-    """Ids of a page, whether they are hidden, and the ids around each."""
+    """Ids of a page, with their visibility and the ids around each."""
 
     EMPTY = ("meta", "input", "br")
 
@@ -72,10 +72,10 @@ class _Ids(HTMLParser):
 
 
 def page_says(content, *steps):
-    """What the whole page says, run outside of a browser, with a document that draws nothing.
+    """Values of expressions on the whole page, without a browser and with a document that draws
+    nothing.
 
-    content: as payload.build makes it; steps: JavaScript, one after another, each an expression.
-    Returns a list of their values.
+    content: output of payload.build. steps: JavaScript expressions, evaluated in order.
     """
     markup = (FOLDER / "page.html").read_text(encoding="utf-8")
     ids = _Ids()

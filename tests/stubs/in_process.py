@@ -1,4 +1,4 @@
-"""The command line without a process of its own, which takes a second or two to start."""
+"""The command line in this process, which saves the start of Python."""
 
 import io
 from contextlib import redirect_stderr, redirect_stdout
@@ -8,11 +8,11 @@ from microslip.app import cli
 
 
 def run(*arguments):
-    """What `microslip` does with these arguments, as subprocess.run tells it."""
+    """Result of `microslip` with these arguments, as from subprocess.run."""
     out, err = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         try:
             code = cli.main([str(argument) for argument in arguments])
-        except SystemExit as end:  # of argparse, after help
+        except SystemExit as end:  # raised by argparse after --help
             code = end.code or 0
     return CompletedProcess(arguments, code, out.getvalue(), err.getvalue())

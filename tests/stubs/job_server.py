@@ -1,9 +1,11 @@
-"""Jobs of the workflow, each a fork of a process that has imported what others have written.
+"""Jobs of the workflow as forks of a process that has imported the libraries.
 
-Snakemake starts a Python for every script, and most of what that does is to import libraries.  The
-process knows nothing of this package: each job reads the sources of its own project.  `python` is
-what Snakemake starts in the place of Python; it asks the process here for a fork that has its
-folder, its environment and its streams, and ends as that does.  Commands of pages start it, too.
+Snakemake starts Python for every script, and most of its time goes into imports of libraries.
+The server process does not import this package: each job reads the sources of its own project.
+
+`python` is a program that Snakemake starts in place of Python. It asks the server for a fork
+with its folder, environment and streams, and ends like the fork. Commands of pages start it,
+too.
 """
 
 import atexit
@@ -47,9 +49,9 @@ raise SystemExit(int(server.recv(9) or b"1"))
 
 @cache
 def python(environment):
-    """Start the process; the path of what Snakemake is to start in the place of Python.
+    """Start the server; return the path of the program that replaces Python.
 
-    environment: its variables, a tuple of pairs; jobs have those that they are started with.
+    environment: environment variables of the server, as a tuple of pairs. Jobs have their own.
     """
     folder = tempfile.TemporaryDirectory(prefix="jobs-")
     atexit.register(folder.cleanup)
@@ -67,7 +69,7 @@ def python(environment):
     return str(started)
 
 
-# What the process does
+# The server
 
 
 def main(address):
@@ -89,7 +91,7 @@ def main(address):
 
 
 def _load_numba():
-    """What Numba loads with the first function that is compiled, or was."""
+    """Load the modules that Numba imports with its first compiled function."""
     from numba.core.registry import cpu_target
 
     cpu_target.typing_context.refresh()
@@ -97,7 +99,7 @@ def _load_numba():
 
 
 def _bury(*_):
-    """Take note that jobs have ended; how, they say themselves."""
+    """Remove ended jobs from the list; they report their exit codes themselves."""
     with contextlib.suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
@@ -113,7 +115,7 @@ def _run(connection):
     os.chdir(asked["folder"])
     os.environ.clear()
     os.environ.update(asked["environment"])
-    sys.executable = sys.argv[2]  # which jobs start others by
+    sys.executable = sys.argv[2]  # path of the program that jobs start for other jobs
     given = asked["environment"].get("PYTHONPATH", "").split(os.pathsep)
     sys.path[:0] = filter(None, given)
     threading.Thread(target=_end_with, args=[connection], daemon=True).start()
@@ -123,7 +125,7 @@ def _run(connection):
 
 
 def _do(arguments):
-    """What Python does with these arguments, which begin with a script or with -m."""
+    """Run a script, or a module after -m, as Python does."""
     is_module = arguments[0] == "-m"
     sys.argv = arguments[is_module:]
     if is_module:
@@ -135,7 +137,7 @@ def _do(arguments):
 
 
 def _end_with(connection):
-    """End this process when that which it stands for has ended."""
+    """End this process together with the one that it replaces."""
     connection.recv(1)
     os._exit(1)
 

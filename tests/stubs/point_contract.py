@@ -1,4 +1,4 @@
-"""Fields that every answer has, whatever else it says."""
+"""Fields of every result of a point."""
 
 CONTRACT = {
     "motion",

@@ -1,4 +1,4 @@
-"""A small configuration of the study of propulsion, and made-up lines."""
+"""A small configuration of the study of propulsion, and its results."""
 
 import numpy as np
 from stubs.studies_stub import SWEEPS
@@ -12,13 +12,13 @@ DRIVING = {"points": 3, "motions": {"eight": EIGHT, "back": BACK, "still": STILL
 
 
 def configured(**changes):
-    """A configuration of the study with some settings changed."""
+    """Configuration of the study with some settings changed."""
     return load.from_mapping({"sweeps": SWEEPS, "propulsion": DRIVING | changes})
 
 
 def propulsion_result(request):
-    """A straight line from the force 0.2 to the velocity 0.5, against a power in of 0.1; backward
-    where the phase is 180 degrees, none where the load oscillates."""
+    """Straight line from the force 0.2 to the velocity 0.5, at a power input of 0.1. It is backward
+    at the phase 180, and zero for an oscillating load."""
     sign = -1.0 if "phase=180" in request["motion"] else 1.0
     velocity = np.linspace(0.0, 0.5, request["points"])
     if request["motion"].startswith("normal"):

@@ -1,4 +1,4 @@
-"""One small contact of every kind that marches, each with a motion that it knows."""
+"""One small contact of every kind, each with a suitable motion."""
 
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
@@ -14,4 +14,4 @@ CONTACTS = {
     ),
     "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
 }
-"""A function that builds it, the name of the motion, and Poisson's ratio."""
+"""Functions that build a contact, names of motions, and Poisson's ratios."""

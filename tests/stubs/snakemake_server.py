@@ -1,7 +1,7 @@
-"""Snakemake, imported once: each start is a fork of a process that has done nothing else.
+"""Snakemake, imported once: each start is a fork of a process after this import.
 
-To import it takes longer than most of what tests ask of it.  The process knows nothing of this
-package, so that each start reads the workflow and the sources of its own project.
+The import takes longer than most runs in tests. The process does not import this package, so
+that each start reads the workflow and the sources of its own project.
 """
 
 import atexit
@@ -60,7 +60,7 @@ def _server(environment):
     return _Server(environment)
 
 
-# What the process does
+# The server
 
 LOADED_LATER = ("jsonschema", "nbformat", "requests", "smart_open", "snakemake.storage", "tqdm")
 
@@ -85,8 +85,8 @@ def _run(asked):
 
     from snakemake.cli import main as snakemake
 
-    signal.alarm(asked["timeout"])  # which ends it
-    sys.executable = sys.argv[1]  # what starts jobs
+    signal.alarm(asked["timeout"])  # ends this fork
+    sys.executable = sys.argv[1]  # path of the program that starts jobs
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     for number, name in enumerate(asked["said"], 1):
         os.dup2(os.open(name, os.O_WRONLY), number)

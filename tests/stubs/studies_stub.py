@@ -1,4 +1,4 @@
-"""Small configurations of the studies, and made-up answers to what they ask."""
+"""Small configurations of the studies, and their results from formulas."""
 
 from microslip.config import load
 from microslip.foundation import canonical
@@ -26,7 +26,7 @@ STABILITY = {"methods": ["shipped", "admm", "euler"], "axes": ["poisson", "penal
 
 
 def configured(accuracy=(), stability=()):
-    """A configuration of both studies with some settings changed."""
+    """Configuration of both studies with some settings changed."""
     given = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
     return load.from_mapping({"sweeps": SWEEPS} | given)
 
@@ -48,7 +48,7 @@ GOOD = {
 
 
 def answered(results):
-    """A function that answers requests by `results(request)`, and a list of what it was asked."""
+    """Function from a request to the record of `results(request)`, and the list of its requests."""
     seen = []
 
     def answer(request):
@@ -65,15 +65,15 @@ def mu_of(request):
 
 
 def accuracy_result(request):
-    """Answers, and the computer of those with a time."""
+    """Results, and the description of the computer for those with a time."""
     result = untimed(request)
     timed = {"machine": {"cpu": "a processor", "host": "here", "threads": 1}}
     return result | timed if "seconds" in result else result
 
 
 def untimed(request):
-    """Answers: errors of 0.1/cells^2, times of cells * 1e-3 s, work of cells^2; the slider is wrong
-    by 0.005 and takes 1e-5 s."""
+    """Results with errors of 0.1/cells^2, times of cells * 1e-3 s and work of cells^2. The slider
+    has an error of 0.005 and takes 1e-5 s."""
     kind = request["kind"]
     if kind == "scaling":
         n = request["cells"] * request["angles"]

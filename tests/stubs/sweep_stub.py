@@ -1,4 +1,4 @@
-"""A solver that answers at once, for tests of what is around the solver."""
+"""A fast substitute for the solver."""
 
 from types import SimpleNamespace
 
@@ -16,9 +16,10 @@ EFFORT = {
 
 
 class Solver:
-    """Stands in for microslip.solve, history and traction_field; counts its calls.
+    """Substitute for microslip.solve, history and traction_field that counts its calls.
 
-    mu_macro is velocity/(1 + velocity + amplitude). fails: amplitude at which no point converges.
+    mu_macro is velocity/(1 + velocity + amplitude). fails: amplitude at which no point
+    converges.
     """
 
     def __init__(self, monkeypatch, fails=None):

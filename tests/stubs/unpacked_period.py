@@ -1,4 +1,4 @@
-"""A stored period on the whole disc and over the whole period, by its symmetries."""
+"""A stored period, extended by its symmetries to the whole disc and the whole period."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from microslip.sweeps import period_codec
 
 
 def unpacked(result):
-    """What `packed` kept, on the whole disc and over the whole period: a dict of arrays.
+    """Arrays of a record of `packed`, for the whole disc and the whole period, by name.
 
-    The names and shapes are those of period.Period, without slip_forward, slip_lateral
-    and area. traction_forward and traction_lateral are off by bound/254 at most.
+    The names and shapes are those of period.Period, without slip_forward, slip_lateral and area.
+    The error of traction_forward and traction_lateral is at most bound/254.
     """
     angles, radius = result["angles"], np.array(result["radius"])
     found = {name: np.array(result[name]) for name in period_codec.HISTORIES}

@@ -1,4 +1,4 @@
-"""A copy of the project in a folder of its own, for Snakemake to run and for tests to edit."""
+"""A copy of the project in a folder of its own, for runs of Snakemake and edits."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from microslip.foundation import compiled
 
 ROOT = Path(__file__).parents[2]
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-# The compiled code of this process serves copies with the same sources, too.
+# Copies with the same sources use the compiled code of this process.
 ENVIRONMENT = {
     "PATH": "/usr/bin:/bin",
     "HOME": os.environ.get("HOME", str(ROOT)),
@@ -22,7 +22,7 @@ ENVIRONMENT = {
 COMPILED = shutil.ignore_patterns("compiled-*")
 RUN = ["-j2", "--configfile", "tiny.yaml"]
 
-# Closed forms and the rigid model: points that cost nothing.
+# Closed forms and the rigid model, whose points are cheap.
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "model": "rigid", "tolerance": 1e-2}
 TINY = {
     "sweeps": {
@@ -41,14 +41,14 @@ ALL_JOBS = {"warm_up": 2, "solve": 6, "collect": 3, "draw": 6, "all": 1}
 
 
 def jobs_in(said):
-    """Jobs by rule, as Snakemake lists them before it starts; {} if there is nothing to do."""
+    """Number of jobs by rule, from Snakemake's table before a run; {} if there is nothing to do."""
     table = re.search(r"^-+  -+\n(.*?)^total", said, re.MULTILINE | re.DOTALL)
     rows = table[1].split("\n")[:-1] if table else []
     return {name: int(count) for name, count in map(str.split, rows)}
 
 
 class Project:
-    """A copy of the project to run and to edit."""
+    """A copy of the project for runs and edits."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -59,13 +59,13 @@ class Project:
 
     @classmethod
     def at(cls, folder):
-        """The project that a folder holds already."""
+        """The existing project in a folder."""
         project = object.__new__(cls)
         project.folder = folder
         return project
 
     def copied(self, folder):
-        """A copy of all that there is, what runs have left included."""
+        """A copy of the project, including the files of earlier runs."""
         shutil.copytree(self.folder, folder, symlinks=True)
         return self.at(folder)
 
@@ -73,7 +73,7 @@ class Project:
         (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
 
     def snakemake(self, *arguments):
-        # Nothing of the environment is activated: only the path of the executable is known.
+        # The virtual environment is not activated: only the path of the executable is used.
         return snakemake_server.start(arguments, self.folder, ENVIRONMENT)
 
     def run(self, *targets):
@@ -82,7 +82,7 @@ class Project:
         return done.stdout + done.stderr
 
     def planned(self, *targets):
-        """Jobs that a run would do, by rule; {} if there is nothing to do."""
+        """Number of jobs of a dry run, by rule; {} if there is nothing to do."""
         done = self.snakemake(*targets, *RUN, "--dry-run")
         assert done.returncode == 0, done.stderr
         return jobs_in(done.stdout)
@@ -91,7 +91,7 @@ class Project:
         return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
 
     def append(self, path, text):
-        """Add to a file that is there."""
+        """Append text to an existing file."""
         with open(self.folder / path, "r+") as file:
             file.seek(0, os.SEEK_END)
             file.write(text)

@@ -69,7 +69,7 @@ def test_the_mean_size_of_batches_is_the_one_asked_for():
     points = points_of(amplitude=list(range(1000)))
     for size in (1, 10, 100):
         assert len(sweep.batches_of_points(points, size)) == pytest.approx(2000 / size, rel=0.5)
-    assert len(sweep.batches_of_requests(list(points), 10)) == pytest.approx(200, rel=0.5)
+    assert len(sweep.cut(list(points), 10)) == pytest.approx(200, rel=0.5)
 
 
 def names_of(size, **transverse):

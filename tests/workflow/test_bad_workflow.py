@@ -1,4 +1,4 @@
-"""Bad input to the workflow: real runs of Snakemake that end with one line, before any job."""
+"""Bad input to the workflow: runs of Snakemake that end with one line, before any job."""
 
 from pathlib import Path
 
@@ -15,29 +15,29 @@ LINKED = ("profiles", "src", "workflow", "Snakefile")
 
 
 def given(content=GOOD):
-    """Writes given.yaml, for --configfile, into the folder of a project."""
+    """Function that writes given.yaml, for --configfile, into the folder of a project."""
     content = content.encode() if isinstance(content, str) else content
     return lambda folder: (folder / "given.yaml").write_bytes(content)
 
 
 def default(case):
-    """Replaces the default configuration by a file that is none."""
+    """Replace the default configuration by an invalid file."""
     return lambda folder: (folder / "config" / "config.yaml").write_bytes(FILES[case][0])
 
 
 def beside(make):
-    """A good given.yaml, and what `make` puts in the folder."""
+    """Function that writes a valid given.yaml and then calls `make` with the folder."""
     return lambda folder: (given()(folder), make(folder))
 
 
 def key(name, value):
-    """The case of bad_configurations with this key and value, and its line."""
+    """A case of bad_configurations by its key and value, and its message."""
     ((*_, first),) = [case[:3] for case in KEYS + EXTENDED if case[:2] == (name, value)]
     return given(changed({name: value})), GIVEN, f"given.yaml: {name}: {first}"
 
 
-# What is prepared, arguments to Snakemake, how its line begins. All keys are tried with the same
-# reader, without Snakemake, in tests/config/test_bad_input.py.
+# Preparation, arguments of Snakemake, beginning of its message. Tests of all keys, by the same
+# reader but without Snakemake, are in tests/config/test_bad_input.py.
 CASES = {
     "a misspelt key": key("sweeps.transverse.velocities", "[1]"),
     "a misspelt sweep": key("sweeps.bores", "{}"),
@@ -81,7 +81,7 @@ CASES = {
         "given.yaml: results: cannot use xxx",
     ),
 }
-# Half of them as a plan, half as a run: neither may get as far as planning.
+# Half of them are dry runs, half runs: all must end before planning.
 MODES = {case: ["-n"] if index % 2 else ["-j1"] for index, case in enumerate(CASES)}
 
 
@@ -90,7 +90,7 @@ def snakemake(folder, *arguments):
 
 
 def project(folder, prepare):
-    """A project in a new folder, of links to this one."""
+    """A project in a new folder of links to this one."""
     (folder / "config").mkdir(parents=True)
     (folder / "config" / "config.yaml").write_text(GOOD)
     for name in LINKED:
@@ -100,14 +100,14 @@ def project(folder, prepare):
 
 
 def content(folder):
-    """All files of a project but Snakemake's own, with what they hold."""
+    """Contents of all files of a project, except those of Snakemake itself."""
     files = [p for p in folder.rglob("*") if ".snakemake" not in p.parts and p.name not in LINKED]
     return {p: p.is_file() and p.read_bytes() for p in files}
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """Every case's run, and the content of its folder before."""
+    """Finished runs of all cases, and the contents of their folders before."""
 
     def run(case):
         prepare, arguments, _ = CASES[case]
@@ -142,7 +142,7 @@ def test_results_that_cannot_be_written_end_a_run_before_its_first_job(tmp_path)
     assert line.startswith("Error in given.yaml: results: cannot write /proc/none/here/.again: ")
     assert "make room or set perm" in line
     assert "rule warm_up" not in ended.stderr and "Traceback" not in ended.stderr
-    assert not list((folder / ".snakemake" / "locks").glob("*"))  # the next run may start
+    assert not list((folder / ".snakemake" / "locks").glob("*"))  # no lock prevents the next run
 
 
 def test_a_file_in_the_place_of_a_dataset_is_no_dataset_and_stays_in_a_dry_run(tmp_path):

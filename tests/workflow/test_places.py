@@ -1,6 +1,6 @@
-"""The workflow in other places: another folder, a module of another workflow, an installed copy.
+"""The workflow in another folder, as a module of another workflow, and as an installed copy.
 
-The datasets have to be those of an ordinary run, byte for byte. And the report of a run.
+All give the dataset of an ordinary run, byte for byte. Also: the report of a run.
 """
 
 import re
@@ -24,14 +24,14 @@ DATASET = "results/bore.nc"
 
 @pytest.fixture(scope="module")
 def ordinary(finished, tmp_path_factory):
-    """A project after an ordinary run, to compare with. To be left as it is."""
+    """A project after an ordinary run, for comparison. Tests must not change it."""
     project = finished.copied(tmp_path_factory.mktemp("places") / "microslip")
     project.said = finished.said
     return project
 
 
 def beside(project, name, configuration=CONFIGURATION):
-    """A new folder beside a project, with a configuration in tiny.yaml."""
+    """A new folder next to a project, with a configuration in tiny.yaml."""
     place = Project.at(project.folder.parent / name)
     place.folder.mkdir()
     place.configure(configuration)
@@ -50,7 +50,7 @@ def test_another_folder_gets_the_results_of_a_run_there(ordinary):
     place = beside(ordinary, "elsewhere")
     place.run(DATASET, "-s", "../microslip/Snakefile")
     assert bytes_of(place) == bytes_of(ordinary)
-    # From a third folder, with the option for it, there is nothing left to do.
+    # From a third folder, with the option --directory, nothing remains to do.
     third = beside(ordinary, "third")
     there = ("-s", "../microslip/workflow/Snakefile", "-d", "../elsewhere")
     assert third.planned(DATASET, *there) == {}
@@ -68,7 +68,7 @@ def test_the_default_configuration_is_found_from_another_folder_unless_that_has_
 
 @pytest.mark.long
 def test_files_that_a_configuration_names_lie_beside_it(ordinary):
-    """Wherever the run is; one that is not there is told with the places it was looked for in."""
+    """Files of a configuration are found from any folder; errors list the paths that were tried."""
     place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
     far.mkdir()
     pad = {"motion": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
@@ -112,7 +112,7 @@ rule outer:
     shell:
         "ls {input} > {output}"
 """
-# As the catalogue's tool writes it.
+# A Snakefile as written by snakedeploy.
 DEPLOYED = """
 configfile: "tiny.yaml"
 
@@ -154,7 +154,7 @@ def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_b
 
 @pytest.fixture(scope="module")
 def installed(ordinary):
-    """Runs `microslip` from an unpacked wheel, with no tree around it."""
+    """Function that runs `microslip` from an unpacked wheel, without the source tree."""
     pytest.importorskip("hatchling", reason="builds the package")
     folder = ordinary.folder.parent / "installed"
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
@@ -181,7 +181,7 @@ def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ord
     done = installed(place, "sweep", DATASET, *RUN)
     assert done.returncode == 0, done.stderr
     assert bytes_of(place) == bytes_of(ordinary)
-    # The other way round, too.
+    # The source tree uses the results of the installed copy, and the other way round.
     assert place.planned(DATASET, "-s", "../microslip/Snakefile") == {}
     copy = beside(ordinary, "copied")
     shutil.copytree(ordinary.folder / "results", copy.folder / "results")
@@ -196,7 +196,7 @@ def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed
     done = installed(place, "sweep", "results/sideways.nc", *RUN)
     assert done.returncode == 1
     assert "sideways" in done.stderr
-    # Without any: the sweeps of the paper, which the package brings along.
+    # Without arguments: the sweeps of the paper, whose configuration is in the package.
     plan = installed(place, "sweep", "--dry-run", "--quiet", "host")
     assert re.search(r"draw +6\n", plan.stdout)
 
@@ -205,7 +205,7 @@ def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed
 
 
 def offline():
-    """Words that take the network away from a command, where the system lets them."""
+    """Beginning of a command line that disables the network, if the system allows it."""
     without = ["unshare", "--map-root-user", "--net"]
     tried = shutil.which("unshare") and subprocess.run([*without, "true"], capture_output=True)
     return without if tried and tried.returncode == 0 else []

@@ -1,4 +1,4 @@
-"""Datasets and figures are those of the configuration and the code, whatever happened before."""
+"""Datasets and figures match the configuration and the code after any sequence of runs."""
 
 import os
 import random
@@ -37,10 +37,10 @@ def configured(**changed):
 
 
 class Counted(Project):
-    """A project that counts what it solves."""
+    """A project whose solver counts its calls."""
 
     def solved(self):
-        """Calls of the solver so far, one a line."""
+        """Calls of the solver so far, one per line."""
         path = self.folder / "solved"
         return path.read_text().splitlines() if path.exists() else []
 
@@ -51,7 +51,7 @@ class Counted(Project):
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """A project after its first run. To be left as it is."""
+    """A project after its first run. Tests must not change it."""
     project = Counted(tmp_path_factory.mktemp("scenarios") / "it")
     project.append("src/microslip/adaptive/point.py", COUNTING)
     project.configure(configured())
@@ -67,7 +67,7 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def project(finished, tmp_path):
-    """A copy of the finished project to edit."""
+    """A copy of the finished project for edits."""
     return finished.copied(tmp_path / "copy")
 
 
@@ -96,7 +96,7 @@ def test_a_grown_axis_solves_its_new_points_alone(axis, values, batches, new, pr
 
 
 def killed(project, seconds):
-    """Start a run and kill it with its jobs after some seconds."""
+    """Start a run, and kill it with its jobs after some seconds."""
     command = [SNAKEMAKE, DATASET, "-j2", "--configfile", "tiny.yaml", "--nolock"]
     running = subprocess.Popen(
         command,
@@ -135,7 +135,7 @@ def forget(project):
 
 
 def copy(project):
-    """Results copied into another working directory, with the dates of copying."""
+    """Results copied to another working directory, with the dates of copying."""
     there = project.folder.parent / "there"
     shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake"))
     for path in there.rglob("*"):
@@ -144,7 +144,7 @@ def copy(project):
 
 
 def share(project):
-    """Another working directory whose results are the same folder."""
+    """Another working directory with the same folder of results."""
     there = project.folder.parent / "there"
     shutil.copytree(project.folder, there, ignore=shutil.ignore_patterns(".snakemake", "results"))
     (there / "results").symlink_to(project.folder / "results")
@@ -169,7 +169,7 @@ def test_dates_do_not_count(dates, project):
 
 
 def test_two_configurations_share_a_folder_of_results(finished, project):
-    """A, B, A, by the dataset and by its figure alone."""
+    """Configurations A, B, A: first the dataset, then its figure alone."""
     first = (finished.folder / DATASET).read_bytes()
     figure = (finished.folder / FIGURE).read_bytes()
     project.configure(configured(velocity=[0.5, 1, 2, 3]))

@@ -1,6 +1,6 @@
-"""A run without a shared file system: what jobs declare travels through an S3 server here.
+"""Runs without a shared file system: files travel through a local S3 server.
 
-It needs moto's server and Snakemake's plugin for S3; where these are not installed it is left out.
+Needs moto's server and Snakemake's plugin for S3, else the tests are skipped.
 """
 
 import shutil
@@ -55,7 +55,7 @@ def client(address):
 
 
 def run(folder, address, *arguments):
-    """Run the workflow with everything it makes in the bucket; what it says."""
+    """Run the workflow with all files in the bucket; return its output."""
     plugin = {
         "SNAKEMAKE_STORAGE_S3_ENDPOINT_URL": address,
         "SNAKEMAKE_STORAGE_S3_ACCESS_KEY": "a",
@@ -68,7 +68,7 @@ def run(folder, address, *arguments):
 
 
 def stored(address):
-    """Contents of the bucket by name."""
+    """Contents of all files in the bucket, by name."""
     s3 = client(address)
     listed = s3.list_objects_v2(Bucket=BUCKET)["Contents"]
     names = [entry["Key"] for entry in listed]
@@ -79,13 +79,13 @@ def stored(address):
 
 
 def computed(files):
-    """Points that were computed, by what the logs of the jobs in the bucket say."""
+    """Number of computed points according to the logs of jobs in the bucket."""
     logs = (text.decode() for name, text in files.items() if "logs/solve/" in name)
     return sum(int(log.split(" points, ")[1].split()[0]) for log in logs)
 
 
 def empty_copy(finished, folder):
-    """The project on another machine: nothing of what any run has left."""
+    """The project on another machine, without any files of earlier runs."""
     left = shutil.ignore_patterns("results", ".snakemake")
     shutil.copytree(finished.folder, folder, ignore=left)
     return folder
@@ -101,7 +101,7 @@ def with_transverse(**changed):
 
 @pytest.fixture(scope="module")
 def first(finished, server, tmp_path_factory):
-    """What is in the bucket after a run of an empty machine."""
+    """Contents of the bucket after a run on an empty machine."""
     run(empty_copy(finished, tmp_path_factory.mktemp("first") / "it"), server, *DATASETS)
     return stored(server)
 
@@ -113,14 +113,14 @@ def test_points_are_solved_once_and_datasets_are_those_of_a_local_run(
     assert {name: first[name] for name in DATASETS} == {
         name: (finished.folder / name).read_bytes() for name in DATASETS
     }
-    # an amplitude more on another machine: the block that it falls into
+    # one more amplitude, on another machine: one block is solved
     other = empty_copy(finished, tmp_path / "other")
     (other / "tiny.yaml").write_text(with_transverse(amplitude=[0, 1, 2]))
     run(other, server, DATASET)
     grown = stored(server)
     assert grown[DATASET] != first[DATASET]
     assert 2 <= computed(grown) - computed(first) <= 4
-    # a velocity more: the rows are solved again
+    # one more velocity: all rows are solved again
     third = empty_copy(finished, tmp_path / "third")
     (third / "tiny.yaml").write_text(with_transverse(velocity=[0.5, 2, 3]))
     run(third, server, DATASET)
@@ -132,7 +132,7 @@ def test_points_are_solved_once_and_datasets_are_those_of_a_local_run(
 
 
 def test_a_job_on_a_machine_of_its_own_finds_its_requests(finished, first, server, tmp_path):
-    """As an executor starts it that shares no files: by nothing but the name of a batch."""
+    """A job as started by an executor without shared files: from the name of its batch alone."""
     (name,) = (name for name in first if "batches/bore/" in name)
     client(server).delete_object(Bucket=BUCKET, Key=f"{FOLDER}/{name}")
     job = f"solve:group=bore,batch={name.split('/')[-1].removesuffix('.jsonl')}"

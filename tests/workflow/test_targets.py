@@ -1,4 +1,4 @@
-"""Certified maps, other motions and the studies, run by Snakemake in a copy."""
+"""Certified maps, other motions and the studies, run by Snakemake in a copy of the project."""
 
 import re
 import shutil
@@ -6,6 +6,7 @@ import shutil
 import pytest
 import xarray as xr
 from matplotlib.text import Text
+from stubs import studies_stub
 from stubs.propulsion_stub import DRIVING
 from stubs.workflow_project import Project, jobs_in
 
@@ -22,14 +23,14 @@ PAPER = {"transverse": {"velocity": [1], "amplitude": [0]}}
 
 
 def made(folder, configuration, *targets):
-    """A project with this configuration after a run of these targets; `said` holds its output."""
+    """A project with a configuration, after a run of some targets; `said` is the output."""
     project = Project(folder)
     project.configure(configuration)
     project.said = project.run(*targets)
     return project
 
 
-# Certified maps: the rigid model, whose points cost nothing.
+# Certified maps of the rigid model, whose points are cheap.
 
 AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "tolerance": 0.01}
 MAP = {"sweeps": {"transverse": {**AXES, "adaptive": {"error": 0.03}}}}
@@ -37,7 +38,7 @@ MAP = {"sweeps": {"transverse": {**AXES, "adaptive": {"error": 0.03}}}}
 
 @pytest.fixture(scope="module")
 def certified(tmp_path_factory):
-    """A project with a certified map. To be left as it is."""
+    """A project with a certified map. Tests must not change it."""
     return made(tmp_path_factory.mktemp("certified"), MAP, "certified")
 
 
@@ -139,7 +140,7 @@ def test_other_motions_have_datasets_and_a_figure_of_each_group(tmp_path):
         assert data.converged.all()
     assert len(project.points()) == 12
     assert "Nothing to be done" in project.run("extended")
-    assert project.planned()["collect"] == 1  # a plain run makes none of it
+    assert project.planned()["collect"] == 1  # the default target does not include them
 
 
 # Studies
@@ -150,7 +151,7 @@ SMALLER = {
     "studies/claims/claims.py": {"PAPER_SQUARES, PAPER_STEPS = 32, 100": "= 16, 20"},
     "solver/methods/paper.py": {"STEPS_PER_PERIOD = 32, 100": "= 16, 20", "STEPS = 8000": "= 400"},
 }
-"""Numbers in modules, and others for them: the paper's own runs take a second in place of ten."""
+"""Replacements of constants in modules, which shorten the runs of the paper from 10 s to 1 s."""
 
 
 def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
@@ -190,12 +191,7 @@ METHODS = {
         "points": {"fast": {"motion": "longitudinal", "velocity": 0.5, "amplitude": 1}},
         "levels": 2,
         "repeats": 1,
-        "map": {
-            "velocity": [1, 3],
-            "amplitude_transverse": [0.5, 2],
-            "amplitude_bore": [0.5, 2],
-            "tolerance": [0.01],
-        },
+        "map": studies_stub.ACCURACY["map"] | {"velocity": [1, 3], "tolerance": [0.01]},
     },
     "stability": {
         "methods": ["shipped", "my-method"],
@@ -221,7 +217,7 @@ def write_method(project, stem):
 
 @pytest.fixture(scope="module")
 def studies(tmp_path_factory):
-    """A project with a method of its own after both studies. To be left as it is."""
+    """A project with a user's method, after both studies. Tests must not change it."""
     project = Project(tmp_path_factory.mktemp("studies"))
     project.configure(METHODS)
     write_method(project, "my_method")
@@ -230,7 +226,7 @@ def studies(tmp_path_factory):
 
 
 def texts(name, path):
-    """All that is written in a figure drawn from the dataset at `path`."""
+    """All texts of a figure drawn from the dataset at `path`."""
     with netcdf.whole(path) as data:
         figure = drawing.draw(name, {drawing.FIGURES[name][0]: data})
         return " ".join(text.get_text() for text in figure.findobj(Text))
@@ -281,7 +277,7 @@ def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(studi
 
 
 def test_lines_of_self_propelled_motions_are_answered_in_batches(tmp_path):
-    """Three lines, two to a job; two titles of one line are one request."""
+    """Three lines in jobs of two; two titles of one line share a request."""
     project = Project(tmp_path)
     project.configure({"sweeps": PAPER, "propulsion": DRIVING})
     expected = {"warm_up": 2, "solve": 2, "collect": 1, "draw": 1, "propulsion": 1}

@@ -1,4 +1,4 @@
-"""The workflow, run by Snakemake in a copy of the project: what is computed, and what is not."""
+"""The workflow, run by Snakemake in a copy of the project: jobs that run, and jobs that do not."""
 
 import re
 
@@ -46,7 +46,7 @@ def test_a_new_amplitude_computes_its_points_only(project):
 
 
 def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_count(project):
-    """Each plan is of all edits up to there, as what is edited concerns more and more."""
+    """The edits accumulate, and each one concerns more jobs than the one before."""
     for path in (project.folder / "src").rglob("*.py"):
         path.touch()
     (project.folder / "tiny.yaml").touch()
@@ -81,7 +81,7 @@ def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
     assert done.returncode == 1
     assert line == (
         "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
-        "which the configuration has not"
+        "which the configuration does not have"
     )
 
 

@@ -1,4 +1,4 @@
-"""What the scripts of jobs load: those that solve, nothing that draws or collects."""
+"""Imports of the scripts of jobs: solving imports nothing for drawing or collecting."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ LOADED = "import sys; {imports}; {more}; print(*{{n.partition('.')[0] for n in s
 
 
 def loaded(script, more="pass"):
-    """Names of the packages that a process has loaded after the imports of a script."""
+    """Names of the packages in a process after the imports of a script."""
     text = (SCRIPTS / f"{script}.py").read_text()
     imports = "; ".join(re.findall(r"^(?:from \S+ )?import .+$", text, re.MULTILINE))
     done = subprocess.run(

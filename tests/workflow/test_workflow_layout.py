@@ -1,4 +1,4 @@
-"""What the workflow is made of besides its rules: captions, pages about datasets, its layout."""
+"""Files of the workflow besides its rules: captions, pages about datasets, layout."""
 
 from functools import cache
 from pathlib import Path
@@ -52,7 +52,7 @@ def settings():
 
 @cache
 def rendered(name, **wildcards):
-    """A caption as Snakemake renders it, but that nothing may be undefined."""
+    """A caption as rendered by Snakemake; undefined names raise an error."""
     jinja2 = pytest.importorskip("jinja2")
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True)
     snakemake = SimpleNamespace(

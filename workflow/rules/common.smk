@@ -1,4 +1,4 @@
-# What the rules share: the package, the checked configuration, its plan, and what is made again.
+# Shared by all rules: the package, the configuration, its plan, and the test for outdated files.
 
 import atexit
 import functools
@@ -10,20 +10,20 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-# The package of this tree is the one that runs, whether it is installed or not.
+# The package of this tree runs, even if another one is installed.
 ROOT = Path(str(workflow.current_basedir)).parents[1]
 if (ROOT / "src").is_dir():
     sys.path.insert(0, str(ROOT / "src"))
     search = [str(ROOT / "src"), *filter(None, [os.environ.get("PYTHONPATH")])]
     os.environ.update(PYTHONPATH=os.pathsep.join(search))
 
-# Jobs inherit this.  Parallel work is many points at a time, one thread each.
+# For the jobs, too: each process solves one point at a time, with one thread.
 for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
 
 def hang_up(*_):
-    """End jobs at once and Snakemake as SIGTERM does, so that no lock stays: the terminal closed.
+    """After SIGHUP (the terminal was closed), end the jobs, and Snakemake without leaving a lock.
 
     A terminal sends the signal to its first process only, a shell to the whole group.
     """
@@ -48,7 +48,7 @@ from microslip.sweeps import batches, stamps, store
 
 @contextmanager
 def refused_in_one_line():
-    """Context in which what the user has to mend ends the run with one line, before any job."""
+    """Context that ends the run with one line, before any job, for errors that the user can fix."""
     try:
         yield
     except load.ConfigError as error:
@@ -57,17 +57,17 @@ def refused_in_one_line():
         sys.exit(f"Error in {ORIGIN}: results: {error}")
 
 
-# A file given with --configfile takes the place of the default, they are not mixed.  Without one,
-# that of the working directory comes first.  A module is configured by the workflow that uses it.
+# A file given with --configfile replaces the default configuration.  The default is that of the
+# working directory, else that of the package.  The outer workflow configures a module.
 MAIN = os.path.abspath(workflow.basedir) in (str(ROOT), str(ROOT / "workflow"))
 if not (config and workflow.configfiles):
     DEFAULT = "config/config.yaml"
     if not (MAIN and os.path.exists(DEFAULT)):
         DEFAULT = str(ROOT / DEFAULT)
-    if not ROOT.is_dir():  # a workflow that Snakemake reads from elsewhere
+    if not ROOT.is_dir():  # a workflow on a server
         DEFAULT = workflow.source_path("../../config/config.yaml")
     with refused_in_one_line():
-        load.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is
+        load.read_yaml(os.path.relpath(DEFAULT))  # its errors have line numbers
 
     configfile: DEFAULT
 
@@ -76,57 +76,47 @@ elif MAIN:
         for file in workflow.configfiles:
             load.read_yaml(os.path.relpath(file))  # refuses a key that occurs twice
 
-# In a module the files are those of the other workflow, which may hold more than this one knows.
+# In a module, these files belong to the outer workflow, and may have other keys.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
 ORIGIN = ", ".join(FILES) or "configuration"
-# Where files are looked for that the configuration names, before the working directory.
+# Folders of files named in the configuration; the working directory comes after them.
 FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfiles]
 
 with refused_in_one_line():
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
-    # Captions name the defaults too, and jobs find the files that were found here.
+    # With default values for captions, and absolute paths of files for jobs.
     config = load.with_files_found(config, source=ORIGIN, folders=FOLDERS)
 PLAN = Plan(CONFIGURATION)
 RESULTS = os.path.normpath(CONFIGURATION.results)
 
-HERE = exists(os.devnull)  # False where results are in a storage: no stamp can be read there
+HERE = exists(os.devnull)  # False for results in a storage, where stamps cannot be read
 AGAIN = f"{RESULTS}/{stamps.AGAIN}"
-kept = update if HERE else str  # the old file stays until a job has written the new one
+updated = update if HERE else str  # keeps the old file until a job has written the new one
 marked = str if HERE else local
 TO_SOLVE = {}
 
 
-def in_results(files):
-    """Paths with the folder of results before them."""
-    return [f"{RESULTS}/{file}" for file in files]
-
-
-def files_of(products):
-    """Files of products."""
-    return in_results(file for product in products for file in PLAN.products[product].files)
-
-
 def made_again(right):
-    """The file AGAIN; ancient, which means that its date does not count, where all is right."""
+    """The file AGAIN, as ancient, that is without regard to its date, if all is up to date."""
     return ancient(marked(AGAIN)) if right else marked(AGAIN)
 
 
 @functools.cache
 def is_whole(file):
-    """Whether a batch is whole and final, or missing; dates it back if it is not."""
+    """True for a final or missing batch; other batches are dated back."""
     path = f"{PLACE}/{file}"
     if not (HERE and os.path.exists(path)):
         return True  # in a storage batches are trusted
     right = store.is_final(path)
     stamps.date([path], right)
     if not right:
-        print(f"{path} is made again: it is damaged, or has points that failed", file=sys.stderr)
+        print(f"{path} is damaged, or has points that failed: made again", file=sys.stderr)
     return right
 
 
 @functools.cache
 def is_right(product):
-    """Whether a product is what the configuration and the code lead to; dates it back if not."""
+    """True if a product is up to date; outdated products are dated back."""
     if not HERE:
         return False  # made again, from batches or datasets
     stamp = f"{PLACE}/{stamps.stamp_of(product)}"
@@ -137,22 +127,22 @@ def is_right(product):
 
 
 def batches_for(product):
-    """Batches of a product, ancient where they are whole: then they are no reason to collect."""
-    found = PLAN.batch_files(*PLAN.products[product].groups)
+    """Batches of a product; whole ones are ancient, so that they start no job."""
+    names = PLAN.batch_files(*PLAN.products[product].groups)
     if HERE and not is_right(product):
-        missing = [f for f in found if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
+        missing = [f for f in names if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
         TO_SOLVE.update(dict.fromkeys(missing))
-    return [(ancient if is_whole(file) else str)(f"{RESULTS}/{file}") for file in found]
+    return [(ancient if is_whole(file) else str)(f"{RESULTS}/{file}") for file in names]
 
 
 def datasets_for(product):
-    """Datasets of a product, ancient where they are right."""
+    """Datasets of a product; those that are up to date are ancient."""
     names = PLAN.products[product].datasets
     return [(ancient if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
 
 
 def batch_of(group, name):
-    """A batch as JSON: the requests that a job answers."""
+    """A batch as JSON: the requests of a job."""
     batch = PLAN.batches_in(group).get(name)
     if batch is None:  # in a job on another machine
         sys.exit(
@@ -163,42 +153,31 @@ def batch_of(group, name):
 
 
 def kernels_for(group):
-    """Compiled code that a group needs; its name holds the digest of the solver."""
-    pulled = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
-    return compiled("rings", "angles", *["pulled"] * (group in pulled))
+    """Marks of the compiled code that a group needs."""
+    with_drive = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
+    return compiled("rings", "angles", *["pulled"] * (group in with_drive))
 
 
 def compiled(*kernels, place=RESULTS):
-    """Marks that kernels are compiled."""
+    """Files that mark compiled kernels; their names contain the digest of the solver."""
     return [f"{place}/warm_up/{source_digest.of_solver()[:16]}_{name}.txt" for name in kernels]
 
 
 def files_of_target(target):
-    """Input function of a target that TARGETS lists."""
+    """Input function of a target."""
 
     def files(wildcards):
-        page = f"{target}.html"
-        problem = explorer.refusal(CONFIGURATION, page) if page in explorer.PAGES else None
-        if problem:
-            sys.exit(f"Error in {ORIGIN}: {problem}")
-        return files_of(PLAN.products_of(target))
-
-    return files
-
-
-def files_of_figure(name):
-    """Input function of the target that makes one figure."""
-
-    def files(wildcards):
-        if name not in PLAN.figures:
-            sys.exit(f"Error in {ORIGIN}: {figure_targets.why_no_figure(CONFIGURATION, name)}")
-        return files_of([f"figures/{name}"])
+        try:
+            products = PLAN.products_of(target)
+        except load.ConfigError as error:
+            sys.exit(f"Error in {ORIGIN}: {error}")
+        return [f"{RESULTS}/{file}" for name in products for file in PLAN.products[name].files]
 
     return files
 
 
 def report_work():
-    """Write to standard error how many points there are to solve, and about how long it takes."""
+    """Write the number of points to solve, and an estimate of the time, to standard error."""
     try:
         cores = min(workflow.cores, max(len(TO_SOLVE), 1))
     except WorkflowError:  # jobs run elsewhere
@@ -212,12 +191,12 @@ def report_work():
 
 
 def make_ready():
-    """Before the first job: see that results can be written, clear what killed runs left."""
+    """Before the first job: check that results can be written, remove files of killed runs."""
     with refused_in_one_line():
         store.Store(PLACE).try_writing()
     for path in files.clear_abandoned(PLACE):
-        print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
+        print(f"{path}: removed, a partial file of a killed run", file=sys.stderr)
     report_work()
 
 
-atexit.register(report_work)  # where no job starts, as in a dry run
+atexit.register(report_work)  # for runs without jobs, such as dry runs

@@ -2,34 +2,32 @@
 
 Output: netCDF-4, CF conventions; dimensionless (units 1, phases in rad) except for the seconds and
 bytes of studies.
-  NAME.nc            of a sweep: dims (amplitude, velocity), as far as the motion has them, after
-                     mass, damping, stiffness, poisson where these are axes; force for velocity
+  NAME.nc            a sweep: dims (amplitude, velocity), as far as the motion has them, after
+                     mass, damping, stiffness, poisson if these are axes; force replaces velocity
   certified_NAME.nc  dims point, cell, node
   accuracy_cost.nc   dim trial; groups points, scaling, transverse_map, bore_map, profile
   stability.nc       dims (method, case); group axes
   propulsion.nc      dims (line, point)
   claims.nc          dim claim; groups parts, checks, runs, static limit, patches
-What has other axes is in groups of the file.  Beside it an HTML page that sums it up.
+Variables with other axes are in groups of the file.  An HTML page summarises it.
 """
 
 import logging
 
 import xarray as xr
 
-from microslip.app.job_log import job_log
-from microslip.app.plan import Plan
-from microslip.config import load
+from microslip.app.plan import product_job
 from microslip.datasets import certified_map, sweep_dataset
 from microslip.report import dataset_page, study_page
 from microslip.studies import registry
-from microslip.sweeps import batches, stamps
+from microslip.sweeps import batches
 
 name, path = snakemake.wildcards.dataset, snakemake.output[0]
 
 
 def write_sweep(grid, paths) -> list[str]:
     """Write the dataset and the page of a sweep; return the lines of its report."""
-    of_points = len(plan.batch_files(name))  # those of single runs come after them
+    of_points = len(plan.batch_files(name))  # then come those of single runs
     points, runs = map(batches.records_in, (paths[:of_points], paths[of_points:]))
     sweep_dataset.write_sweep(path, grid, points, list(runs), configuration.of_sweep(name))
     with xr.open_dataset(path) as data:
@@ -56,11 +54,8 @@ def write_study(study, records) -> list[str]:
     return lines
 
 
-with job_log(snakemake.log[0], shown=logging.INFO) as log:
-    configuration = load.from_mapping(snakemake.config, ask_solver=False)
-    plan = Plan(configuration)
-    plan.refuse_edited(name, snakemake.params.made_of)
-    stamps.set_aside(snakemake.output[:2])
+with product_job(snakemake, name, shown=logging.INFO) as (plan, log):
+    configuration = plan.configuration
     records = batches.records_in(snakemake.input.batches)
     if name in configuration.grids:
         report = write_sweep(configuration.grids[name], snakemake.input.batches)
@@ -70,4 +65,3 @@ with job_log(snakemake.log[0], shown=logging.INFO) as log:
         report = write_study(plan.studies[name], records)
     for line in report:
         log.info(line)
-    stamps.write(snakemake.output.stamp, snakemake.params.made_of, snakemake.output[:2])

@@ -1,7 +1,7 @@
-"""Answer all points of a certified map, round by round, by several processes.
+"""Solve all points of a certified map by several processes.
 
-Output: the records of all its points, as JSON lines.  All numbers in them are dimensionless.  Each
-is kept in the store as well, as soon as it is computed.
+Output: the records of all points, as JSON lines.  All numbers in them are dimensionless.  Each
+record is also stored as soon as it is computed.
 """
 
 from tqdm import tqdm
@@ -13,7 +13,7 @@ from microslip.sweeps import batches, map_refinement, store
 
 name = snakemake.wildcards.certified
 
-if __name__ == "__main__":  # not in the processes that solve
+if __name__ == "__main__":  # not in the worker processes
     with job_log(snakemake.log[0]) as log:
         configuration = load.from_mapping(snakemake.config, ask_solver=False)
         if snakemake.wildcards.batch != Plan(configuration).map_batch(name):

@@ -1,8 +1,8 @@
-"""Answer a batch of requests: points of a sweep, single runs for a figure, or part of a study.
+"""Compute a batch of requests: points of a sweep, single runs for a figure, or part of a study.
 
 Output: the records of the batch in the order of the requests, as JSON lines.  All numbers in them
-are dimensionless, except for times (s) and sizes of memory (byte) of trials and scaling.  Each is
-kept in the store as well, as soon as it is computed, in the folders that batches.FOLDERS lists.
+are dimensionless, except times (s) and memory (byte) of trials and scaling.  Each record is also
+stored as soon as it is computed, in the folders of batches.FOLDERS.
 """
 
 import json

@@ -1,6 +1,6 @@
 """Compile the solver's kernels into Numba's cache.
 
-Output: a text file that says that it was done.
+Output: a text file that marks the end of the compilation.
 """
 
 import microslip

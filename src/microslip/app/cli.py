@@ -1,4 +1,4 @@
-"""The command line: `microslip point MOTION ...` answers for one point, `sweep` for many."""
+"""The command line: `microslip point MOTION ...` solves one point, `microslip sweep` many."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ COMMANDS = {
     "fit": "coefficient of friction and u_lim from measured friction",
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
 }
-"""Commands with a module of their own in this package, and what they answer."""
+"""Commands with a module of their own in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."
 
 
-def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
-    """Parser of the command line, with all that follows the command `asked`."""
+def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
+    """Parser of the command line; the command `selected` has all of its options."""
     parser = option_parser.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
@@ -39,8 +39,8 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
         "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
         "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
         f"takes units.  {BORE}",
-        epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the answer could not be "
-        "written, 130 interrupted, 141 nobody reads the answer; those of sweep are Snakemake's.",
+        epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, "
+        "130 interrupted, 141 broken pipe.  sweep has those of Snakemake.",
     )
     parser.add_argument("--version", action="version", version=f"microslip {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -49,19 +49,19 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force over mu F_z at one point, with an error estimate. "
-        "The answer mu_macro is a ratio: 1 means that the vibration does nothing, 0 that it takes "
-        "all friction away; the coefficient of friction felt is mu_apparent = mu mu_macro.  "
+        "mu_macro is a ratio: 1 without an effect of the vibration, 0 without friction.  The "
+        "apparent coefficient of friction is mu_apparent = mu mu_macro.  "
         f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
-    commands.add_parser("gc", help="what no configuration asks for in a folder of results")
-    if asked == "point":
+    commands.add_parser("gc", help="list or remove results that no configuration requests")
+    if selected == "point":
         _add_motions(point)
     else:
         point.add_argument("motion", metavar="MOTION")
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, allow_abbrev=False)
-        if name == asked:
+        if name == selected:
             _module_of(name).fill(command)
     return parser
 
@@ -71,7 +71,7 @@ def _module_of(command: str) -> ModuleType:
 
 
 def _add_motions(parser: argparse.ArgumentParser) -> None:
-    """A parser for each motion; what they are is asked of the solver, so only where it counts."""
+    """Add a parser for each motion; imports the motions."""
     from microslip.motions.by_name import MOTIONS
 
     motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
@@ -84,15 +84,15 @@ def _add_motions(parser: argparse.ArgumentParser) -> None:
             name,
             help=record.summary,
             description=f"The indenter is {record.summary}. u_lim: the tangential displacement at "
-            "which the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves "
-            f"half of it sticking.{numbers}{spin}",
+            "which the whole contact slides; a: contact radius; phi_lk(a/2): the angle at which "
+            f"the stick radius is a/2.{numbers}{spin}",
             allow_abbrev=False,
         )
         motion.add_argument(
             "--velocity",
             metavar="V",
-            help=f"{record.velocity_label}; 0: v -> 0; below 0 if self-propelled; left out "
-            "under a force",
+            help=f"{record.velocity_label}; 0: v -> 0; below 0 if self-propelled; omit it with "
+            "--force",
         )
         if record.periodic:
             motion.add_argument(
@@ -105,46 +105,47 @@ F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
         "P",
-        "pulls in place of a velocity, over mu times the mean normal load; asks for the velocity",
+        "prescribed force in place of a velocity, over mu times the mean normal load; the "
+        "result is the velocity",
     ),
     "stiffness": ("K", f"of a spring whose far end has the velocity, over mu F_z / u_lim{F_Z}"),
-    "mass": ("M", f"of what the spring or the force pulls, over mu F_z / (u_lim omega^2){F_Z} (0)"),
+    "mass": ("M", f"of the body on the spring or force, over mu F_z / (u_lim omega^2){F_Z} (0)"),
     "damping": ("C", f"of a dashpot beside the spring, over mu F_z / (u_lim omega){F_Z} (0)"),
     "contacts": (
         "TEXT",
-        "of a body on several, such as 'phase=0;phase=180': load (1, over that of another), phase "
-        "in degrees (0) and amplitude (1, over A) of each",
+        "several contacts of one body, such as 'phase=0;phase=180': for each, load (1, relative to "
+        "the others), phase in degrees (0) and amplitude (1, over A)",
     ),
     "pressure": (
         "NAME",
         "hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded edge), "
         "ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a grid of "
-        "forward,lateral,pressure, CSV or netCDF, means over cells unless file:FILE,grid=samples "
-        "says values at points (hertz)",
+        "forward,lateral,pressure, CSV or netCDF: means over cells, or with "
+        "file:FILE,grid=samples values at points (hertz)",
     ),
     "poisson": ("NU", "Poisson's ratio, 0 to 0.5 (0)"),
     "model": (
         "NAME",
-        "auto (the cheapest that is right), rigid, slider, dahl, mdr, radial, polar or cartesian",
+        "auto (the cheapest valid model), rigid, slider, dahl, mdr, radial, polar or cartesian",
     ),
     "tolerance": (
         "T",
         "largest accepted error of mu_macro, absolute, or of the velocity under a force, relative "
-        "above 1 (1e-3); none, where cells and steps are imposed: whatever their error is",
+        "above 1 (1e-3); none: accept any error of imposed cells and steps",
     ),
     "cells": ("N", "impose N rings, or N x N squares (even, from 4 on)"),
     "steps": ("N", "impose N steps a period (even)"),
     "time-limit": (
         "SECONDS",
-        "give up after so long, looked at between two marches; the answer is not kept then",
+        "stop after this time, checked between two marches; the result is then not stored",
     ),
     "method": (
         "NAME",
-        "another way to compute it, for comparison: the name of a file in microslip/solver/methods",
+        "another numerical method, for comparison: a file name in microslip/solver/methods",
     ),
     "results": (
         "FOLDER",
-        "look the answer up in a folder of results, say of a sweep, and keep it there",
+        "look the result up in a folder of results, such as that of a sweep, and store it there",
     ),
 }
 DEFAULTS = {"pressure": "hertz", "poisson": "0", "model": "auto", "tolerance": "1e-3"}
@@ -174,13 +175,13 @@ def main(arguments: list[str] | None = None) -> int:
     Parameters
     ----------
     arguments : list of str, optional
-        Words after the name of the program.  Without them this process is the command: those that
-        it was started with count, and signals end it, see microslip.app.terminal.
+        Words after the name of the program.  By default those of this process, which signals then
+        end, see microslip.app.terminal.
 
     Returns
     -------
     int
-        0 converged, 1 not converged, 2 bad input; of `sweep` Snakemake's.
+        0 converged, 1 not converged, 2 bad input; the exit code of Snakemake for `sweep`.
     """
     if arguments is None:
         words = sys.argv[1:]
@@ -189,7 +190,7 @@ def main(arguments: list[str] | None = None) -> int:
         from microslip.app import leftovers
 
         return leftovers.main(arguments[1:])
-    if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
+    if arguments[:1] == ["sweep"]:  # all further words are for Snakemake
         from microslip.app import sweep_command
 
         return sweep_command.main(arguments[1:])
@@ -202,36 +203,36 @@ def main(arguments: list[str] | None = None) -> int:
     options = build_parser(next(iter(words), None)).parse_args(option_parser.joined(words))
     if options.command in COMMANDS:
         return _module_of(options.command).run(options)
-    named = f"microslip point {options.motion}"
+    command = f"microslip point {options.motion}"
     options.motion = motion
     try:
         with _bar() as bar:
             progress = None if bar is None else lambda resolution: _show(bar, resolution)
             result = _answer(options, progress)
     except InputError as error:
-        problem = error.renamed(*_as_given(options, error.argument))
+        problem = error.renamed(*_option_of(options, error.argument))
         missing = f"{problem.argument}: needed; {problem.allowed}"
-        terminal.complain(f"{named}: {missing if problem.value is None else problem}")
+        terminal.complain(f"{command}: {missing if problem.value is None else problem}")
         return 2
     except CacheError as error:
-        terminal.complain(f"{named}: --results: {error}")
+        terminal.complain(f"{command}: --results: {error}")
         return 2
     except ValueError as error:
-        terminal.complain(f"{named}: {error}")
+        terminal.complain(f"{command}: {error}")
         return 2
     if options.json:
         from microslip.sweeps.evaluate import plain
 
         print(json.dumps({"amplitude": None} | plain(result.to_dict())))
     else:
-        from microslip.app.point_text import as_text  # only now: it knows the models
+        from microslip.app.point_text import as_text  # late, since it imports the models
 
         print(as_text(result))
     return 0 if result.converged else 1
 
 
 def _problem_of_motion(words: list[str]) -> InputError | None:
-    """The InputError of a motion whose file cannot be used; None for all other words."""
+    """The InputError of a motion with a broken file; None for all other words."""
     from microslip.motions.by_name import BROKEN
 
     name = words[0].partition(":")[0] if words else ""
@@ -240,8 +241,11 @@ def _problem_of_motion(words: list[str]) -> InputError | None:
 
 
 def _split_motion(words: list[str]) -> tuple[list[str], str]:
-    """Words of `point` with the bare name of its motion, for which there is a parser, and the
-    motion with its numbers, such as elliptic:forward=0.5; other words and "" unchanged."""
+    """Words of `point` with the bare name of the motion, and the motion with its numbers.
+
+    The parser knows bare names, such as elliptic for elliptic:forward=0.5.  Words of other commands
+    are unchanged.
+    """
     if words[:1] != ["point"] or len(words) < 2:
         return words, ""
     from microslip.motions.by_name import MOTIONS
@@ -250,8 +254,8 @@ def _split_motion(words: list[str]) -> tuple[list[str], str]:
     return ["point", name if name in MOTIONS else words[1], *words[2:]], words[1]
 
 
-def _as_given(options: argparse.Namespace, argument: str) -> tuple[str, object]:
-    """Name of the option for an argument of `solve`, and its value on the command line."""
+def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]:
+    """Name of the option for an argument of `solve`, and its text on the command line."""
     if argument == "motion":
         return "MOTION", options.motion
     option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
@@ -260,10 +264,9 @@ def _as_given(options: argparse.Namespace, argument: str) -> tuple[str, object]:
 
 def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:
     """The result for the options; raises InputError and CacheError as microslip.solve_stored."""
-    typed = {name: getattr(options, name, None) for name in REALS}
-    given = {name: text for name, text in typed.items() if text is not None}
+    texts = {name: getattr(options, name, None) for name in REALS}
     numbers: dict[str, Any] = {
-        name: spec.read(name, text) for name, text in given.items() if text != "none"
+        name: spec.read(name, text) for name, text in texts.items() if text not in (None, "none")
     }
     numbers.setdefault("tolerance", None)
     if options.time_limit is not None:
@@ -272,10 +275,10 @@ def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] 
         text = getattr(options, name)
         numbers[name] = None if text is None else spec.read(name, text, whole=True)
     if options.results is not None and options.method != "shipped":
-        allowed = "allowed is shipped with --results, which keeps points of sweeps"
+        allowed = "allowed is shipped with --results, which stores points of sweeps"
         raise InputError("method", options.method, allowed)
     numbers.setdefault("velocity", None)
-    import microslip  # only now: --help and bad options need no solver
+    import microslip  # late: --help and bad options need no solver
 
     settings = {"motion": options.motion, "pressure": options.pressure, "model": options.model}
     settings |= numbers
@@ -287,7 +290,7 @@ def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] 
 
 
 def _bar() -> contextlib.AbstractContextManager[Any]:
-    """A line on standard error that counts the runs; None unless that is a terminal."""
+    """A progress line on standard error that counts the runs; None unless it is a terminal."""
     if not sys.stderr.isatty():
         return contextlib.nullcontext()
     from tqdm import tqdm

@@ -6,32 +6,24 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 from microslip.sweeps import batches
 from microslip.sweeps.batches import Batch
 from microslip.sweeps.store import Store
 
-TYPICAL = {
-    ("point", "transverse"): 0.005,
-    ("point", "bore"): 0.1,
-    ("point", "continuous-bore"): 0.025,
-    ("history", "transverse"): 0.02,
-    ("history", "continuous-bore"): 0.15,
-    ("field", "continuous-bore"): 0.025,
-    ("period", "transverse"): 0.02,
-    ("period", "bore"): 0.025,
-}
-"""CPU seconds of a request on one core, by kind and motion: means over the default configuration
-(tolerance 1e-3), measured by benchmarks/sweep_cost.py."""
-OTHER_MOTION = max(TYPICAL.values())
-"""CPU seconds of a point of any other motion: the most expensive of those that were measured."""
+TYPICAL = 0.025
+"""CPU seconds of a request on one core: mean over the default configuration at a tolerance of 1e-3,
+measured by benchmarks/sweep_cost.py."""
+QUICK = ("point", "history", "field", "period")
+"""Kinds of requests that TYPICAL applies to."""
 START = 2.3
 """CPU seconds that a job takes besides solving, measured by benchmarks/first_run.py."""
 COMPILE = 50.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
-"""Line in the log of a batch with the time that it took."""
+"""Line in the log of a batch with its CPU time."""
 
 
 def summary(
@@ -44,83 +36,49 @@ def summary(
     jobs : iterable of (str, Batch or None)
         Group and batch of each job that solves; None for a certified map.
     folder : path
-        Folder of results.  Requests that its store answers are not counted; logs in it say how long
-        earlier points of a group took.
+        Folder of results.  Requests with a result in its store are not counted.  Its logs have the
+        times of earlier batches of a group.
     cores : int
-        Jobs at a time.
+        Number of jobs at a time.
     compiles : bool
         Whether the run compiles the solver.
     """
-    store, times, number = Store(folder), _Times(Path(folder)), Counter(points=0)
-    seconds: list[float] = []
-    unknown: Counter[str] = Counter()
-    maps = False
+    store, mean_time = Store(folder), cache(lambda group: _mean_time(Path(folder), group))
+    count, untimed, maps, seconds = Counter(points=0), 0, False, [0.0]
     for group, batch in jobs:
-        job = START
         maps = maps or batch is None
-        for request in batch.requests if batch else ():
-            if store.path(batches.group(request), batches.key_of(request)).exists():
-                continue
-            number["points" if request["kind"] == "point" else "other runs"] += 1
-            took = times.of(group, request)
-            if took is None:
-                unknown[group] += 1
-            else:
-                job += took
-        seconds.append(job)
-    parts = [f"{count:,} {_noun(what, count)}" for what, count in number.items() if count]
-    lines = [f"To solve: {' and '.join(parts) or 'no points'}."]
-    if number.total() > unknown.total():
-        solving = _words(max(sum(seconds) / cores, *seconds))
-        cautious = "at least" if unknown else "about"
-        lines[0] = f"{lines[0][:-1]}, {cautious} {solving} on {cores} {_noun('cores', cores)}."
-        lines.append(f"The time is derived from {times.sources()}.")
-    if unknown:
-        groups = ", ".join(f"{count:,} of {group}" for group, count in unknown.items())
-        lines.append(f"There is no time yet for some other runs: {groups}.")
-    if maps:
-        found = "To solve besides" if number.total() else "To solve"
-        chosen = "round by round, so their number is known at the end"
-        lines = lines if number.total() else []
-        lines.append(f"{found}: the points of certified maps, which are chosen {chosen}.")
-    if compiles:
-        compiling = _words(COMPILE / min(cores, 2))
-        lines.append(
-            f"Compiling the solver comes first: about {compiling}, unless it was compiled."
+        kinds = Counter(
+            request["kind"]
+            for request in (batch.requests if batch else ())
+            if not store.path(batches.group(request), batches.key_of(request)).exists()
         )
+        count.update({"points": kinds["point"], "other runs": kinds.total() - kinds["point"]})
+        recorded = mean_time(group)
+        timed = kinds.total() if recorded else sum(kinds[kind] for kind in QUICK)
+        untimed += kinds.total() - timed
+        seconds.append(START + timed * (recorded or TYPICAL))
+    parts = [f"{number:,} {_noun(what, number)}" for what, number in count.items() if number]
+    lines = [f"To solve: {' and '.join(parts) or 'no points'}."]
+    if parts:
+        time = _words(max(sum(seconds) / cores, *seconds))
+        bound = "at least" if untimed else "about"
+        lines = [f"{lines[0][:-1]}, {bound} {time} on {cores} {_noun('cores', cores)}."]
+    if maps:
+        lines = lines if parts else []
+        lines.append("To solve: the points of certified maps. Their number depends on the results.")
+    if compiles:
+        time = _words(COMPILE / min(cores, 2))
+        lines.append(f"Compiling the solver comes first: about {time}, unless it was compiled.")
     return lines
 
 
-class _Times:
-    """CPU seconds of requests: the mean of their group in the logs, else a typical value."""
-
-    def __init__(self, folder: Path):
-        self.folder = folder
-        self.recorded: dict[str, float | None] = {}
-        self.used: set[str] = set()
-
-    def of(self, group: str, request: dict) -> float | None:
-        """CPU seconds, None if they are not known."""
-        if group not in self.recorded:
-            self.recorded[group] = self._in_logs(group)
-        if self.recorded[group] is not None:
-            self.used.add("earlier batches in this folder")
-            return self.recorded[group]
-        kind, motion = request["kind"], request.get("motion", "").partition(":")[0]
-        found = TYPICAL.get((kind, motion), OTHER_MOTION if kind == "point" else None)
-        if found is not None:
-            self.used.add("typical values at a tolerance of 1e-3 (benchmarks/sweep_cost.py)")
-        return found
-
-    def sources(self) -> str:
-        return " and ".join(sorted(self.used))
-
-    def _in_logs(self, group: str) -> float | None:
-        points, seconds = 0, 0.0
-        for path in (self.folder / "logs" / "solve" / group).glob("*.log"):
-            for count, took in SOLVED.findall(path.read_text("utf-8", errors="replace")):
-                points, seconds = points + int(count), seconds + float(took)
-        return seconds / points if points else None
+def _mean_time(folder: Path, group: str) -> float | None:
+    """Mean CPU seconds of the requests of a group in the logs of its batches; None without logs."""
+    logs = (folder / "logs" / "solve" / group).glob("*.log")
+    texts = [path.read_text("utf-8", errors="replace") for path in logs]
+    times = [(int(count), float(time)) for text in texts for count, time in SOLVED.findall(text)]
+    points, seconds = map(sum, zip((0, 0.0), *times, strict=True))
+    return seconds / points if points else None
 
 
 def _noun(plural: str, count: int) -> str:

@@ -10,45 +10,50 @@ from microslip.report.figures import drawing
 from microslip.studies import registry
 
 TARGETS = {
-    "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
-    "extended": "the same of other motions and pressures, its key extended",
-    "drives": "datasets of contacts that a force or a spring pulls, its key drives",
-    "certified": "maps with an error that holds everywhere, of the sweeps that say adaptive",
-    "accuracy": "what accuracy costs, for all models and methods",
-    "stability": "where methods fail",
-    "claims": "what the paper says, judged",
-    "propulsion": "what self-propelled motions pull with, from stall to no load",
-    "explorer": "one page that shows what is behind every point of the maps",
-    "explorer_all": "the same page with every other sweep of the configuration",
+    "all": "the datasets and figures of the configuration's sweeps (default)",
+    "extended": "datasets and figures of other motions and pressures (key extended)",
+    "drives": "datasets and figures of contacts pulled by a force or a spring (key drives)",
+    "certified": "maps with an error bound between the points, of the sweeps with the key adaptive",
+    "accuracy": "accuracy and cost of all models and methods",
+    "stability": "conditions under which methods fail",
+    "claims": "checks of the claims of the paper",
+    "propulsion": "force of self-propelled motions, from stall to no load",
+    "explorer": "interactive page of the maps, with a period behind each point",
+    "explorer_all": "the same page with all other sweeps of the configuration",
 }
-"""Targets of the workflow that users need, and what each makes."""
+"""Targets of the workflow for users, and the products of each."""
 
 
 def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
-    """Figures that there is data for, and the names of the datasets of each."""
-    known = _datasets(configuration)
-    found = {
+    """Figures with data in the configuration, and the names of the datasets of each."""
+    datasets = _datasets(configuration)
+    figures = {
         figure: names
         for figure, names in drawing.FIGURES.items()
-        if known >= set(names) and _is_drawable(figure, names, configuration)
+        if datasets >= set(names) and _is_drawable(figure, names, configuration)
     }
-    found |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
-    return found | {name: (name,) for name in configuration.certified}
+    figures |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
+    return figures | {name: (name,) for name in configuration.certified}
 
 
 def _datasets(configuration: Configuration) -> set[str]:
-    """Datasets that figures with names of their own are drawn from."""
+    """Names of the datasets of all figures except those of groups and certified maps."""
     return {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
 
 
 def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
-    """Whether there is enough of a map for the figures that show maps, and whether what is compared
-    is of the same amplitude and velocity."""
+    """True if the datasets of a figure suffice.
+
+    A figure of a map needs several velocities and amplitudes.  A comparison needs datasets with
+    the same amplitude and velocity.
+    """
     if figure == "drives":
-        moved, *pulled, body = (configuration.grids[name] for name in names)
-        same = {grid.amplitude for grid in (*pulled, body)} == {body.amplitude}
+        reference, *drives, body = (configuration.grids[name] for name in names)
+        same = {grid.amplitude for grid in (*drives, body)} == {body.amplitude}
         return (
-            same and _has(moved.amplitude, body.amplitude) and _has(moved.velocity, body.velocity)
+            same
+            and _has(reference.amplitude, body.amplitude)
+            and _has(reference.velocity, body.velocity)
         )
     if figure == "pairs":
         return len({configuration.grids[name].amplitude for name in names}) == 1
@@ -61,29 +66,19 @@ def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configurati
     return few or figure != "poisson"
 
 
-def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
-    """Whether one value is wanted, and an axis has it but for rounding."""
-    if axis is None or wanted is None:
+def _has(axis: Sequence[float] | None, values: Sequence[float] | None) -> bool:
+    """True if `values` has one value, and an axis has it up to rounding."""
+    if axis is None or values is None:
         return False
-    return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)
-
-
-def targets_of(configuration: Configuration) -> dict[str, str]:
-    """Figures by the names of their targets: their own names, and fig1 to fig6.
-
-    Figures that the configuration has no data for are among them, see `why_no_figure`.
-    """
-    figures = (*drawing.FIGURES, *drawable(configuration))
-    names = {name: name for name in figures} | drawing.SHORT_NAMES
-    return {name: figure for name, figure in names.items() if name not in TARGETS}
+    return len(values) == 1 and any(math.isclose(value, values[0]) for value in axis)
 
 
 def why_no_figure(configuration: Configuration, figure: str) -> str:
-    """Why a configuration leads to no such figure, a key of drawing.FIGURES, in one line."""
+    """The reason why a figure, a key of drawing.FIGURES, has no data in a configuration."""
     names = drawing.FIGURES[figure]
     missing = [name for name in names if name not in _datasets(configuration)]
     if missing:
-        return f"{figure} needs the sweep {missing[0]}, which the configuration has not"
+        return f"{figure} needs the sweep {missing[0]}, which the configuration does not have"
     return (
         f"{figure} cannot be drawn from {' and '.join(names)}: a map needs several velocities and "
         "amplitudes, and some figures need equal or several values of other axes"
@@ -91,7 +86,7 @@ def why_no_figure(configuration: Configuration, figure: str) -> str:
 
 
 def heading_of(configuration: Configuration, dataset: str) -> str:
-    """Heading, in the report of a run, of the figures that are drawn from a dataset first."""
+    """Heading in the report of a run of the figures whose first dataset this is."""
     headings = {
         "The paper's figures": configuration.sweeps,
         "Other motions and pressures": configuration.extended,

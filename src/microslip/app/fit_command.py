@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     from microslip.si.fitting.fitted import Fit
 
 OPTIONS = {
-    "speed": ("V", "forward speed of all rows, such as '1 mm/s', if it is no column"),
-    "amplitude": ("A", "half stroke of all rows, such as '1 um', or an angle for bore, likewise"),
-    "frequency": ("F", "frequency of all rows, such as '20 kHz', likewise"),
-    "load": ("L", "normal load of all rows, such as '10 N', likewise"),
-    "nu": ("NU", "Poisson's ratio of what gives way (0, or that of the map)"),
-    "radius": ("R", "of relative curvature, such as '5 mm': finds the shear modulus, too"),
-    "counterbody": ("BODY", "beside a radius: rigid (if not given) or same"),
-    "map": ("FILE", "dataset of a sweep of this motion, which answers in place of the solver"),
-    "confidence": ("P", "of the intervals (0.95)"),
-    "tolerance": ("T", "largest accepted error of mu_macro where the solver answers (1e-3)"),
+    "speed": ("V", "forward speed of all rows, such as '1 mm/s', in place of a column"),
+    "amplitude": ("A", "half stroke of all rows, such as '1 um'; an angle for bore"),
+    "frequency": ("F", "frequency of all rows, such as '20 kHz'"),
+    "load": ("L", "normal load of all rows, such as '10 N'"),
+    "nu": ("NU", "Poisson's ratio of the elastic body (0, or that of the map)"),
+    "radius": ("R", "radius of relative curvature, such as '5 mm', to fit the shear modulus"),
+    "counterbody": ("BODY", "with a radius: rigid (default) or same"),
+    "map": ("FILE", "dataset of a sweep of this motion, in place of the solver"),
+    "confidence": ("P", "confidence level of the intervals (0.95)"),
+    "tolerance": ("T", "largest accepted error of mu_macro of the solver (1e-3)"),
     "decimal": ("MARK", "the decimal mark of the table, a point or a comma (.)"),
     "encoding": ("NAME", "the encoding of the table, such as cp1252 (utf-8)"),
-    "figure": ("FILE", "draws measured and fitted friction into this .png or .pdf"),
-    "output": ("FILE", "writes rows, fitted friction and residuals into this .nc"),
+    "figure": ("FILE", "figure of measured and fitted friction, .png or .pdf"),
+    "output": ("FILE", "dataset of rows, fitted friction and residuals, .nc"),
 }
 FILES = ("map", "figure", "output")
 
@@ -41,15 +41,15 @@ FILES = ("map", "figure", "output")
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the description and the arguments of `fit` to its parser."""
     parser.description = (
-        "The coefficient of friction without vibration, and the displacement u_lim "
-        "that lets the whole contact slide, or the shear modulus, from friction that was measured "
-        "under vibration.  A row of the CSV file is a measurement; its heading names columns with "
+        "The coefficient of friction without vibration, and the displacement u_lim at "
+        "which the whole contact slides, or the shear modulus, from friction measured "
+        "under vibration.  A row of the CSV file is a measurement.  Its heading names columns with "
         "their units: some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; friction "
         "[N] or mu; friction_error [N] or mu_error."
     )
     parser.epilog = (
-        "Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
-        "were left out, 2 bad input, or rows that tell neither."
+        "Exit codes: 0 both numbers determined, 1 mu alone, or unreadable lines were left out, "
+        "2 bad input, or rows that determine neither number."
     )
     motions = ", ".join(UNIT_OF_AMPLITUDE)
     parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
@@ -59,7 +59,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
+    """Run the command; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
     titles = {"motion": "MOTION", "measured": "CSV"}
     return respond("microslip fit", options, _answer, titles)
 
@@ -71,12 +71,12 @@ def _answer(options: argparse.Namespace) -> Answer:
     arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
     if options.map is not None:
         arguments["map"] = _opened(options.map)
-    found = fit(options.motion, options.measured, **arguments)
-    _write(found, options)
-    for text in found.left_out:
+    result = fit(options.motion, options.measured, **arguments)
+    _write(result, options)
+    for text in result.left_out:
         complain(f"microslip fit: {format_as_options(text)}; left out")
-    complete = len(found.told) == 2 and not found.left_out
-    return Answer(found.to_dict(), _as_text(found), complete)
+    complete = len(result.told) == 2 and not result.left_out
+    return Answer(result.to_dict(), _as_text(result), complete)
 
 
 def _opened(path: str) -> xr.Dataset:
@@ -91,7 +91,7 @@ def _opened(path: str) -> xr.Dataset:
 
 
 def _refuse_endings(options: argparse.Namespace) -> None:
-    """Before the answer is computed, and not after."""
+    """Raise InputError for an output file with an unknown ending."""
     for name, endings in (("figure", (".png", ".pdf")), ("output", (".nc",))):
         path = getattr(options, name)
         if path is not None and Path(path).suffix.lower() not in endings:
@@ -102,10 +102,10 @@ def _refuse_endings(options: argparse.Namespace) -> None:
         raise InputError("figure", options.figure, lacking)
 
 
-def _write(found: Fit, options: argparse.Namespace) -> None:
+def _write(result: Fit, options: argparse.Namespace) -> None:
     if not (options.figure or options.output):
         return
-    dataset = found.to_xarray()
+    dataset = result.to_xarray()
     if options.output:
         from microslip.foundation.files import writing_beside
 
@@ -117,34 +117,34 @@ def _write(found: Fit, options: argparse.Namespace) -> None:
         save(draw("fit", {"fit": dataset}), options.figure)
 
 
-def _as_text(found: Fit) -> str:
-    friction = found.quantity == "friction"
+def _as_text(result: Fit) -> str:
+    friction = result.quantity == "friction"
     name = "the friction force" if friction else "the coefficient of friction"
-    load = in_unit(found.load_N, 0.0, force_unit(found.load_N))
-    lines = [line(name.replace("_", " "), text) for name, text in found.understood.items()]
-    lines += [line("rows", f"{len(found.measured)}, of {name}; mean load {load}"), ""]
-    lines.append(line("mu", _interval(found.mu, found.mu_low, found.mu_high, "")))
-    u_lim = found.u_lim_m, found.u_lim_low_m, found.u_lim_high_m
-    modulus = found.shear_modulus_Pa, found.shear_modulus_low_Pa, found.shear_modulus_high_Pa
+    load = in_unit(result.load_N, 0.0, force_unit(result.load_N))
+    lines = [line(name.replace("_", " "), text) for name, text in result.understood.items()]
+    lines += [line("rows", f"{len(result.measured)}, of {name}; mean load {load}"), ""]
+    lines.append(line("mu", _interval(result.mu, result.mu_low, result.mu_high, "")))
+    u_lim = result.u_lim_m, result.u_lim_low_m, result.u_lim_high_m
+    modulus = result.shear_modulus_Pa, result.shear_modulus_low_Pa, result.shear_modulus_high_Pa
     for title, parts, unit in (("u_lim", u_lim, "m"), ("shear modulus", modulus, "Pa")):
         if parts[0] is not None:
             lines.append(line(title, _interval(*parts, unit)))
-    shares = {found.told[-1]: found.scale_model_share, "mu": found.mu_model_share}
+    shares = {result.told[-1]: result.scale_model_share, "mu": result.mu_model_share}
     model = ", ".join(
-        f"of {name.replace('_', ' ')} {_digits(100.0 * shares[name], 2)} %" for name in found.told
+        f"of {name.replace('_', ' ')} {_digits(100.0 * shares[name], 2)} %" for name in result.told
     )
-    share = f"{100.0 * found.confidence:g} %, and what the model may be off: {model}"
+    share = f"{100.0 * result.confidence:g} %, and what the model may be off: {model}"
     lines.append(line("intervals", share))
-    if found.standard_error is not None:
-        scatter = _scaled(found.standard_error, "N" if friction else "")
+    if result.standard_error is not None:
+        scatter = _scaled(result.standard_error, "N" if friction else "")
         lines.append(line("scatter", f"{scatter} a row"))
     else:
-        chance = "" if found.p_value is None else f", p = {found.p_value:.2g}"
-        text = f"{found.chi_square:.3g} for {found.degrees_of_freedom} degrees of freedom{chance}"
+        chance = "" if result.p_value is None else f", p = {result.p_value:.2g}"
+        text = f"{result.chi_square:.3g} for {result.degrees_of_freedom} degrees of freedom{chance}"
         lines.append(line("chi square", text))
-    if found.reason:
-        lines.append(f"NOT TOLD: {found.reason}")
-    return "\n".join(lines + [f"warning: {text}" for text in found.warnings])
+    if result.reason:
+        lines.append(f"NOT TOLD: {result.reason}")
+    return "\n".join(lines + [f"warning: {text}" for text in result.warnings])
 
 
 def _interval(value: float | None, low: float | None, high: float | None, unit: str) -> str:
@@ -152,11 +152,11 @@ def _interval(value: float | None, low: float | None, high: float | None, unit: 
 
 
 def _scaled(value: float | None, unit: str) -> str:
-    """A value in the unit that suits it."""
+    """A value with a suitable prefix of its unit."""
     name, size = prefixed(value, unit) if unit and value else (unit, 1.0)
     return f"{_digits((value or 0.0) / size, 4)} {name}".strip()
 
 
 def _digits(value: float, count: int) -> str:
-    """A number with so many significant digits, zeros at its end included."""
+    """A number with `count` significant digits, including zeros at the end."""
     return f"{value:#.{count}g}".rstrip(".") if value else "0"

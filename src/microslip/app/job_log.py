@@ -1,4 +1,4 @@
-"""The log of a job of the workflow, and one clear message on failure."""
+"""The log of a job of the workflow, and its message on failure."""
 
 import gc
 import logging
@@ -12,12 +12,12 @@ from microslip.foundation.files import advice
 
 
 class _LogFile(logging.FileHandler):
-    """A log that keeps what the system has against writing it, and raises nothing."""
+    """A log file that stores an error of the system as `problem` instead of raising it."""
 
     problem: OSError | None = None
 
     def handleError(self, record: logging.LogRecord) -> None:
-        # What could not be written is tried again with the next message, and on closing.
+        # The next message, or closing the file, writes the rest.
         if not isinstance(sys.exc_info()[1], OSError):
             super().handleError(record)
 
@@ -32,8 +32,8 @@ class _LogFile(logging.FileHandler):
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
     """Context of a job: yields a logger that writes to the file `path`.
 
-    Messages from the level `shown` on go to standard error too. An error goes to the log in full;
-    one that the user can mend ends the process with its message alone.
+    Messages of at least the level `shown` also go to standard error.  An error ends the process
+    with exit code 1.  The log has its traceback; errors with a remedy are one line instead.
     """
     try:
         file = _LogFile(path, mode="w", encoding="utf-8")
@@ -63,11 +63,10 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         for handler in handlers:
             log.removeHandler(handler)
             handler.close()
-        # The process is about to end: searching all that its libraries made for garbage once more
-        # would take it a quarter of a second.
+        # The process is about to end: a last garbage collection would take a quarter of a second.
         gc.freeze()
     if failed:
         sys.exit(1)
-    # A log that is cut short would leave out points that did not converge.
+    # An incomplete log might lack points that did not converge.
     if file.problem is not None:
         sys.exit(f"Error: {advice('write', path, file.problem)}")

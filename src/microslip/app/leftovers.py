@@ -1,9 +1,8 @@
-"""`microslip gc`: what is in a folder of results that no configuration asks for any more.
+"""`microslip gc`: list and remove files in a folder of results that no configuration requests.
 
 After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
-stay where they are: another configuration may ask for them.  This lists them, and removes them if
-told to.  Only files that the workflow names or stamps are looked at; all else in a folder is
-somebody's own.
+stay in the folder, since another configuration may request them.  Only files that the workflow
+names or stamps count: all other files belong to the user.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from microslip.app.option_parser import OneLineParser
@@ -27,58 +27,40 @@ RECORD = re.compile(r"[0-9a-f]{64}\.json")
 BATCH = re.compile(r"[0-9a-f]{20}\.jsonl")
 DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
+PLACES = {".": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
+"""Folders that hold the files of a product, by the folder of its stamp."""
 
 
-def asked_for(plan: Plan, folder: Path) -> set[str]:
-    """Paths, inside the folder of results, of all that a plan would make.
+def requested(plan: Plan, folder: Path) -> set[str]:
+    """Paths, inside the folder of results, of all files that a plan makes.
 
-    The points of a certified map are those in its batch.  Where that is not there or damaged, all
-    points of the motion count as requested.
+    The points of a certified map are those in its batch.  Where the batch is missing or damaged,
+    all points of the motion count as requested.
     """
     certified = plan.configuration.certified
-    found = {file for product in plan.products.values() for file in product.files}
-    found |= {stamps.stamp_of(product) for product in plan.products}
-    found |= {*plan.batch_files(*plan.groups, *certified)}
-    requests = (
-        r for group in plan.groups for b in plan.batches_in(group).values() for r in b.requests
-    )
-    found |= {_path_of(request) for request in requests}
+    paths = {file for product in plan.products.values() for file in product.files}
+    paths |= {stamps.stamp_of(product) for product in plan.products}
+    paths |= {*plan.batch_files(*plan.groups, *certified)}
+    cut = [batch for group in plan.groups for batch in plan.batches_in(group).values()]
+    paths |= {_path_of(request) for batch in cut for request in batch.requests}
     for name, map_ in certified.items():
         (file,) = plan.batch_files(name)
         try:
-            found |= {_path_of(record["request"]) for record in store.read(folder / file)}
+            paths |= {_path_of(record["request"]) for record in store.read(folder / file)}
         except CacheError:
             motion = solver_names(map_.sweep)[0].partition(":")[0]
             group = f"{batches.FOLDERS['point']}/{motion}"
             complain(f"{folder / file} is missing or damaged; all files in {group} are kept")
-            found |= {p.relative_to(folder).as_posix() for p in (folder / group).rglob("*.json")}
-    return found
+            paths |= {p.relative_to(folder).as_posix() for p in (folder / group).rglob("*.json")}
+    return paths
 
 
 def _path_of(request: dict) -> str:
     return store.Store(".").path(batches.group(request), batches.key_of(request)).as_posix()
 
 
-def present(folder: Path) -> Iterator[tuple[str, Path]]:
-    """(kind of KINDS, path) of every file in a folder of results that a run has made.
-
-    A folder under the name of a file belongs to the user, and so do links and all that lies behind
-    one: it may be outside the folder of results.
-    """
-    for kind, path in _named(folder):
-        if path.is_file() and not any(part.is_symlink() for part in (path, *_above(path, folder))):
-            yield kind, path
-
-
-def _above(path: Path, folder: Path) -> Iterator[Path]:
-    """Folders that a path lies in, below a folder of results, the innermost first."""
-    for parent in path.parents:
-        if parent == folder:
-            return
-        yield parent
-
-
 def _named(folder: Path) -> Iterator[tuple[str, Path]]:
+    """(kind of KINDS, path) of everything in a folder of results that has the name of a result."""
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -88,36 +70,38 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
             yield KINDS[1], path
     for stamp in sorted((folder / stamps.FOLDER).rglob("*.json")):
         yield KINDS[2], stamp
-        places = {"": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
-        inner = stamp.parent.relative_to(folder / stamps.FOLDER).as_posix().strip(".")
-        for place in places.get(inner, ()):
+        inner = stamp.parent.relative_to(folder / stamps.FOLDER).as_posix()
+        for place in PLACES.get(inner, ()):
             for name in stamps.read(stamp).get("sums", ()):
-                if Path(name).name == name and (folder / place / name).exists():
+                if Path(name).name == name:
                     yield KINDS[2], folder / place / name
 
 
 def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
-    """Files in a folder of results that none of the plans asks for, by their kind."""
-    wanted = {file for plan in plans for file in asked_for(plan, folder)}
-    found: dict[str, list[Path]] = {kind: [] for kind in KINDS}
-    for kind, path in present(folder):
-        if path.relative_to(folder).as_posix() not in wanted:
-            found[kind].append(path)
-    return found
+    """Files in a folder of results that none of the plans requests, by their kind.
+
+    Links, files behind links and folders with the name of a file belong to the user.
+    """
+    needed = {file for plan in plans for file in requested(plan, folder)}
+    paths: dict[str, list[Path]] = {kind: [] for kind in KINDS}
+    for kind, path in _named(folder):
+        inner = path.relative_to(folder)
+        is_own = path.is_file() and path.resolve() == folder.resolve() / inner
+        if is_own and inner.as_posix() not in needed:
+            paths[kind].append(path)
+    return paths
 
 
 def remove(paths: Iterable[Path], folder: Path) -> None:
-    """Remove files of a folder of results, and folders inside it that are empty then."""
+    """Remove files of a folder of results, and the folders inside it that become empty."""
     for path in paths:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
             raise CacheError(files.advice("remove", path, error)) from error
-        for inner in _above(path, folder):
-            try:
-                inner.rmdir()
-            except OSError:  # it is not empty
-                break
+        for inner in list(path.relative_to(folder).parents)[:-1]:
+            with suppress(OSError):  # it is not empty
+                (folder / inner).rmdir()
 
 
 def main(arguments: list[str]) -> int:
@@ -129,10 +113,16 @@ def main(arguments: list[str]) -> int:
         files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
-        found = left_over(folder, map(Plan, configurations))
-        _say(found, folder, options.delete, options.list)
+        remaining = left_over(folder, map(Plan, configurations))
+        for kind, paths in remaining.items():
+            size = sum(path.stat().st_size for path in paths) / 1e6
+            print(f"{folder}: {len(paths)} {kind} that no configuration requests, {size:.1f} MB")
+            for path in paths if options.list else ():
+                print(f"  {path}")
+        if any(remaining.values()):
+            print("removed" if options.delete else "nothing is removed without --delete")
         if options.delete:
-            remove((path for paths in found.values() for path in paths), folder)
+            remove((path for paths in remaining.values() for path in paths), folder)
     except (ConfigError, CacheError) as error:
         complain(f"microslip gc: {error}")
         return 2
@@ -147,41 +137,28 @@ def _loaded(path: str) -> Configuration:
 
 
 def _folder(configurations: list[Configuration]) -> Path:
-    """The one folder of results that they all have, however its path is written."""
-    folders = {
-        os.path.realpath(configuration.results): Path(configuration.results)
-        for configuration in configurations
-    }
+    """The folder of results that all configurations share; raises ConfigError for several."""
+    folders = {os.path.realpath(each.results): Path(each.results) for each in configurations}
     if len(folders) > 1:
         names = ", ".join(sorted(map(str, folders.values())))
         raise ConfigError(f"results: {names} are several folders; allowed: configurations of one")
     return next(iter(folders.values()))
 
 
-def _say(found: dict[str, list[Path]], folder: Path, deletes: bool, lists: bool) -> None:
-    for kind, paths in found.items():
-        size = sum(path.stat().st_size for path in paths) / 1e6
-        print(f"{folder}: {len(paths)} {kind} that nothing asks for, {size:.1f} MB")
-        for path in paths if lists else ():
-            print(f"  {path}")
-    if any(found.values()):
-        print("removed" if deletes else "nothing is removed without --delete")
-
-
 def _parser() -> OneLineParser:
     parser = OneLineParser(
         prog="microslip gc",
         description="List points, batches, datasets and figures in a folder of results that none "
-        "of the configurations asks for, with this version of the solver. Points that only the "
-        "command line or solve_stored has kept there are among them.",
+        "of the configurations requests, with this version of the solver. This includes "
+        "points that the command line or solve_stored has stored there.",
         allow_abbrev=False,
     )
     parser.add_argument(
         "--configfile",
         nargs="+",
-        action="extend",  # of an option given twice none may be forgotten: its results would go
+        action="extend",  # a repeated option adds files, so that no results are lost
         metavar="FILE",
-        help="configurations whose results are to stay (config/config.yaml)",
+        help="configurations whose results stay (config/config.yaml)",
     )
     parser.add_argument("--list", action="store_true", help="list every file")
     parser.add_argument("--delete", action="store_true", help="remove them")

@@ -1,4 +1,4 @@
-"""Parsing of command lines: what is wrong with one is one line on standard error, exit code 2."""
+"""Parsing of command lines: bad input gives one line on standard error and exit code 2."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SYNONYMS = {
     "--speed": "--velocity",
     "--velocity": "--speed",
 }
-"""Options of one command under the names that the other has for the same quantity."""
+"""Names of the same quantity in two commands."""
 
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
-"""How a word begins that is a negative number, or meant to be one, and no option."""
+"""Beginning of a word that is a negative number and not an option."""
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Bad input gets one line on standard error and exit code 2."""
+    """Argument parser that reports bad input by one line on standard error and exit code 2."""
 
     def error(self, message: str) -> NoReturn:
         if message.startswith("unrecognized arguments"):
@@ -32,7 +32,7 @@ class OneLineParser(argparse.ArgumentParser):
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
-    def parse_known_args(  # type: ignore[override]  # which has an overload for every namespace
+    def parse_known_args(  # type: ignore[override]  # overloaded for every namespace
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple:
         args = sys.argv[1:] if args is None else args
@@ -40,7 +40,7 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
     def _refuse_strange_words(self, words: Sequence[str]) -> None:
-        """Before argparse does, which would rather say that the right one is missing."""
+        """Refuse unknown words before argparse does, whose message would name a missing one."""
         known = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
         named: dict[str, list[str]] = {}
@@ -58,9 +58,9 @@ class OneLineParser(argparse.ArgumentParser):
             self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices or ())}")
 
     def _refuse_second(self, name: str, names: list[str]) -> None:
-        """argparse would take the last of two values; names: those that an option has had so far.
+        """Refuse a second value of an option, except of flags and options with several values.
 
-        A flag says the same twice, and what appends has a use for each.
+        names: names under which the option has occurred so far.
         """
         action = self._option_string_actions[name]
         names.append(name)
@@ -81,23 +81,23 @@ class OneLineParser(argparse.ArgumentParser):
         self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
-def _hint(given: str, known: Iterable[str]) -> str:
-    """'did you mean this? ' if one of the known names is like what is given, else ''."""
-    synonym = [name for name in [SYNONYMS.get(given)] if name is not None and name in known]
-    near = synonym or difflib.get_close_matches(given, known, n=1)
+def _hint(name: str, known: Iterable[str]) -> str:
+    """'did you mean NAME? ' for the most similar known name, '' if there is none."""
+    synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in known]
+    near = synonym or difflib.get_close_matches(name, known, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
 def option(argument: str) -> str:
-    """The option of an argument of Python, such as --contact-radius."""
+    """Option of a Python argument: --contact-radius for contact_radius."""
     return f"--{argument.replace('_', '-')}"
 
 
 def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
-    """A message with options in place of arguments of Python.
+    """A message with options in place of Python arguments.
 
-    These are --decimal and --encoding of a CSV file, and the options of those of the arguments
-    whose names have several words: others may be words of the text.
+    It replaces decimal and encoding of a CSV file, and arguments whose names have several words:
+    one word may also be an ordinary word of the text.
     """
     text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
     names = "|".join(name for name in arguments if "_" in name)
@@ -107,7 +107,7 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class Said(argparse.Action):
-    """Keeps a value, and by which of its names the option was called."""
+    """Action that stores a value, and the name by which the option was called."""
 
     def __call__(
         self,
@@ -121,8 +121,10 @@ class Said(argparse.Action):
 
 
 def joined(arguments: list[str]) -> list[str]:
-    """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
-    option."""
+    """Arguments with each negative number joined to its option, as in --velocity=-1e-3.
+
+    argparse would take the number for an option.
+    """
     out: list[str] = []
     for word in arguments:
         if NEGATIVE.match(word) and out and out[-1].startswith("--") and "=" not in out[-1]:

@@ -1,32 +1,35 @@
-"""Plan of a configuration: batches of requests, products, and what each product is made of.
+"""Plan of a configuration: batches of requests, products, and the inputs of each product.
 
-The workflow's rules use it; nothing here depends on Snakemake.  Importing it is cheap, since the
-workflow is parsed by every process that Snakemake starts.
+The rules of the workflow use it.  It does not depend on Snakemake, and its import is cheap, since
+every process of Snakemake parses the workflow.
 
 A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
-explorer ("pages/explorer").  A group of batches is named like the sweep, the study or the certified
-map that it answers, or "bore_histories" for the single runs in a dataset and "bore_periods" for the
-explorer.
+explorer ("pages/explorer").  A group of batches has the name of a sweep, study or certified map.
+The group "bore_histories" holds the single runs in a dataset, "bore_periods" those of the explorer.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache, cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from microslip.app import figure_targets
-from microslip.config.records import Configuration
+from microslip.app.job_log import job_log
+from microslip.config import load
+from microslip.config.records import ConfigError, Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
-from microslip.sweeps import batches
+from microslip.sweeps import batches, stamps
 from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make the dataset of a sweep and its page, besides those that they import."""
+"""Modules that make the dataset of a sweep and its page, without their imports."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
@@ -35,18 +38,18 @@ REFINEMENT_CODE = ("sweeps/map_refinement.py",)
 
 
 class Product(NamedTuple):
-    """What a job makes from batches or datasets.
+    """Files that a job makes from batches or datasets.
 
     Attributes
     ----------
     files : list of str
-        Its files in the folder of results.
+        Paths inside the folder of results.
     code : tuple of str
-        Modules that make it, besides those that they import.
+        Modules that make the product, without their imports.
     datasets, groups : sequence of str
-        Names of the datasets and of the groups of batches that it is made of.
+        Names of the datasets and of the groups of batches that are the inputs.
     settings : dict
-        Settings that it depends on, for JSON.
+        Settings that influence the product, as values for JSON.
     """
 
     files: list[str]
@@ -65,7 +68,7 @@ class Plan:
     studies : dict of str to str
         Studies by the names of their datasets.
     figures : dict of str to tuple of str
-        Figures that there is data for, and the datasets of each.
+        Figures with data in this configuration, and the names of the datasets of each.
     products : dict of str to Product
         All products by name.
     """
@@ -91,35 +94,34 @@ class Plan:
         ]
 
     def _batches_in(self, group: str) -> dict[str, Batch]:
-        """Batches of a group by name, in the order of its requests; none for a certified map."""
+        """Batches of a group by name, in the order of its requests; {} for a certified map."""
         configuration = self.configuration
-        name, _, beside = group.rpartition("_")
+        name, _, runs = group.rpartition("_")
         if group in configuration.grids:
             points = batches.PointRequests(configuration.grids[group])
-            found = batches.batches_of_points(points, configuration.points_per_job[group])
-        elif beside == "histories":
-            found = [
-                Batch(runs) for runs in [batches.history_requests(configuration, name)] if runs
-            ]
-        elif beside == "periods":
+            blocks = batches.batches_of_points(points, configuration.points_per_job[group])
+        elif runs == "histories":
+            histories = batches.history_requests(configuration, name)
+            blocks = [Batch(histories)] if histories else []
+        elif runs == "periods":
             periods = explorer.period_requests(configuration, name)
-            found = batches.batches_of_requests(periods, explorer.PERIODS_PER_JOB)
+            blocks = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
         elif group in configuration.certified:
-            found = []
+            blocks = []
         else:
             slow, fast = registry.pieces(group, configuration)
-            found = [Batch(piece) for piece in (*slow, *fast)]
-        return {batch.name: batch for batch in found}
+            blocks = [Batch(piece) for piece in (*slow, *fast)]
+        return {batch.name: batch for batch in blocks}
 
     def map_batch(self, name: str) -> str:
-        """Name of the batch that holds all points of a certified map."""
+        """Name of the batch with all points of a certified map."""
         map_ = self.configuration.certified[name]
         solver = source_digest.of_request(batches.PointRequests(map_.sweep).rows[0])
         code = source_digest.of_modules(*REFINEMENT_CODE)
         return fingerprint(map_.settings, code, solver)[:20]
 
     def batch_files(self, *groups: str) -> list[str]:
-        """Files of all batches of these groups, in their order."""
+        """Paths of all batches of these groups, in their order."""
         certified = self.configuration.certified
         return [
             f"batches/{group}/{name}.jsonl"
@@ -130,23 +132,26 @@ class Plan:
     # Products
 
     def _products(self) -> Iterator[tuple[str, Product]]:
-        given = self.configuration
+        configuration = self.configuration
         for name in self.datasets:
             files, groups = [f"{name}.nc", f"summaries/{name}.html"], [name]
-            if name in given.certified:
+            if name in configuration.certified:
                 yield name, Product(files, CERTIFIED_CODE, (), groups)
             elif name in self.studies:
-                settings = registry.settings(self.studies[name], given)
+                settings = registry.settings(self.studies[name], configuration)
                 yield name, Product(files, STUDY_CODE, (), [self.studies[name]], settings)
             else:  # batches of single runs come after those of points
-                groups += [f"{name}_histories"] * (name in given.sweeps)
-                yield name, Product(files, DATASET_CODE, (), groups, given.of_sweep(name))
+                groups += [f"{name}_histories"] * (name in configuration.sweeps)
+                yield name, Product(files, DATASET_CODE, (), groups, configuration.of_sweep(name))
         for name, datasets in self.figures.items():
             files = [f"figures/{name}.{form}" for form in ("png", "pdf")]
             yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
-        periods = [f"{name}_periods" for name in explorer.maps_of(given)]
+        periods = [f"{name}_periods" for name in explorer.maps_of(configuration)]
         for page in explorer.PAGES:
-            name, datasets = page.removesuffix(".html"), tuple(explorer.datasets_of(given, page))
+            name, datasets = (
+                page.removesuffix(".html"),
+                tuple(explorer.datasets_of(configuration, page)),
+            )
             yield f"pages/{name}", Product([page], PAGE_CODE, datasets, periods)
 
     @property
@@ -154,18 +159,14 @@ class Plan:
         """Names of all datasets."""
         return [*self.configuration.grids, *self.configuration.certified, *self.studies]
 
-    def with_figures(self, datasets: Iterable[str]) -> list[str]:
-        """Datasets, and the figures drawn from them alone, or from them and maps of the paper."""
-        datasets, paper = [*datasets], set(self.configuration.sweeps)
-        drawn = [
-            f"figures/{figure}"
-            for figure, names in self.figures.items()
-            if (set(names) - paper or set(names)) <= set(datasets)
-        ]
-        return [*datasets, *drawn]
+    @property
+    def targets(self) -> list[str]:
+        """Names of all targets: those of TARGETS, all figures, and fig1 to fig6."""
+        names = (*figure_targets.TARGETS, *drawing.FIGURES, *self.figures, *drawing.SHORT_NAMES)
+        return list(dict.fromkeys(names))
 
     def products_of(self, target: str) -> list[str]:
-        """Products that a key of figure_targets.TARGETS asks for."""
+        """Products of a target; raises ConfigError if the configuration has no data for it."""
         configuration = self.configuration
         drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
         datasets = {
@@ -175,20 +176,34 @@ class Plan:
             "certified": [name for name in configuration.certified if name not in drift],
         } | {study: [dataset] for dataset, study in self.studies.items()}
         if target in datasets:
-            return self.with_figures(datasets[target])
-        return [f"pages/{target}"]
+            return [*datasets[target], *self._figures_of(datasets[target])]
+        page = f"{target}.html"
+        if page in explorer.PAGES:
+            if problem := explorer.refusal(configuration, page):
+                raise ConfigError(problem)
+            return [f"pages/{target}"]
+        figure = drawing.SHORT_NAMES.get(target, target)
+        if figure not in self.figures:
+            raise ConfigError(figure_targets.why_no_figure(configuration, figure))
+        return [f"figures/{figure}"]
 
-    # What products are made of
+    def _figures_of(self, datasets: Iterable[str]) -> list[str]:
+        """Figures that are drawn from these datasets alone, or from these and maps of the paper."""
+        paper = set(self.configuration.sweeps)
+        return [
+            f"figures/{figure}"
+            for figure, names in self.figures.items()
+            if (set(names) - paper or set(names)) <= set(datasets)
+        ]
+
+    # Fingerprints of the inputs of products
 
     def _made_of(self, product: str) -> str:
-        """Fingerprint of the code, settings and points of a product.
-
-        It does not depend on how the points of a sweep are cut into batches.
-        """
-        of = self.products[product]
-        code = source_digest.of_modules(*of.code)
-        datasets, points = map(self.made_of, of.datasets), map(self._points_in, of.groups)
-        return fingerprint(product, code, of.settings, [*datasets], [*points])
+        """Fingerprint of the code, settings and points of a product, whatever the batches are."""
+        _, modules, datasets, groups, settings = self.products[product]
+        inputs = [self.made_of(dataset) for dataset in datasets]
+        points = [self._points_in(group) for group in groups]
+        return fingerprint(product, source_digest.of_modules(*modules), settings, inputs, points)
 
     def _points_in(self, group: str) -> object:
         if group not in self.configuration.grids:
@@ -196,10 +211,28 @@ class Plan:
         requests = batches.PointRequests(self.configuration.grids[group])
         return [requests.rows, requests.last, source_digest.of_request(requests.rows[0])]
 
-    def refuse_edited(self, product: str, made_of: str) -> None:
-        """Raise SourcesEdited if a product was to be made by other code when it was planned.
 
-        made_of: what `made_of` gave then.
-        """
-        if made_of != self.made_of(product):
+@contextmanager
+def product_job(
+    job: Any, product: str, shown: int = logging.WARNING
+) -> Iterator[tuple[Plan, logging.Logger]]:
+    """Context of a job that makes a product; yields the plan and a logger.
+
+    It renames damaged files of the product first, and writes the stamp last.  Raises SourcesEdited
+    if the fingerprint of the product has changed since it was planned.
+
+    Parameters
+    ----------
+    job : object
+        The variable `snakemake` of the script; the last output is the stamp.
+    shown : int
+        Lowest level of messages on standard error.
+    """
+    outputs, made_of = job.output[:-1], job.params.made_of
+    with job_log(job.log[0], shown) as log:
+        plan = Plan(load.from_mapping(job.config, ask_solver=False))
+        if made_of != plan.made_of(product):
             raise SourcesEdited("the code that makes it")
+        stamps.set_aside(job.output.stamp, outputs)
+        yield plan, log
+        stamps.write(job.output.stamp, made_of, outputs)

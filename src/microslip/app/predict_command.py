@@ -150,7 +150,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip import predict
-    from microslip.app.progress import Elapsed
+    from microslip.app.progress import elapsed_time
 
     arguments = typed_options(options)
     if options.table is not None:
@@ -158,7 +158,7 @@ def _answer(options: argparse.Namespace) -> Answer:
     for name in ("output", "decimal", "encoding"):
         if getattr(options, name) is not None:
             raise InputError(name, getattr(options, name), "allowed with --table alone")
-    with Elapsed("microslip predict"):
+    with elapsed_time("microslip predict"):
         if options.propulsion:
             found = predicted_propulsion.ask(options.motion, arguments)
             return Answer(found.to_dict(), str(found), found.converged)

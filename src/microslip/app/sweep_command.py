@@ -1,12 +1,10 @@
 """`microslip sweep`: the workflow of this package, run by Snakemake in the current folder.
 
-An installed package carries the workflow in its folder `bundle`; in a source tree it lies at the
-top.  Either gives results that the other finds, since they are named by the code.
+An installed package has the workflow in its folder `bundle`, a source tree at its top.  Both use
+the same results, whose names depend on the code alone.
 
-Snakemake reads the files given with --configfile before the workflow does, prints all of its
-options where one is unknown, and ends with the exit code 1 whatever is wrong.  So its own parser,
-which knows profiles and abbreviations, and the configuration are tried first: what is wrong with
-them is one line, and the exit code 2.
+For bad input, Snakemake prints a list of all its options or a traceback, with exit code 1.  So the
+arguments and the configuration are checked here first: bad input gives one line and exit code 2.
 """
 
 from __future__ import annotations
@@ -31,7 +29,7 @@ from microslip.report.figures import drawing
 
 PACKAGE = Path(__file__).parents[1]
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
-"""Arguments that say how many jobs run at once, by themselves or through a profile."""
+"""Arguments that set the number of parallel jobs, directly or by a profile."""
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
 _LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
@@ -39,22 +37,22 @@ HELP = f"""\
 usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
 
 Run the workflow in the current folder: maps of friction over velocity and amplitude, as datasets in
-results/ and figures in results/figures/. What is there already is not computed again. The sweeps
-of the paper are transverse, bore (spin: rotation about the contact normal) and continuous_bore.
+results/ and figures in results/figures/. Existing results are not computed again. The sweeps of
+the paper are transverse, bore (spin: rotation about the contact normal) and continuous_bore.
 
-  TARGET             what to make, by name or a file such as results/bore.nc:
+  TARGET             name of a target, or a file such as results/bore.nc:
 {_LISTED}
     fig1 ... fig6   one figure of the paper with its datasets; other figures by their names, such as
                     stability_atlas
-  --configfile FILE  what to compute; without it config/config.yaml, or where there is no such file
-                     the sweeps of the paper. It takes all names that follow: targets come before it
-  --cores N          jobs at the same time, 1 or more; all cores unless said otherwise
-  --dry-run          say what there is to do, and do nothing
-  --report FILE      after a run: one page (.html or .zip) of figures, captions, what made them
+  --configfile FILE  the configuration; default: config/config.yaml if it exists, else the sweeps of
+                     the paper. All names after it are files, so targets come before it
+  --cores N          number of jobs at the same time, at least 1; default: all cores
+  --dry-run          list the jobs without running them
+  --report FILE      after a run: one page (.html or .zip) of figures, captions and provenance
   -h, --help         show this
 
-All else is handed to Snakemake as it is, see snakemake --help, and its exit code comes back;
-of bad input it is 2. The defaults are those of profiles/default, here or in the package.
+All other options are those of Snakemake, see snakemake --help. The exit code is that of Snakemake,
+and 2 for bad input. The defaults are in profiles/default, here or in the package.
 
   microslip sweep --cores 2
   microslip sweep --cores 2 --configfile mine.yaml --config points_per_job=10
@@ -64,12 +62,12 @@ of bad input it is 2. The defaults are those of profiles/default, here or in the
 def main(arguments: list[str]) -> int:
     """Run Snakemake with these arguments in this process.
 
-    Returns the exit code 2 where they cannot be used; ends by SystemExit with that of Snakemake.
+    Returns exit code 2 for bad input.  Otherwise Snakemake raises SystemExit with its exit code.
     """
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
-    with redirect_stdout(sys.__stdout__):  # where Snakemake's jobs write, too
+    with redirect_stdout(sys.__stdout__):  # as for the jobs of Snakemake
         return _run(arguments)
 
 
@@ -80,10 +78,10 @@ def _run(arguments: list[str]) -> int:
         return 2
     try:
         os.getcwd()
-        given = ["--snakefile", str(snakefile()), *arguments]
+        words = ["--snakefile", str(snakefile()), *arguments]
         if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
-            given = ["--cores", "all", *given]
-        _check(given)
+            words = ["--cores", "all", *words]
+        _check(words)
     except (InputError, load.ConfigError, FileNotFoundError) as error:
         place = "the current folder: " if getattr(error, "strerror", None) else ""
         complain(f"microslip sweep: {place}{getattr(error, 'strerror', None) or error}")
@@ -92,15 +90,15 @@ def _run(arguments: list[str]) -> int:
     from snakemake.cli import main as snakemake
 
     try:
-        snakemake(given)
-    except KeyboardInterrupt:  # what Snakemake does not catch while it plans
+        snakemake(words)
+    except KeyboardInterrupt:  # Snakemake does not catch it during planning
         complain("microslip sweep: interrupted")
         return 130
     return 0
 
 
 def snakefile() -> Path:
-    """Path of the workflow that belongs to this package.  Raises FileNotFoundError."""
+    """Path of the workflow of this package.  Raises FileNotFoundError."""
     places = (PACKAGE / "bundle", PACKAGE.parents[1])
     for place in places:
         if (place / "Snakefile").is_file():
@@ -109,9 +107,9 @@ def snakefile() -> Path:
 
 
 def _spare_cache() -> None:
-    """Have Snakemake keep its own files in a temporary folder where the home takes none.
+    """Use a temporary folder for the files of Snakemake itself if the home cannot be written to.
 
-    It makes a folder there whenever it starts, and ends with a traceback where it cannot.
+    Snakemake makes a folder in the home at each start, and fails with a traceback if it cannot.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     try:
@@ -127,7 +125,7 @@ def _spare_cache() -> None:
 
 
 def _check(arguments: list[str]) -> None:
-    """Raise InputError or ConfigError for what Snakemake would be slow, or long, to refuse."""
+    """Raise InputError or ConfigError for bad arguments and a bad configuration."""
     options = _parsed(arguments)
     if options is None:
         return
@@ -147,13 +145,13 @@ def _check(arguments: list[str]) -> None:
             raise InputError("--config", entry, "allowed is KEY=VALUE")
     if sum(word.partition("=")[0] == "--configfile" for word in arguments) > 1:
         raise InputError(
-            "--configfile", "twice", "Snakemake would forget the first; allowed is --configfile A B"
+            "--configfile", "twice", "Snakemake would ignore the first; allowed is --configfile A B"
         )
     _check_configuration(options)
 
 
 def _check_configuration(options: argparse.Namespace) -> None:
-    """Raise ConfigError for the configuration that the Snakefile would read and refuse."""
+    """Raise ConfigError for a configuration that the Snakefile would refuse."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
 
@@ -177,9 +175,9 @@ def _check_configuration(options: argparse.Namespace) -> None:
 
 
 def _may_be_made(target: str) -> bool:
-    """Whether a target is a file, a target of the workflow or the name of a figure.
+    """True for a file, a target of the workflow or the name of a figure.
 
-    The configuration decides which figures of groups and of certified maps there are.
+    Every name of a figure of groups or certified maps passes, since the configuration defines them.
     """
     figures = (*drawing.FIGURES, *drawing.SHORT_NAMES)
     of_configuration = target.startswith((drawing.figure_of(""), drawing.CERTIFIED))
@@ -188,19 +186,19 @@ def _may_be_made(target: str) -> bool:
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """The arguments parsed by Snakemake; None where Snakemake prints a message by itself."""
+    """The arguments parsed by Snakemake; None if Snakemake will print its own message."""
     from snakemake.cli import parse_args
 
-    said = io.StringIO()
+    messages = io.StringIO()
     try:
-        with redirect_stderr(said):
+        with redirect_stderr(messages):
             _, options = parse_args(arguments)
     except SystemExit as error:
         if error.code in (0, None):
             raise  # --version
-        line = said.getvalue().strip().rpartition("\n")[2]
+        line = messages.getvalue().strip().rpartition("\n")[2]
         complain(f"microslip sweep: {line.partition('error: ')[2] or line}")
         raise SystemExit(2) from None
-    except Exception:  # it will say so again
+    except Exception:  # Snakemake raises it again
         return None
     return options

@@ -1,6 +1,6 @@
-"""How a command ends in a shell: Ctrl-C, a closed pipe, a full device, streams that were closed.
+"""End of a command in a shell: Ctrl-C, a closed pipe, a full device, closed streams.
 
-Imports nothing heavy, so that hardly any time goes by before Ctrl-C is taken care of.
+Imports nothing heavy, so that Ctrl-C works from the start.
 """
 
 from __future__ import annotations
@@ -16,40 +16,40 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 CANNOT_WRITE = 74
-"""Exit code where the answer could not be written: EX_IOERR of the BSD's sysexits.h."""
+"""Exit code if the output cannot be written: EX_IOERR of sysexits.h."""
 CLOSED_PIPE = 141
-"""Exit code where nobody reads the answer any more: as of a program that SIGPIPE ends."""
+"""Exit code if the reader of the output is gone: that of a program ended by SIGPIPE."""
 OF_SIGNAL = 128
-"""Shells add the number of a signal to this for the exit code of the program that it ended."""
+"""Exit code of a program ended by a signal, minus the number of the signal."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 GRACE = 0.4
-"""Seconds in which Python's own way to stop may remove what is half written."""
+"""Seconds for Python to stop by itself and remove partial files."""
 
 
 def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
-    """Run a command as the whole of this process.
+    """Run a command as the main function of this process.
 
     Parameters
     ----------
     command
-        Prints its answer to `sys.stdout` and returns an exit code, or raises SystemExit with it.
+        Function that prints to `sys.stdout` and returns an exit code, or raises SystemExit with it.
     stoppable
-        Whether signals end it; a command that leaves them to a process of its own says no.
+        True to end the command on signals; False for a command that handles signals itself.
 
     Returns
     -------
     int
-        The exit code.  Where a signal ends the command, this function does not return.
+        The exit code.  This function does not return if a signal ends the command.
     """
     _open_closed_streams()
     stop = _Stop() if stoppable else None
     try:
         code = _code_of(command)
-        if stop and stop.signal:  # what raised KeyboardInterrupt was caught on its way
+        if stop and stop.signal:  # the command has caught KeyboardInterrupt
             stop.end()
     except BaseException:
-        if stop and stop.signal:  # KeyboardInterrupt, or what a library makes of it
+        if stop and stop.signal:  # KeyboardInterrupt, or the error of a library after it
             stop.end()
         raise
     if stop:
@@ -58,7 +58,7 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
 
 
 def complain(text: str) -> None:
-    """Write one line to standard error, if anybody listens there."""
+    """Write one line to standard error; ignore a closed standard error."""
     try:
         sys.stderr.write(" ".join(text.split()) + "\n")
         sys.stderr.flush()
@@ -69,7 +69,7 @@ def complain(text: str) -> None:
 def _code_of(command: Callable[[], int]) -> int:
     try:
         return command()
-    except SystemExit as error:  # how argparse ends
+    except SystemExit as error:  # from argparse
         return error.code if isinstance(error.code, int) else int(error.code is not None)
 
 
@@ -77,11 +77,10 @@ def _code_of(command: Callable[[], int]) -> int:
 
 
 def _open_closed_streams() -> None:
-    """Give this process the three streams, whichever of them it was started without.
+    """Open the standard streams that are closed, and buffer standard output until the end.
 
-    A file opened later would otherwise get their place, and be written to as if it were a stream.
-    The answer is kept until it is whole: half of one is no use to anybody, and a device that is
-    full is noticed at the one place that writes.
+    Otherwise a file opened later would get the number of a stream, and receive its output.  With
+    the buffer, the output is complete or missing, and only `_written` has to handle a full device.
     """
     missing = sys.stdout is None
     for number, mode in ((0, os.O_RDONLY), (1, os.O_WRONLY), (2, os.O_WRONLY)):
@@ -95,24 +94,24 @@ def _open_closed_streams() -> None:
     if sys.stderr is None:
         sys.stderr = open(2, "w", errors="backslashreplace", closefd=False)  # noqa: SIM115
     encoding = "utf-8" if missing else sys.stdout.encoding
-    kept: Any = io.TextIOWrapper(
+    buffered: Any = io.TextIOWrapper(
         io.BytesIO(), encoding, errors="backslashreplace", write_through=True
     )
-    kept.lost = missing
-    sys.stdout = kept
+    buffered.closed_before = missing
+    sys.stdout = buffered
 
 
 def _written(code: int) -> int:
-    """Write the answer; returns the exit code, changed where it could not be written."""
-    kept: Any = sys.stdout  # as _open_closed_streams makes it
-    answer = kept.buffer.getvalue()
-    if not answer:
+    """Write the buffered output; returns the exit code, another one if writing fails."""
+    buffered: Any = sys.stdout  # of _open_closed_streams
+    output = buffered.buffer.getvalue()
+    if not output:
         return code
     try:
-        if kept.lost:
+        if buffered.closed_before:
             raise OSError(None, "it is closed")
-        while answer:
-            answer = answer[os.write(1, answer) :]
+        while output:
+            output = output[os.write(1, output) :]
     except BrokenPipeError:
         return CLOSED_PIPE
     except OSError as error:
@@ -125,47 +124,47 @@ def _written(code: int) -> int:
 
 
 class _Stop:
-    """Ends this process within about half a second of a signal.
+    """End this process within about half a second of a signal.
 
-    Python handles a signal between two steps of its own code, and a compiled kernel is one step,
-    be it a minute long.  So beside the exception that Python raises, which lets files that are
-    half written be removed, a thread of its own hears of the signal at once: kernels hold no lock
-    that it has to wait for.
+    Python handles a signal between two bytecode instructions, and a compiled kernel is one
+    instruction, which may take a minute.  So a thread, which kernels do not block, also receives
+    the signal and ends the process after GRACE seconds.  In this time, a KeyboardInterrupt in the
+    main thread can remove partial files.
 
     Attributes
     ----------
     signal : signal.Signals or None
-        What ended the command; None until then.
+        The first signal; None before it.
     """
 
     def __init__(self) -> None:
         self.signal: signal.Signals | None = None
         self._ending = threading.Lock()
-        heard, told = socket.socketpair()  # not a pipe, which Windows does not take here
-        told.setblocking(False)
-        signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
-        self._sockets = heard, told
+        reader, writer = socket.socketpair()  # Windows does not allow a pipe here
+        writer.setblocking(False)
+        signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+        self._sockets = reader, writer
         self._numbers = [
             getattr(signal, name)
             for name in STOPPED_BY
             if hasattr(signal, name)
-            and signal.getsignal(getattr(signal, name)) != signal.SIG_IGN  # as nohup asks for
+            and signal.getsignal(getattr(signal, name)) != signal.SIG_IGN  # set by nohup
         ]
-        threading.Thread(target=self._listen, args=(heard,), daemon=True).start()
+        threading.Thread(target=self._listen, args=(reader,), daemon=True).start()
         sys.unraisablehook = self._unraisable
         for number in self._numbers:
             signal.signal(number, self._interrupt)
 
     def _interrupt(self, number: int, frame: object) -> None:
-        """Signal handler, which Python calls in the main thread as soon as it can."""
-        if self.signal is None:  # a second one would end the tidying up
+        """Signal handler in the main thread."""
+        if self.signal is None:  # a second exception would interrupt the removal of files
             self.signal = signal.Signals(number)
             raise KeyboardInterrupt
 
-    def _listen(self, heard: socket.socket) -> None:
+    def _listen(self, reader: socket.socket) -> None:
         number = 0
         while number not in self._numbers:
-            (number,) = heard.recv(1)
+            (number,) = reader.recv(1)
         time.sleep(GRACE)
         self.signal = self.signal or signal.Signals(number)
         self.end()
@@ -177,8 +176,8 @@ class _Stop:
     def end(self) -> NoReturn:
         """End this process with one line and the exit code of the signal."""
         ended = self.signal
-        assert ended is not None  # as whoever calls this has seen
-        self._ending.acquire()  # for good: one of the two threads says it
+        assert ended is not None
+        self._ending.acquire()  # never released: only one of the two threads continues
         try:
             own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
             os.write(2, f"{own_line}microslip: {STOPPED_BY[ended.name]}\n".encode())
@@ -186,7 +185,7 @@ class _Stop:
             os._exit(OF_SIGNAL + ended)
 
     def ignore(self) -> None:
-        """From now on signals change nothing: the answer is there."""
+        """Ignore signals from now on, since the output is complete."""
         for number in self._numbers:
             signal.signal(number, signal.SIG_IGN)
         signal.set_wakeup_fd(-1)

@@ -31,7 +31,6 @@ from microslip.config.strict_yaml import StrictLoader
 from microslip.foundation import named_files
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
-from microslip.foundation.user_files import content_of
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration; PyYAML reads about 100 kB a second."""
@@ -60,7 +59,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
     if "\0" in str(path):
         raise ConfigError(f"{str(path)!r}: cannot be read: not the name of a file")
     try:
-        content = content_of(path, MOST_BYTES)
+        content = named_files.content_of(path, MOST_BYTES)
     except OSError as error:
         raise ConfigError(_one_line(f"{path}: cannot be read: {error.strerror}")) from None
     except ValueError as error:
@@ -149,10 +148,10 @@ def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
     if not named_files.speaks_of_file(pressure):
         return pressure
     try:
-        file = named_files.parsed(pressure)
+        file = named_files.parse(pressure)
         if not (file.digest and file.path):
-            return named_files.found(pressure, folders)[0].placed
-        named_files.remember([pressure])
+            return named_files.read(pressure, folders)[0].placed
+        named_files.remember([pressure])  # found before
     except InputError:
         if strict:
             raise
@@ -297,7 +296,7 @@ def _by_content(pressure: str) -> str:
     """Name of a pressure with the digest of its file in place of the path, if there is a digest."""
     if not named_files.speaks_of_file(pressure):
         return pressure
-    file = named_files.parsed(pressure)
+    file = named_files.parse(pressure)
     return file.name if file.digest else pressure
 
 

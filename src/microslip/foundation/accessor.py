@@ -1,8 +1,8 @@
 """The accessors `microslip` and `friction` of xarray datasets.
 
-`import microslip` registers them, so that `xarray.open_dataset(...)` is enough to ask a map.
-Importing xarray takes a third of a second, which a process that uses no dataset does not pay: the
-accessors are registered as soon as xarray is there.
+`import microslip` registers them, so that maps opened by `xarray.open_dataset(...)` have them.
+Importing xarray takes a third of a second.  A process that uses no dataset saves it, since the
+accessors are registered when xarray is imported.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""Checks of numbers handed in by Python: which types count, and in what range."""
+"""Checks of the types and ranges of numbers that Python callers pass."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values: larger ones are typing errors, or exceed the memory or range of
+"""Largest allowed values: larger ones are typing errors, or exceed the memory or the range of
 floats."""
 SMALLEST_TOLERANCE = 1e-6
-"""Smallest accepted error that can be asked for, absolute on mu_macro."""
+"""Smallest allowed tolerance, absolute on mu_macro."""
 LARGEST_BODY = 1e6
 """Largest allowed stiffness, mass and damping of a drive, in working units."""
 SMALLEST_STIFFNESS = 1e-9
-"""Smallest stiffness of a spring, in working units: a softer one is stretched by more than 1e9
-u_lim, of which rounding leaves no more than 1e-7 u_lim; it pulls with a constant force."""
+"""Smallest stiffness of a spring, in working units.  A softer spring stretches by more than 1e9
+u_lim, with a rounding error of 1e-7 u_lim, and is in effect a constant force."""
 
 
 def is_real(value: object) -> TypeGuard[float]:
-    """Whether a value is a real number; a span of time is none, which NumPy counts as whole."""
+    """True for real numbers, except booleans and NumPy's time spans."""
     if isinstance(value, int | float):
         return not isinstance(value, bool)
-    import numpy as np  # only now, since configurations are read without it
+    import numpy as np  # late, since configurations do not need NumPy
 
     return isinstance(value, np.integer | np.floating) and not isinstance(value, np.timedelta64)
 
 
 def is_whole(value: object) -> TypeGuard[int]:
-    """Whether a value is of a type of whole numbers."""
+    """True for values of an integer type."""
     return is_real(value) and isinstance(value, Integral)
 
 

@@ -1,6 +1,6 @@
 """Canonical texts of values, and hashes of them: equal values have equal names.
 
-Imports nothing but the standard library, since the workflow reads it whenever it is parsed.
+Imports the standard library alone, since every start of the workflow imports it.
 """
 
 import hashlib
@@ -12,7 +12,7 @@ def number(value: float) -> str:
     """Canonical decimal string of a finite number: 1 for 1.0, 0.001, 1e-8.
 
     Rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
-    Raises ValueError for what is not a finite number.
+    Raises ValueError for other values.
     """
     if isinstance(value, bool | str) or not math.isfinite(value):
         raise ValueError(f"{value!r} is not a finite number")
@@ -37,5 +37,5 @@ def sha256(text: str) -> str:
 
 
 def fingerprint(*parts: object) -> str:
-    """Short name of what something is made of; parts: what JSON can hold."""
+    """First 32 digits of the SHA-256 of some values; parts: values that JSON can hold."""
     return sha256(canonical_json(parts))[:32]

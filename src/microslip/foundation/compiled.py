@@ -1,24 +1,24 @@
-"""How functions are compiled: the options of Numba that results depend on.
+"""Compilation of functions by Numba: all options of Numba that the package sets.
 
-Where the compiled code is kept, on which none depends, is in kernel_cache.py.
+The folder of the compiled code is in kernel_cache.py; results do not depend on it.
 """
 
 from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 
 import numba
 import scipy
 
-from microslip.foundation.kernel_cache import folder, kept_in
+from microslip.foundation.kernel_cache import BySources, folder
 
 numba.config.SLP_VECTORIZE = 1
-"""Neighbouring scalar operations become vector instructions, which Numba leaves out unless told:
-products of matrices take half the time."""
+"""Turn neighbouring scalar operations into vector instructions, which Numba does not do by default.
+Products of matrices take half the time."""
 
 BLAS = "scipy.linalg.cython_blas"
 
@@ -26,9 +26,8 @@ BLAS = "scipy.linalg.cython_blas"
 def _look_for_blas() -> None:
     """Import the module of Numba that looks for BLAS, without all of scipy.linalg.
 
-    Numba looks for BLAS when it loads any kernel, and importing scipy.linalg for that takes a fifth
-    of the CPU time of `microslip point`.  So BLAS is imported without its package, which still is
-    imported in the usual way by whoever needs it.
+    Numba looks for BLAS when it loads any kernel.  Importing scipy.linalg for that takes a fifth of
+    the CPU time of `microslip point`, so BLAS is imported without its package.
     """
     if "scipy.linalg" in sys.modules:
         return
@@ -45,15 +44,29 @@ def _look_for_blas() -> None:
 _look_for_blas()
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""Compiled once and kept on disk; no reordering of sums; division by zero as NumPy does it."""
+"""Compiled once and kept on disk; no reordering of sums; division by zero as in NumPy."""
+
+
+@contextlib.contextmanager
+def _cache_folder() -> Iterator[None]:
+    """Context in which Numba keeps the code of new functions in the folder of kernel_cache.py."""
+    config = numba.config
+    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
+    # A Numba without locators uses the folder alone: copies of the package then share no code.
+    locator = f"{BySources.__module__}.{BySources.__qualname__}"
+    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(folder()), locator
+    try:
+        yield
+    finally:
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
 
 def kernel(function: Callable | None = None, **options: object) -> Callable:
-    """Decorator of functions that Numba compiles when they are first called.
+    """Decorator of functions that Numba compiles at their first call.
 
-    options: of numba.njit, besides OPTIONS, as in `@kernel(inline="always")`.
+    options: arguments of numba.njit besides OPTIONS, as in `@kernel(inline="always")`.
     """
     if function is None:
         return lambda function: kernel(function, **options)
-    with kept_in(folder()):
+    with _cache_folder():
         return numba.njit(**(OPTIONS | options))(function)

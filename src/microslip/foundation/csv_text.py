@@ -17,7 +17,7 @@ DECIMALS = (".", ",")
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
 """Error texts of spreadsheets in a cell without a value, such as #N/A and #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
-"""A number with points between thousands, or with three decimals."""
+"""A number with points between thousands, or one with three decimals."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 EMPTY = re.compile(r"[\s,;\"]*")
 """A line of empty cells."""
@@ -25,7 +25,7 @@ DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+−-]?),(?=[0-9])")
 
 
 def check_format(decimal: str, encoding: str) -> None:
-    """Raise InputError unless both are known: the decimal mark and the encoding of a file."""
+    """Raise InputError for an unknown decimal mark or encoding."""
     if decimal not in DECIMALS:
         raise InputError("decimal", decimal, "allowed is '.' or ','")
     try:
@@ -37,12 +37,12 @@ def check_format(decimal: str, encoding: str) -> None:
 
 
 def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
-    """Number and text of each line that counts: not those that are empty or begin with #.
+    """Number and text of each line, except empty lines and comments, which begin with #.
 
     Raises
     ------
     ValueError
-        For what is no text in the encoding; the message begins with the line.
+        If the content is not text in this encoding; the message begins with the line.
     """
     is_utf_8 = codecs.lookup(encoding).name == "utf-8"
     if is_utf_8 and content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -66,29 +66,29 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
 
 
 def words(line: str, separator: str) -> list[str]:
-    """The cells of a heading, without spaces and quotes around them and empty ones at the end."""
-    found = [word.strip().strip("\"'").strip() for word in line.split(separator)]
-    while len(found) > 1 and not found[-1]:
-        found.pop()
-    return found
+    """Cells of a heading, without spaces and quotes around them, and without empty last cells."""
+    cells = [word.strip().strip("\"'").strip() for word in line.split(separator)]
+    while len(cells) > 1 and not cells[-1]:
+        cells.pop()
+    return cells
 
 
 def cells(where: int, line: str, separator: str, count: int) -> list[str]:
-    """The cells of a line; raises ValueError unless there are `count`, and empty ones behind."""
+    """Cells of a line; raises ValueError unless there are `count` without empty last cells."""
     try:
         rows = csv.reader([line], delimiter=separator, strict=True, skipinitialspace=True)
-        found = [cell.strip() for cell in next(rows)]
+        cells = [cell.strip() for cell in next(rows)]
     except csv.Error as error:
         allowed = "allowed are cells in whole pairs of double quotes, within one line"
         raise ValueError(f"line {where}: {error}; {allowed}") from None
-    while len(found) > count and not found[-1]:
-        found.pop()
-    if len(found) != count:
+    while len(cells) > count and not cells[-1]:
+        cells.pop()
+    if len(cells) != count:
         parted = f"parted by a {SEPARATORS[separator]} as in the heading"
-        hint = "; for decimal commas in quotes give decimal = ','" if len(found) > count else ""
+        hint = "; for decimal commas in quotes give decimal = ','" if len(cells) > count else ""
         allowed = f"{count}, {parted}, one with such a sign in double quotes{hint}"
-        raise ValueError(f"line {where}: {len(found)} cells; allowed: {allowed}")
-    return found
+        raise ValueError(f"line {where}: {len(cells)} cells; allowed: {allowed}")
+    return cells
 
 
 def with_point(where: int, name: str, cell: str, decimal: str) -> str:
@@ -109,10 +109,10 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
 
 
 class Thousands:
-    """Finds columns in which points may part thousands, beside numbers that have none.
+    """Search for columns in which points may separate thousands.
 
-    Where commas are decimal, 900 and 1.100 may be 900 and 1100, and then none is a decimal number.
-    Commas as separators tell that they are not decimal.
+    In a file with decimal commas, 900 and 1.100 may mean 900 and 1100.  If commas separate the
+    cells, the decimal mark is a point and nothing is refused.
     """
 
     def __init__(self, separator: str, columns: Sequence[str]):
@@ -133,7 +133,7 @@ class Thousands:
                 del self.possible[name]
 
     def refuse(self) -> None:
-        """Raise ValueError for the first column in which points may part thousands."""
+        """Raise ValueError for the first column in which points may separate thousands."""
         for name, first in self.possible.items():
             if first and name in self.plain:
                 where, word = first

@@ -5,31 +5,31 @@ from __future__ import annotations
 import errno
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Errors of the system that say by themselves what the user is to mend."""
+"""Errors of the system whose message alone shows the remedy."""
 
 LONGEST = 400
-"""Characters of a value that a message shows; of a longer one its beginning and its end."""
+"""Largest number of characters of a value in a message; longer values lose their middle."""
 
 
 class InputError(ValueError):
-    """An argument that cannot be used.
+    """An invalid argument.
 
-    Its text is one line, "argument = value: what is allowed".  Layers above read the attributes,
-    never the text: the command line names its option, predict the quantity as it was given.
+    Its text is one line, "argument = value: what is allowed".  Other layers read the attributes and
+    replace the argument by the name of an option, or the value by the text of a quantity.
 
     Attributes
     ----------
     argument : str
         Name of the argument, as the Python function spells it.
     value : object
-        What was given for it, as it was given.
+        Its value, unchanged.
     allowed : str
-        What is allowed instead, and why this is not.
+        The allowed values, and the reason why this one is not.
     """
 
     def __init__(self, argument: str, value: object, allowed: str):
         self.argument, self.value, self.allowed = argument, value, allowed
-        super().__init__(argument, value, allowed)  # what copying and pickling hand on
+        super().__init__(argument, value, allowed)  # for copy and pickle
 
     def __str__(self) -> str:
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
@@ -42,19 +42,19 @@ class InputError(ValueError):
 class SolverError(RuntimeError):
     """The solver failed at a point: a step stays unsolved, or tractions are not finite.
 
-    Only this error becomes a gap in a dataset.  Its message is the reason that the point gives.
+    Only this error becomes a gap in a dataset.  Its message is the `reason` of the point.
     """
 
 
 class CacheError(RuntimeError):
-    """The results folder cannot be used. The message is one line that says what to do."""
+    """The results folder cannot be used.  The message is one line with the remedy."""
 
 
 def shown(value: object) -> str:
-    """A value as messages show it: its repr, shortened, or its type where Python writes none."""
+    """Text of a value for messages: its repr, shortened, or its type if repr fails."""
     try:
         text = repr(value)
-    except Exception as error:  # of a whole number with thousands of digits, or anybody's own
+    except Exception as error:  # an integer of thousands of digits, or a class of the user
         text = f"<{type(value).__name__} that cannot be written: {type(error).__name__}>"
     half = LONGEST // 2
     return text if len(text) <= LONGEST else f"{text[:half]}...{text[-half:]}"

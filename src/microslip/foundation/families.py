@@ -26,10 +26,10 @@ T = TypeVar("T")
 def modules_in(
     folder: str | os.PathLike, package: ModuleType, broken: dict[str, str]
 ) -> Iterator[tuple[str, ModuleType]]:
-    """Name and module of each file in a folder, which is one of the package's from now on.
+    """Name and module of each file in a folder, which becomes a folder of the package.
 
-    A file that cannot be imported is left out, so that it ends only the commands that name it.  So
-    is one whose name a file in another folder has: which of them was meant is not known.
+    A file that cannot be imported is left out, so that only commands that name it fail.  A file
+    with the name of a file in another folder is left out, too, since the name is ambiguous.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def modules_in(
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
         if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
-            taken = f"{path}: {module.__file__} has the same name; allowed is another name"
-            broken[file.name] = taken
+            problem = f"{path}: {module.__file__} has the same name; allowed is another name"
+            broken[file.name] = problem
             continue
         broken.pop(file.name, None)
         yield file.name, module
@@ -90,7 +90,7 @@ class Registry(Generic[T]):
     Attributes
     ----------
     classes : dict of str to type
-        Classes by name.
+        Classes by their names.
     broken : dict of str to str
         Path and error of each file that cannot be used.
     """
@@ -135,7 +135,7 @@ class Registry(Generic[T]):
         self.classes.update({name: self.classes.pop(name) for name in order})
 
     def _is_class_of(self, one: object, module: ModuleType) -> bool:
-        """Whether an object is a class that the module defines."""
+        """True for a class of this family that the module defines."""
         return (
             isinstance(one, type)
             and issubclass(one, self.base)
@@ -167,7 +167,7 @@ class Registry(Generic[T]):
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
         try:
             return _made(cls, tuple(sorted(numbers.items())))
-        except InputError as error:  # about the text without its default numbers
+        except InputError as error:  # its text lacks numbers with default values
             raise InputError(self.argument, text, error.allowed) from None
         except Exception as error:  # in a file of the user
             path = str(import_module(cls.__module__).__file__)
@@ -176,5 +176,5 @@ class Registry(Generic[T]):
 
 @lru_cache(maxsize=128)
 def _made(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
-    """One object for equal numbers, which keeps its cached properties."""
+    """The object for these numbers; equal numbers share one object and its cached properties."""
     return cls(**dict(numbers))

@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written beside their place, flushed to disk and renamed."""
+"""Atomic writing of files: to a temporary name, flushed to disk, then renamed."""
 
 import os
 import time
@@ -10,14 +10,16 @@ from pathlib import Path
 from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
 LEAST_ROOM = 65536
-"""Bytes that a disk must still have room for before anything is computed."""
+"""Free bytes on the disk that a calculation needs to start."""
 ABANDONED = 3600.0
-"""Seconds after which half a file counts as left by a process that was killed."""
+"""Age in seconds from which a partial file counts as abandoned by a killed process."""
 
 
 def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError for what is not the name of a folder: nothing, what is no text, and a ~ that
-    no shell has replaced, which would become a folder of that name."""
+    """Raise CacheError for an invalid name of a folder: empty, not a text, or with ~ in front.
+
+    A shell replaces ~ by the home folder; here it would become a folder of that name.
+    """
     path = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
     name = path if isinstance(path, str) else ""
     if not name.strip() or "\0" in name:
@@ -28,9 +30,9 @@ def refuse_no_folder(folder: object) -> None:
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
-    """Raise CacheError where a file is in the place of a folder, or a folder in that of a file.
+    """Raise CacheError if a file has the name of a folder to be made, or the other way round.
 
-    folders, files: to be made in time, with all folders above them. Makes nothing itself.
+    folders, files: paths that a run will make; the folders above them are checked, too.
     """
     try:
         for folder in map(Path, folders):
@@ -45,20 +47,17 @@ def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) 
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write bytes to `path` so that it holds all of them or what it held before.
-
-    Raises CacheError, one line that says what to do, where the system refuses.
-    """
+    """Write bytes to a file, all of them or none; raises CacheError if the system refuses."""
     with writing_beside(path) as beside:
         beside.write_bytes(content)
 
 
 @contextmanager
 def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Context that yields a Path beside `path` to write to, and puts it in place at its end.
+    """Context that yields a temporary Path beside `path`, and renames it to `path` at its end.
 
-    The file is flushed to disk before it is renamed.  After an error or an interrupt `path` is what
-    it was.  Raises CacheError, one line that says what to do, where the system refuses.
+    The file is flushed to disk before it is renamed.  After an error or an interrupt, `path` is
+    unchanged.  Raises CacheError if the system refuses.
     """
     path = Path(path)
     beside = _unique_beside(path)
@@ -71,25 +70,25 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     except OSError as error:
         raise CacheError(advice("write", path, _cause(error, beside))) from error
     except RuntimeError as error:
-        # What netCDF says when HDF5 could not write.
+        # The error of netCDF if HDF5 cannot write.
         if not str(error).startswith("NetCDF: "):
             raise
         raise CacheError(advice("write", path, _cause(error, beside))) from error
     finally:
-        # Gone already after the rename, left by an interrupt; in a read-only folder never made.
+        # It exists only after an error or an interrupt.
         with suppress(OSError):
             beside.unlink()
 
 
 def _unique_beside(path: Path) -> Path:
-    """A name beside a path that no other thread, process or container writes to."""
+    """A temporary name beside a path, which no other thread, process or container uses."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """The error that prevents writing next to a file, if there is one, else the given error.
+    """The error of writing a small file to the same folder, if any, else the original error.
 
-    HDF5 says "Permission denied" and "HDF error" on a full disk.
+    On a full disk HDF5 reports "Permission denied" or "HDF error".
     """
     if getattr(error, "errno", None) in NO_WRITING:
         return error
@@ -114,22 +113,21 @@ def check_room(folder: Path) -> None:
 
 
 def clear_abandoned(folder: Path) -> list[Path]:
-    """Remove what processes that were killed have left half written; return the paths.
+    """Remove partial files of killed processes; return their paths.
 
-    A file that has been written to within the last hour is left alone: it may be about to be put in
-    place.
+    Files younger than an hour stay, since a process may be writing them.
     """
-    found = []
+    removed = []
     for path in Path(folder).rglob(".*.part"):
         with suppress(OSError):
             if time.time() - path.stat().st_mtime > ABANDONED:
                 path.unlink()
-                found.append(path)
-    return found
+                removed.append(path)
+    return removed
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:
-    """One line: what could not be done, why, and what to do about it."""
+    """Message for an error of the system: the failed action, its path, reason and remedy."""
     reason = getattr(error, "strerror", None) or error
     return (
         f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "

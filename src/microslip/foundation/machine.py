@@ -1,4 +1,4 @@
-"""Describes the computer that a time is measured on."""
+"""Description of the computer, for measured times."""
 
 from __future__ import annotations
 

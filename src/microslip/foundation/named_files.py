@@ -1,10 +1,10 @@
-"""Files that names speak of, such as "file:pad.csv,grid=samples": what is asked, where the file is.
+"""Names of files, such as "file:pad.csv,grid=samples": parsing the name, and reading the file.
 
-A result belongs to what a file holds and not to where it lies, so that the name of its pressure has
-the digest of the content and no path: "file:sha256=0123456789abcdef,grid=samples".  This process
-remembers where it found what; another one is told by `remember`.
+A result depends on the content of a file and not on its path.  So the name of its pressure has the
+digest of the content in place of the path: "file:sha256=0123456789abcdef,grid=samples".  A process
+keeps the path of each digest; `remember` passes paths on to another process.
 
-Imports nothing heavy, since the workflow reads it whenever it is parsed.
+Imports nothing heavy, since every start of the workflow imports it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NoReturn
 
 from microslip.foundation.errors import InputError
 
@@ -23,28 +22,30 @@ PREFIX = "file:"
 GRID = "cells"
 """Default meaning of the values of a grid, see pressures.grid.READINGS."""
 DIGITS = 16
+"""Number of hexadecimal digits of a digest in a name."""
 MOST_BYTES = 100_000_000
+"""Largest size of a file."""
 OPTIONS = re.compile(r"(?:^|,)(grid|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
-"""Decimal marks by the words that names have for them."""
+"""Decimal marks by the words for them in names."""
 EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,grid=samples"
 
 _PLACES: dict[str, Path] = {}
-"""Digest -> where a file with it was."""
+"""Path of a file by its digest."""
 
 
 @dataclass(frozen=True)
 class NamedFile:
-    """A file as given by a name: path, digest and options.
+    """A file according to its name: path, digest and options.
 
     Attributes
     ----------
     path : str
-        As it was given; empty if the digest alone names the file.
+        Path as in the name; empty if the digest alone names the file.
     grid : str
         Meaning of the values of the grid, see pressures.grid.READINGS.
     digest : str
-        First DIGITS hexadecimal digits of the SHA-256 of its content; empty if it is not known.
+        First DIGITS hexadecimal digits of the SHA-256 of the content; empty if unknown.
     decimal, encoding : str
         A key of DECIMALS, and the encoding of the file.
     """
@@ -57,12 +58,12 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name that results have: without the path, equal for equal content."""
+        """The name in results: without the path, equal for equal content."""
         return self._text(f"sha256={self.digest}")
 
     @property
     def placed(self) -> str:
-        """The name with the path and the digest, for a process that has to find the file."""
+        """The name with the path and the digest, for another process that reads the file."""
         return self._text(f"{self.path},sha256={self.digest}")
 
     def _text(self, file: str) -> str:
@@ -73,17 +74,17 @@ class NamedFile:
 
 
 def speaks_of_file(name: object) -> bool:
-    """Whether a name is that of a file."""
+    """True if a name of a pressure is that of a file."""
     return isinstance(name, str) and name.startswith(PREFIX)
 
 
-def parsed(name: str) -> NamedFile:
+def parse(name: str) -> NamedFile:
     """The NamedFile of a name; raises InputError for a name without a file."""
     path, options = name.removeprefix(PREFIX), {}
-    while found := OPTIONS.search(path):
-        if found[1] in options:
-            raise InputError("pressure", name, f"{found[1]} occurs twice; allowed: once")
-        options[found[1]], path = found[2], path[: found.start()]
+    while match := OPTIONS.search(path):
+        if match[1] in options:
+            raise InputError("pressure", name, f"{match[1]} occurs twice; allowed: once")
+        options[match[1]], path = match[2], path[: match.start()]
     digest = options.pop("sha256", "")
     file = NamedFile(path, digest=digest, **options)
     if file.decimal not in DECIMALS:
@@ -93,25 +94,25 @@ def parsed(name: str) -> NamedFile:
     return file
 
 
-def found(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFile, bytes]:
-    """The file that a name speaks of, with its absolute path and digest, and its content.
+def read(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFile, bytes]:
+    """The file of a name, with its absolute path and digest, and its content.
 
     Parameters
     ----------
     name : str
-        Such as "file:pad.csv"; a digest in it must be that of the file.
+        Name such as "file:pad.csv"; a digest in it must be that of the file.
     folders : iterable of paths
-        Where a relative path is looked for; the working directory comes after them.
+        Folders for a relative path; the working directory comes after them.
 
     Raises
     ------
     InputError
-        Where there is no such file, or it is not the one that the digest is of; the message says
-        where it was looked for.
+        If the file does not exist, or has another digest.  The message lists the paths that were
+        tried.
     """
-    file = parsed(name)
+    file = parse(name)
     place = _place(name, file, folders)
-    content = _read(name, place)
+    content = _content(name, place)
     digest = hashlib.sha256(content).hexdigest()[:DIGITS]
     if file.digest not in ("", digest):
         raise InputError("pressure", name, f"{place} has changed: its sha256 begins with {digest}")
@@ -120,17 +121,17 @@ def found(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFi
 
 
 def remember(names: Iterable[str]) -> None:
-    """Note where files are, from names with path and digest; other names do not count."""
-    for file in map(parsed, filter(speaks_of_file, names)):
+    """Keep the paths of files, from names with path and digest; other names are ignored."""
+    for file in map(parse, filter(speaks_of_file, names)):
         if file.digest and file.path:
             _PLACES[file.digest] = Path(file.path)
 
 
 def base_name(name: str) -> str:
-    """Base name of the file of a name, for messages; "" if it is not known here."""
+    """Base name of the file of a name, for messages; "" if this process does not know the path."""
     if not speaks_of_file(name):
         return ""
-    file = parsed(name)
+    file = parse(name)
     return Path(file.path or _PLACES.get(file.digest, "")).name
 
 
@@ -159,15 +160,30 @@ def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> 
     )
 
 
-def _read(name: str, place: Path) -> bytes:
-    def refuse(why: str | None) -> NoReturn:
-        raise InputError("pressure", name, f"{place} cannot be read: {why}") from None
+def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
+    """Content of a file; at most `most` bytes are read.
 
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If the file is larger, or a device without an end.
+    """
+    with open(path, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"larger than {most / 1e6:g} MB; allowed: at most that")
+    return content
+
+
+def _content(name: str, place: Path) -> bytes:
     try:
-        if not place.is_file():  # a device or a pipe might never end
-            refuse("a folder" if place.is_dir() else "not a regular file")
-        if place.stat().st_size > MOST_BYTES:
-            refuse(f"larger than {MOST_BYTES / 1e6:g} MB, the most that is allowed")
-        return place.read_bytes()
+        if place.is_file():
+            return content_of(place)
+        reason = "a folder" if place.is_dir() else "not a regular file"  # a pipe might never end
     except OSError as error:
-        refuse(error.strerror)
+        reason = str(error.strerror)
+    except ValueError as error:
+        reason = str(error)
+    raise InputError("pressure", name, f"{place} cannot be read: {reason}") from None

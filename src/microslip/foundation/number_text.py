@@ -7,28 +7,29 @@ from collections.abc import Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 ERROR_DIGITS = 2
-"""Significant digits of an error.  Rounded up to one digit, it could appear twice as large."""
+"""Significant digits of an error.  Rounding up to one digit could double it."""
 EXACT_DIGITS = 4
 """Significant digits of a number without an error."""
 EXACT = 1e-9
-"""Relative error below which a number is printed without it: no printed digit can be wrong."""
+"""Relative error below which a number is printed without its error: all printed digits are
+right."""
 ROUNDING = 1e-12
-"""Error below which a zero is printed without it: it is the rounding error of numbers near 1."""
+"""Error below which a zero is printed without its error: the rounding error of numbers near 1."""
 FIXED = -4, 7
 """Decimal exponents between which numbers are printed without an exponent."""
 _ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
 _WIDE = Context(prec=800)
-"""Decimal digits that suffice for any two floats."""
+"""Context with enough decimal digits for any two floats."""
 _WITHOUT_ROUNDING_ERROR = Context(prec=12)
-"""Decimal digits without the rounding error of floats, as in ROUNDING."""
+"""Context whose decimal digits are free of the rounding error of floats."""
 SEPARATOR = " +- "
 
 
 def error_text(error: float) -> str:
-    """An error with two significant digits, rounded up; infinity, NaN and 0 as they are.
+    """An error with two significant digits, rounded up; infinity, NaN and 0 are unchanged.
 
-    The decimals rounded are the shortest that mean this float: 0.01 stays 0.01, although the float
-    of that name lies a little above it.
+    The shortest decimal number of the float is rounded: 0.01 stays 0.01, although its float is
+    slightly larger.
     """
     error = float(error)
     if math.isfinite(error):
@@ -54,10 +55,10 @@ def number_text(
     -------
     str
         "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number
-        to the last decimal of the error.  A number whose error is too small to be printed has all
-        of its digits, zeros at the end included; one without an error has no such zeros.  A number
-        that is 0 within its error, or below the rounding error of numbers near 1, is printed as 0,
-        and the error then covers both.
+        to the last decimal of the error.  A number whose error is too small to be printed keeps
+        zeros at its end; a number without an error loses them.  A number that is 0 within its
+        error, or within the rounding error of numbers near 1, is printed as 0.  Its printed error
+        then includes the number itself.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)
@@ -88,9 +89,9 @@ def _text(value: float, error: float, digits: int) -> str:
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """A number with some significant digits and no exponent unless it is very large or small.
+    """A number with some significant digits, and an exponent only if very large or small.
 
-    zeros: whether it keeps zeros at its end.
+    zeros: True to keep zeros at the end.
     """
     if value == 0.0:
         return "0"
@@ -102,7 +103,7 @@ def _plain(value: float, digits: int, zeros: bool = False) -> str:
 
 
 def _short(number: Decimal) -> str:
-    """A decimal as it is, with an exponent where it is very large or small."""
+    """All digits of a decimal, with an exponent only if very large or small."""
     low, high = FIXED
     return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
 
@@ -121,8 +122,8 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
     unit : str
         Unit to print behind them.
     error : float
-        Error estimate of both ends, in the unit.  The interval is extended by it, but a positive
-        one not below 0.
+        Error estimate of both ends, in the unit.  It extends the interval on both sides; an
+        interval of positive numbers ends at 0.
     """
     low, high = float(low), float(high)
     if not error <= EXACT * abs(high):
@@ -150,7 +151,7 @@ def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
 def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]]) -> list[str]:
     """Lines of a table of numbers and their errors, aligned to the right.
 
-    columns: values and their errors, None for exact values, by the heading of their column.
+    columns: values and their errors (None for exact values) by the heading of the column.
     """
     texts = []
     for heading, (values, errors) in columns.items():

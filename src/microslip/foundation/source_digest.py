@@ -1,13 +1,13 @@
-"""Digests of the code that results and products are made by.
+"""Digests of the code that computes results and makes products.
 
-A result is named by the digest of the physics rooms: every package of microslip except those that
-arrange, store and show results (`OUTER`).  In the folders of motions, pressures and methods a file
-counts if the physics rooms import it or if the request names it, so that a new file there changes
-no other result.  A dataset, page or figure is named by the modules that make it and all that they
-import.  Comments, docstrings and layout do not count.
+The name of a result contains the digest of the physics: every package of microslip except those in
+`OUTER`.  In the folders of motions, pressures and methods, a file counts only if the physics
+imports it or the request names it.  So a new file there changes no other result.  The stamp of a
+dataset, page or figure contains the digest of the modules that make it and of all their imports.
+Comments, docstrings and layout do not count.
 
-All modules are read once, when the package is imported, so that a digest belongs to the code that
-is running.  Imports the standard library alone, since the package imports it first.
+All modules are read once, when the package is imported, so that a digest belongs to the running
+code.
 """
 
 from __future__ import annotations
@@ -22,30 +22,37 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
 
+from microslip.foundation.errors import CacheError
+from microslip.foundation.files import write_atomically
+
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
-"""Folders of the package that no result depends on, except for the files in ANSWERING."""
+"""Folders of the package that do not influence results, except the files in ANSWERING."""
 ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files in OUTER that turn answers of the solver into results."""
-_WRITING = ("accessor", "files", "kernel_cache", "source_digest")
-NAMING = {f"foundation/{name}.py" for name in _WRITING}
-"""Files that name and write results; the values in them do not depend on these."""
+"""Files in OUTER that convert answers of the solver to results."""
+NAMING = {
+    "foundation/accessor.py",
+    "foundation/files.py",
+    "foundation/kernel_cache.py",
+    "foundation/source_digest.py",
+}
+"""Files that name and write results, and influence no value in them."""
 ENDINGS = {"py", "html", "css", "js"}
-"""Ends of the names of files that count: modules, and what pages are made of."""
+"""Endings of the files that count: modules, and parts of pages."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
-"""Folders with a file for each name, and the key of a request that names it."""
+"""Folders with a file for each name, and the key of a request that holds the name."""
 
 
 class Sources:
-    """The modules of a package, read when this object is made.
+    """The modules of a package, read at construction.
 
     Attributes
     ----------
     package : Path
         Folder of the package.
     contents : dict of str to bytes
-        Files by their paths inside the package: modules that Python can import, and what stands
-        beside them, such as templates and scripts of pages.
+        Contents by paths inside the package: modules that Python can import, and the templates and
+        scripts of pages beside them.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
@@ -57,49 +64,48 @@ class Sources:
     def closure(
         self, names: Iterable[str], inside: Callable[[str], bool] = lambda name: True
     ) -> frozenset[str]:
-        """Paths of modules and of all modules that they import, directly or not.
+        """Paths of modules and of all modules that they import, directly or indirectly.
 
-        inside: only imported modules for which it is true count.
+        inside: function of a path that is false for imported modules to leave out.
         """
-        reached, waiting = set(), [*names]
-        while waiting:
-            name = waiting.pop()
-            if name not in reached:
-                reached.add(name)
-                waiting += filter(inside, self._imports(name))
-        return frozenset(reached)
+        closure, queue = set(), [*names]
+        while queue:
+            name = queue.pop()
+            if name not in closure:
+                closure.add(name)
+                queue += filter(inside, self._imports(name))
+        return frozenset(closure)
 
     def digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of the names and the code of files, in hexadecimal."""
+        """SHA-256 of the paths and the code of files, in hexadecimal."""
         code = [(name, self._parsed(name)[0]) for name in sorted(names)]
         self._write_parsed()
         return _sha256(json.dumps(code).encode())
 
     def of_request(self, request: dict) -> frozenset[str]:
-        """Paths of the modules that the result of a request depends on."""
-        named = {folder: request.get(key) or "" for folder, key in FAMILIES.items()}
-        bare = {folder: text.partition(":")[0].replace("-", "_") for folder, text in named.items()}
+        """Paths of the modules that influence the result of a request."""
+        texts = {folder: request.get(key) or "" for folder, key in FAMILIES.items()}
+        bare = {folder: text.partition(":")[0].replace("-", "_") for folder, text in texts.items()}
         if bare["pressures"] == "file":
             bare["pressures"] = "from_file"
         files = {f"{folder}/{name}.py" for folder, name in bare.items() if name}
-        if not bare["motions"]:  # the code that answers may choose any
+        if not bare["motions"]:  # the result may depend on any motion
             files |= {name for name in self.contents if name.startswith("motions/")}
         files = {name for name in files if name in self.contents or _in_a_users_folder(name)}
         files |= {n for n in self.contents if is_physics(n) and os.path.dirname(n) not in FAMILIES}
         return self.closure(files, inside=is_physics)
 
     def of_kernels(self) -> str:
-        """Digest of the modules with compiled functions and of all that they import.
+        """Digest of the modules with compiled functions and of all their imports.
 
-        Layout counts here, since Numba finds the code of a function by its line.
+        Layout counts, since Numba finds the code of a function by its line.
         """
         compiled = {n for n, c in self.contents.items() if b"microslip.foundation.compiled" in c}
         content = [(n, _sha256(self.contents[n])) for n in sorted(self.closure(compiled))]
         return _sha256(json.dumps(content).encode())
 
     def edited(self) -> str | None:
-        """A physics file whose code on disk is another one than when it was read; None if all are
-        the same."""
+        """A physics file whose code on disk has changed since it was read; None without changes."""
         for name in filter(is_physics, self._dates):
             path, then = self.package / name, self.contents[name]
             try:
@@ -120,7 +126,7 @@ class Sources:
             if top == self.package.name:
                 yield from (file for file in files if file in self.contents and file not in NAMING)
 
-    # Parsing takes a second, so its results are kept beside the code that Python itself compiles.
+    # Parsing takes a second, so its results are kept in __pycache__.
 
     def _parsed(self, name: str) -> tuple[str, list[str]]:
         if name not in self.contents:
@@ -137,19 +143,17 @@ class Sources:
     @cached_property
     def _known(self) -> dict[str, tuple[str, list[str]]]:
         with contextlib.suppress(OSError, ValueError):
-            reader, known = json.loads(self._file.read_bytes())
-            return known if reader == _READER else {}
+            reader, results = json.loads(self._file.read_bytes())
+            return results if reader == _READER else {}
         return {}
 
     def _write_parsed(self) -> None:
-        """Write what was parsed; where that is refused, the next process parses again."""
+        """Write the results of parsing; without permission, the next process parses again."""
         if not self._is_written:
             self._is_written = True
-            beside = self._file.with_name(f"{self._file.name}.{os.urandom(8).hex()}")
-            with contextlib.suppress(OSError):
-                self._file.parent.mkdir(exist_ok=True)
-                beside.write_text(json.dumps([_READER, self._known]))
-                os.replace(beside, self._file)
+            with contextlib.suppress(CacheError):
+                content = json.dumps([_READER, self._known])
+                write_atomically(self._file, content.encode())
 
     @property
     def _file(self) -> Path:
@@ -157,13 +161,13 @@ class Sources:
 
 
 def is_physics(name: str) -> bool:
-    """Whether a file, by its path inside the package, is one that results depend on."""
+    """True for files that influence results; name: path inside the package."""
     room, slash, _ = name.partition("/")
     return name in ANSWERING or bool(slash) and room not in OUTER and name not in NAMING
 
 
 def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Path inside the package and path of each file in a folder and those below it."""
+    """Path inside the package, and path, of each file in a folder and its subfolders."""
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         stem, _, ending = entry.name.partition(".")
         if not stem.isidentifier() or stem == "__pycache__":
@@ -175,7 +179,7 @@ def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _in_a_users_folder(name: str) -> Path | None:
-    """Path of a motion or a pressure in a folder of the user's own; None if it is not there."""
+    """Path of a motion or a pressure in a folder of the user; None if it does not exist."""
     folder, _, file = name.rpartition("/")
     package = sys.modules.get(f"{PACKAGE.name}.{folder.replace('/', '.')}")
     places = (Path(place, file) for place in getattr(package, "__path__", ()))
@@ -187,14 +191,14 @@ def _sha256(content: bytes) -> str:
 
 
 _READER = _sha256(Path(__file__).read_bytes())
-"""Digest of this file, whose code reads imports and digests off the syntax trees."""
+"""Digest of this file.  Results of parsing by other code are ignored."""
 
 
 def _parse(content: bytes) -> tuple[str, list[str]]:
-    """Digest of a module's code, and the names of all modules that it imports."""
+    """Digest of the code of a module, and the names of all modules that it imports."""
     try:
         tree = ast.parse(content)
-    except (SyntaxError, ValueError):  # a broken file counts by its bytes and imports nothing
+    except (SyntaxError, ValueError):  # a broken file: its bytes count, without imports
         return _sha256(content), []
     names = set()
     for node in ast.walk(tree):
@@ -206,10 +210,10 @@ def _parse(content: bytes) -> tuple[str, list[str]]:
 
 
 def _dumped(node: object) -> Iterator[str]:
-    """The text of a syntax tree without docstrings and line numbers.
+    """Pieces of the text of a syntax tree, without docstrings and line numbers.
 
-    Empty fields are skipped, where ast.dump differs between versions of Python, so that all of them
-    share a folder of results.
+    All versions of Python give the same text, since empty fields are skipped.  ast.dump differs
+    between versions in these.
     """
     if isinstance(node, ast.AST):
         yield f"{type(node).__name__}("
@@ -230,7 +234,7 @@ def _dumped(node: object) -> Iterator[str]:
 
 
 def _is_docstring(node: object) -> bool:
-    """Whether a statement is a text alone, also one below a constant or a field."""
+    """True for a statement that is a string, which may also follow a constant or a field."""
     return (
         isinstance(node, ast.Expr)
         and isinstance(node.value, ast.Constant)
@@ -244,7 +248,7 @@ LOADED = Sources()
 
 
 def of_request(request: dict) -> str:
-    """Digest of the code that the result of a request depends on."""
+    """Digest of the code that influences the result of a request."""
     return _of_request(*(request.get(key) for key in FAMILIES.values()))
 
 
@@ -254,18 +258,17 @@ def _of_request(*names: str | None) -> str:
 
 
 def of_solver() -> str:
-    """Digest of the physics rooms, without motions, pressures and methods that only requests
-    name."""
+    """Digest of the physics, without the motions, pressures and methods that only requests name."""
     return of_request({"motion": "none"})
 
 
 def of_modules(*names: str) -> str:
-    """Digest of files and folders of the package, and of all that their modules import."""
+    """Digest of files and folders of the package, and of all imports of their modules."""
     files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
     return LOADED.digest(LOADED.closure(files))
 
 
 @cache
 def of_kernels() -> str:
-    """Digest of the compiled functions and of all that they import."""
+    """Digest of the modules with compiled functions and of all their imports."""
     return LOADED.of_kernels()

@@ -20,25 +20,24 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
-    """The number that a text is: what Python writes for one, digit by digit.
+    """The number in a text, in Python's notation.
 
-    Underscores, digits of other scripts and a comma for the point are none of it; spaces around it
-    and a typographic minus, as copied from a page, do no harm.
+    Spaces around the number and a typographic minus are accepted.  Underscores, digits of other
+    scripts and decimal commas are not.
 
     Parameters
     ----------
     argument
-        Name of what the number is for.
+        Name of the argument, for messages.
     text
-        The number, perhaps infinite or NaN.
+        The number, possibly infinite or NaN.
     whole
-        Whether it has to be a whole number, and is returned as int.
+        True to accept whole numbers alone, and to return an int.
 
     Raises
     ------
     InputError
-        For any other text, and for numbers that are too small or too large for a float: that would
-        be 0 or infinite, which is another number than the one that was given.
+        For any other text, and for numbers outside the range of floats.
     """
     plain = text.strip().replace(MINUS, "-", 1)
     if (WHOLE if whole else NUMBER).fullmatch(plain):
@@ -50,7 +49,7 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 
 def _float(argument: str, text: str, plain: str) -> float:
-    """The float of a number's digits, `plain`; raises InputError where it is out of range."""
+    """The float of the digits `plain`; raises InputError if it is out of range."""
     number, digits = float(plain), plain.lower().partition("e")[0]
     if number == 0.0 and re.search("[1-9]", digits):
         problem = "nearer 0 than floating-point numbers can be"
@@ -62,8 +61,10 @@ def _float(argument: str, text: str, plain: str) -> float:
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
-    """Name and numbers (dict) in a text; raises InputError about `what` if the name is none of
-    `names` or the numbers cannot be read."""
+    """Name and numbers (dict) in a text such as "elliptic:phase=90".
+
+    Raises InputError about the argument `what` if `names` lacks the name, or for invalid numbers.
+    """
     name, colon, rest = text.partition(":")
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1)
@@ -74,8 +75,11 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
 
 
 def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float]:
-    """Numbers by their names in a part of a text, such as "forward=0.5,phase=90"; raises InputError
-    about `what` with the whole text and an example if they cannot be read."""
+    """Numbers by their names in a part of a text, such as "forward=0.5,phase=90".
+
+    Raises InputError about the argument `what`, with the whole text and an example, for a part that
+    cannot be read.
+    """
     numbers = {}
     for one in part.split(","):
         key, equals, value = (word.strip() for word in one.partition("="))
@@ -86,7 +90,7 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
             numbers[key] = read(key, value)
         except InputError as error:
             numbers[key] = math.nan
-            if NUMBER.fullmatch(value):  # so it is one, but out of range
+            if NUMBER.fullmatch(value):  # a number out of range
                 problem = f"{error.allowed},"
         if not (key and equals and math.isfinite(numbers[key])):
             raise InputError(what, text, f"in it {one!r}: {problem} as in {example}")
@@ -94,17 +98,17 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
 
 
 def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Iterable[str]) -> None:
-    """Raise InputError about `what` for a number that a name does not take."""
-    strange = sorted(numbers.keys() - set(known))
-    if strange:
+    """Raise InputError about the argument `what` for a number that is not in `known`."""
+    unknown = sorted(numbers.keys() - set(known))
+    if unknown:
         allowed = ", ".join(known) or "none"
-        raise InputError(what, text, f"unknown number {strange[0]}; allowed: {allowed}")
+        raise InputError(what, text, f"unknown number {unknown[0]}; allowed: {allowed}")
 
 
 def refuse_strange(record: Any, what: str) -> None:
-    """Check that all fields of a dataclass whose defaults are numbers are finite numbers.
+    """Raise InputError about the argument `what` if a numeric field of a dataclass is not finite.
 
-    Else raise InputError; what: the argument that it names.
+    Numeric fields are those whose default is a number.
     """
     for field in fields(record):
         value = getattr(record, field.name)
@@ -115,20 +119,23 @@ def refuse_strange(record: Any, what: str) -> None:
 def refuse_outside(
     text: str, what: str, key: str, number: float, limits: tuple, *, kind: str = "a number"
 ) -> None:
-    """Raise InputError about `what` for a number, of a kind in words, outside of its limits."""
+    """Raise InputError about the argument `what` for a number outside its limits.
+
+    kind: words for the number in the message.
+    """
     low, high = limits
     if not low <= number <= high:
         raise InputError(what, text, f"{key} = {number:g}: allowed is {kind} in {low:g}..{high:g}")
 
 
 def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
-    """Raise InputError about `what` for a share outside 0..1; shares: dict."""
+    """Raise InputError about the argument `what` for a share outside 0..1."""
     for key, share in shares.items():
         refuse_outside(text, what, key, share, (0.0, 1.0), kind="a share")
 
 
 def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) -> None:
-    """... for what is no whole number from 1 to `most`; counts: dict."""
+    """Raise InputError about the argument `what` unless all counts are from 1 to `most`."""
     for key, count in counts.items():
         if count != round(count) or not 1 <= count <= most:
             raise InputError(
@@ -137,13 +144,15 @@ def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) 
 
 
 def name_of(cls: type) -> str:
-    """Name of a class in texts: ContinuousBore is "continuous-bore"."""
+    """Name of a class in texts: "continuous-bore" for ContinuousBore."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
 
 
 def text_of(record: Any) -> str:
-    """Text of a dataclass of numbers: its name, and the numbers that differ from their defaults,
-    to 12 digits."""
+    """Text of a dataclass of numbers: its name, and the numbers that differ from their defaults.
+
+    The numbers have 12 digits.
+    """
     numbers = {field.name: getattr(record, field.name) for field in fields(record)}
     usual = {field.name: field.default for field in fields(record)}
     words = ",".join(f"{k}={v:.12g}" for k, v in numbers.items() if v != usual[k])

@@ -49,7 +49,7 @@ def pressure(name: str) -> Pressure:
         For a file that is not there, is not as described above, or is not the one that the digest
         is of.
     """
-    file, content = named_files.found(name)
+    file, content = named_files.read(name)
     if file.grid not in READINGS:
         raise InputError("pressure", name, f"allowed for grid is one of {', '.join(READINGS)}")
     if file.name not in _KNOWN:

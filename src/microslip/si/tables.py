@@ -20,7 +20,7 @@ from typing import Any
 from microslip.foundation import csv_text
 from microslip.foundation.csv_text import HEADING
 from microslip.foundation.errors import InputError
-from microslip.foundation.user_files import content_of
+from microslip.foundation.named_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """Text that looks like a number; whether it is valid is decided when it is read."""

@@ -1,8 +1,8 @@
-"""Requests of a configuration, batches of requests, and their results.
+"""From a configuration to results: requests, batches of requests, and their records.
 
-A request is a dict of what to compute, with numbers as canonical strings.  The hash of the request
-and the digest of the solver is the key of its result.  A job computes the requests of its batch
-whose results are not in the store, so that the division into batches does not affect the results.
+A request is a plain dict of physical and numerical settings, with numbers as canonical strings.
+The name of its result is a hash of the request and the digest of the solver.  A job gets a batch of
+requests and computes the results that the store does not have, whatever batch computed the others.
 """
 
 import functools
@@ -29,8 +29,7 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Version of the content of records.  It has to be increased if the content changes without a
-change of the solver."""
+"""Version of the content of records, to increase after a change outside the solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states of Figure 5."""
@@ -47,14 +46,14 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
-"""Folders of the store by kind of request.  Results in trials and scaling have measured times."""
+"""Folders of the store by kind of request.  Records of trials and scaling hold measured times."""
 
 
 class PointRequests:
-    """Requests for all points of a records.Sweep, a sequence that is not stored.
+    """Requests for all points of a records.Sweep, generated during iteration.
 
-    The order is that of the dataset: drive, Poisson's ratio, amplitude, velocity; the last axis
-    changes fastest.  A force takes the place of the velocity.
+    Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
+    last one changes fastest.
     """
 
     def __init__(self, sweep: Sweep):
@@ -67,7 +66,7 @@ class PointRequests:
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
-        if pressure != "hertz":  # older requests have no pressure
+        if pressure != "hertz":  # the default is left out: names of older results stay
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
             self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
@@ -104,8 +103,7 @@ class PointRequests:
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
-    """Requests for the single runs in the dataset of the sweep `name`, a list; empty for sweeps of
-    `extended`."""
+    """Requests for the single runs in the dataset of the sweep `name`; [] for extended sweeps."""
     steady = {"motion": "continuous-bore"}
     kinds: dict[str, list[dict]] = {
         "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
@@ -121,21 +119,21 @@ def history_requests(configuration: Configuration, name: str) -> list[dict]:
 
 
 def key_of(request: dict) -> str:
-    """Key of the result of a request, computed by the present code."""
+    """Name of the result of a request with the running code."""
     return result_key(request, source_digest.of_request(request))
 
 
 def result_key(request: dict, digest: str) -> str:
-    """Key of the result of a request, computed by code with a digest.
+    """Name of the result of a request with code of this digest.
 
-    The key is a hash of the request and the digest.  It does not contain the versions of NumPy,
-    SciPy and Numba, which change results by rounding errors; each result records them.
+    It is a hash of the request and the digest.  The versions of NumPy, SciPy and Numba change
+    results by rounding errors.  They are recorded in each result and are no part of the name.
     """
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
     return sha256(canonical_json(content))
 
 
-# Batches, the requests of jobs
+# Batches: the requests of a job
 
 
 class Batch(NamedTuple):
@@ -164,31 +162,26 @@ class Batch(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Hash of the requests and of the code that computes them."""
+        """Hash of the requests and of the code that computes their results."""
         code = sorted({source_digest.of_request(row) for row in self.rows})
         return fingerprint(code, self._asdict(), RECORD_FORMAT)[:20]
 
 
 def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
-    """Divide points into batches of whole rows, or of parts of rows that are longer than a batch.
+    """Batches of whole rows, or of parts of long rows, in the order of the points.
 
     size: mean number of points in a batch.  The order of the points is retained.
     """
     axis, values = requests.last
-    parts = _cut(values, size) if len(values) > size else [values]
-    blocks = _cut(requests.rows, max(size // len(values), 1))
+    parts = cut(values, size) if len(values) > size else [values]
+    blocks = cut(requests.rows, max(size // len(values), 1))
     return [Batch(block, axis, part) for block in blocks for part in parts]
 
 
-def batches_of_requests(requests: Sequence[dict], size: int) -> list[Batch]:
-    """Divide requests into batches; size: mean number of requests in a batch."""
-    return [Batch(part) for part in _cut(requests, size)]
+def cut(items: Sequence, mean: int) -> list[list]:
+    """Consecutive items in lists, of `mean` items on average.
 
-
-def _cut(items: Sequence, mean: int) -> list[list]:
-    """Divide a sequence into lists with `mean` items on average.
-
-    A cut depends only on the item after it, so that a further item changes one list.
+    Each cut depends only on the item after it, so that an additional item changes one list.
     """
     parts: list[list] = []
     for item in items:
@@ -201,33 +194,17 @@ def _cut(items: Sequence, mean: int) -> list[list]:
 def group(request: dict) -> str:
     """Subfolder of the store for the result of a request."""
     motion = request["motion"] if "motion" in request else request["model"]
-    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # without parameters
+    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # without numbers
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
-    """Read the result of a request from the store, or compute and store it.
+    """Record of a request, and the CPU seconds of the solver.
 
-    Parameters
-    ----------
-    request : dict
-        The request.
-    store : Store
-        Store of results.
-    time_limit : float, optional
-        Time limit of a point, as for microslip.solve.
+    The record comes from the store (0 seconds), or is computed and stored.  It has the keys key,
+    request, result and versions.  A result that is not final, see evaluate.is_final, is not stored.
+    Raises CacheError if the record cannot be stored.
 
-    Returns
-    -------
-    record : dict
-        key, request, result and versions.
-    seconds : float
-        CPU time of the solver; 0 for a stored result.
-
-    Raises
-    ------
-    CacheError
-        If the record cannot be stored.  A result that is not final (see evaluate.is_final) is not
-        stored.
+    time_limit: largest time for a point, as for microslip.solve.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -237,6 +214,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
     started = time.process_time()
     result = evaluate.computed(request, time_limit)
     seconds = time.process_time() - started
+    # Equal requests have equal records, so times are left out, except in measurements of time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
     edited = source_digest.LOADED.edited()
     if edited:
@@ -247,18 +225,18 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
 
 
 class SourcesEdited(CacheError):
-    """The code on disk was edited after it was loaded.
+    """The code on disk differs from the running code.
 
-    A result may be of the code before or after the edit, so that it is not stored.
+    A result may then come from either code, so it is not stored under the name of one.
 
     Attributes
     ----------
     record : dict
-        The record that was not stored.
+        The computed record.
     """
 
     def __init__(self, file: str, record: dict | None = None):
-        super().__init__(file, record)  # for pickling between processes
+        super().__init__(file, record)  # for pickle
         self.record = record
 
     def __str__(self) -> str:
@@ -269,16 +247,17 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Records of requests, and their `statistics`."""
+    """Records of the requests, which depend on the requests and the solver alone, and their
+    `statistics`."""
     answers = [answer(request, store) for request in requests]
     records = [record for record, _ in answers]
     return records, statistics(records, [took for _, took in answers])
 
 
 def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Counts of records, sum of the CPU seconds, and True under `final` if all are final.
+    """Counts, CPU seconds and finality of records; logs points that did not converge.
 
-    Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
+    Raises SolverError if the solver failed at all points.
     """
     results = [record["result"] for record in records]
     for record, result in zip(records, results, strict=True):
@@ -299,22 +278,22 @@ def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """Return a function from a request to its record."""
+    """A function from a request to its record, one of these."""
     by_key = {record["key"]: record for record in records}
     return lambda request: by_key[key_of(request)]
 
 
 def label(request: dict) -> str:
-    """Short description of a request, for messages."""
+    """A request in a few words, for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
-    values = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
-    return f"{request.get('motion', request['kind'])} at {values}"
+    place = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
+    return f"{request.get('motion', request['kind'])} at {place}"
 
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the numerical libraries, as a dict."""
+    """Versions of Python and of the numerical libraries, by name."""
     libraries = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
     return {"python": platform.python_version(), **libraries}

@@ -1,7 +1,8 @@
-"""Stamps of products: the inputs of a dataset, page or figure, and the checksums of its files.
+"""Stamps of products: fingerprint of the inputs of a dataset, page or figure, and file checksums.
 
-The names of a product do not depend on its content.  Its stamp, `.made/NAME.json` in the folder of
-results, tells whether it is up to date.  The stamp is written last.
+The files of a product have plain names, which do not change with their content.  Its stamp
+`.made/NAME.json` in the folder of results shows whether they are up to date.  A job writes the
+stamp last.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ log = logging.getLogger(__name__)
 
 FOLDER = ".made"
 AGAIN = ".again"
-"""Name of a file in the folder of results that is newer than all products to be made again."""
+"""Name of a file in the folder of results that is newer than every outdated file."""
 WHEN = 1_000_000_000
-"""Date of AGAIN, in seconds since 1970; products to be made again are dated one second earlier."""
-BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-"""First bytes of an undamaged file, by suffix; checked for files without a stamp."""
+"""Date of AGAIN (s since 1970, in 2001).  Outdated files are dated one second before."""
+HDF5 = b"\x89HDF"
+"""First bytes of a netCDF file."""
 
 
 def stamp_of(product: str) -> str:
@@ -35,13 +36,13 @@ def stamp_of(product: str) -> str:
 
 
 def write(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> None:
-    """Write a stamp; made_of: inputs of the outputs as a text, see app.plan."""
+    """Write a stamp; made_of: fingerprint of the inputs, see app.plan."""
     sums = {Path(file).name: _checksum(file) for file in outputs}
     files.write_atomically(Path(stamp), canonical_json({"made_of": made_of, "sums": sums}).encode())
 
 
 def read(stamp: str | Path) -> dict:
-    """Content of a stamp, made_of and sums; {} if it is missing or damaged."""
+    """Content of a stamp: made_of and sums; empty if the stamp is missing or damaged."""
     try:
         content = json.loads(Path(stamp).read_bytes())
     except (OSError, ValueError):
@@ -50,7 +51,7 @@ def read(stamp: str | Path) -> dict:
 
 
 def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool:
-    """True if the outputs exist, are undamaged and have these inputs."""
+    """True if all outputs exist with the checksums of the stamp, and were made of `made_of`."""
     content = read(stamp)
     if content.get("made_of") != made_of:
         return False
@@ -60,39 +61,38 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
         return False
 
 
-def is_damaged(path: str | Path) -> bool:
-    """True if a dataset, page or figure differs from its stamp, or without a stamp from its format.
+def is_damaged(dataset: Path) -> bool:
+    """True if a netCDF file differs from its stamp; without a stamp, if it is no netCDF file.
 
-    False for a missing file.  Raises CacheError if the file cannot be read.
+    Raises CacheError if the file cannot be read.
     """
-    path = Path(path)
     try:
-        if not path.exists():
-            return False
-        checksum = _stamped(path)
+        checksum = _stamped(dataset.parent / stamp_of(dataset.stem), dataset)
         if checksum is not None:
-            return _checksum(path) != checksum
-        begins = BEGINNINGS.get(path.suffix, b"")
-        with open(path, "rb") as file:
-            return file.read(len(begins)) != begins
+            return _checksum(dataset) != checksum
+        with open(dataset, "rb") as file:
+            return file.read(len(HDF5)) != HDF5
     except OSError as error:
-        raise CacheError(files.advice("read", path, error)) from error
+        raise CacheError(files.advice("read", dataset, error)) from error
 
 
-def set_aside(outputs: Iterable[str | Path]) -> None:
-    """Rename damaged files and files of the user, so that the outputs do not overwrite them."""
+def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
+    """Rename the files of a product that differ from its stamp, before a job writes new ones.
+
+    Such a file is damaged, or the user has put it there and may still need it.
+    """
     for path in map(Path, outputs):
-        if path.is_file() and _checksum(path) != _stamped(path):
+        if path.is_file() and _checksum(path) != _stamped(stamp, path):
             aside = path.with_name(f"{path.name}.damaged")
             os.replace(path, aside)
-            log.warning("%s differs from the output of the workflow: renamed to %s", path, aside)
+            log.warning("%s differs from what the workflow made: renamed to %s", path, aside)
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
-    """Set the dates of files for Snakemake, which makes a file again if it is older than AGAIN.
+    """Date outdated files (not right) back, and set a date in the future to the current time.
 
-    right: False dates the files before AGAIN; True dates files from the future to now, since
-    Snakemake refuses a file that is older than its inputs.
+    Snakemake runs the job again for a file older than its input AGAIN.  It refuses files that are
+    older than an input, even an ancient one.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -102,20 +102,18 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
 
 
 def write_again(path: str | Path, dated: bool) -> None:
-    """Write the file AGAIN with new content, without which Snakemake ignores its date."""
+    """Write the file AGAIN with new content, since Snakemake ignores the date of unchanged files.
+
+    dated: True to give it the date WHEN.
+    """
     files.write_atomically(Path(path), os.urandom(16).hex().encode())
     if dated:
         os.utime(path, (WHEN, WHEN))
 
 
-def _stamped(path: Path) -> str | None:
-    """Checksum of a file in its stamp; None without a stamp."""
-    folder, inner = (path.parent, "")
-    if path.parent.name in ("figures", "summaries"):
-        folder, inner = path.parent.parent, "figures/" * (path.parent.name == "figures")
-    if path.suffix == ".html" and folder == path.parent:
-        inner = "pages/"
-    return read(folder / stamp_of(f"{inner}{path.stem}")).get("sums", {}).get(path.name)
+def _stamped(stamp: str | Path, path: Path) -> str | None:
+    """Checksum of a file according to a stamp; None without one."""
+    return read(stamp).get("sums", {}).get(path.name)
 
 
 def _checksum(file: str | Path) -> str:

@@ -1,8 +1,7 @@
-"""Files of records: one for each result, and one for each batch.
+"""Records on disk: a file for each result, and files of many results.
 
-A file has a line of JSON for each record and a last line with their checksum.  It is written under
-another name, flushed to disk and renamed, so that readers never see a part of it.  A file with a
-wrong checksum counts as missing.
+A file holds records as lines of JSON, then their checksum.  It is written atomically.  A file
+with a wrong checksum counts as missing.
 """
 
 from __future__ import annotations
@@ -20,13 +19,13 @@ from microslip.foundation.errors import CacheError
 log = logging.getLogger(__name__)
 
 NOT_FINAL = b" not final\n"
-"""End of the checksum line if some records are not final, see evaluate.is_final."""
+"""End of the checksum line if a record is not final, see evaluate.is_final."""
 
 
 def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None:
-    """Write records, dicts of JSON values without NaN, to a file, atomically.
+    """Write records, dicts of plain JSON values without NaN, to a file: all of them or none.
 
-    Raises CacheError if the file cannot be written.
+    Raises CacheError if the system refuses.
     """
     content = "".join(f"{canonical_json(record)}\n" for record in records).encode()
     checksum = hashlib.sha256(content).hexdigest().encode()
@@ -34,7 +33,7 @@ def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None
 
 
 def read(path: str | Path) -> list[dict]:
-    """Read the records of a file; raises CacheError, one line, for a missing or damaged file."""
+    """Records of a file in their order; raises CacheError if it is missing or damaged."""
     content = _checked(path)
     if content is None:
         raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
@@ -42,7 +41,7 @@ def read(path: str | Path) -> list[dict]:
 
 
 def is_final(path: str | Path) -> bool:
-    """True if a file is undamaged and its records are final; False for a missing file."""
+    """True for an undamaged file with final records."""
     try:
         content = _checked(path)
     except CacheError:
@@ -51,7 +50,7 @@ def is_final(path: str | Path) -> bool:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool] | None:
-    """Lines of a file without the checksum, and True if they are final; None if damaged."""
+    """Lines of a file without the checksum, and True if it is final; None if it is damaged."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:
@@ -66,19 +65,19 @@ class Store:
     """Results in a folder, which several processes may read and write at the same time."""
 
     def __init__(self, folder: str | Path):
-        """folder: created when the first result is written."""
+        """folder: folder of results; the first result makes it."""
         files.refuse_no_folder(folder)
         self.folder = Path(folder)
         self._tried = False
 
     def path(self, group: str, key: str) -> Path:
-        """Path of the result `key` in the subfolder `group`."""
+        """Path of the result `key`; group: subfolder of a kind of request and a motion."""
         return self.folder / group / key[:2] / f"{key}.json"
 
     def read(self, group: str, key: str) -> dict | None:
-        """Read the record `key`; None if it is missing or damaged.
+        """The record with the name `key`; None if it is missing or damaged.
 
-        A damaged file is logged.  Raises CacheError if the file cannot be read.
+        A damaged file is logged.  Raises CacheError if the system refuses to read it.
         """
         path = self.path(group, key)
         try:
@@ -94,11 +93,11 @@ class Store:
         return records[0]
 
     def write(self, group: str, key: str, record: dict) -> None:
-        """Write a record; raises CacheError if it cannot be written."""
+        """Store `record`; raises CacheError if the system refuses."""
         write(self.path(group, key), [{**record, "key": key}])
 
     def try_writing(self) -> None:
-        """Raise CacheError if the folder cannot be written; checks once."""
+        """Raise CacheError if the folder cannot be written to; tries once, before any work."""
         if not self._tried:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
 """Fit of a contact's coefficient of friction, and of u_lim or G, to measured friction.
 
-`measured` reads and checks the table, `scales` turns its rows into dimensionless
-points for a guess of both numbers, `friction_models` answers for the points, `estimate` is the
-least squares with its intervals, `fit` puts them together and `fitted` holds the answer.
+`measured` reads and checks the table.  `scales` converts its rows to dimensionless points for a
+guess of both numbers.  `friction_models` computes the friction of the points.  `estimate` is the
+least squares with its intervals.  `fit` is the public function, and `fitted` its result.
 """

@@ -11,22 +11,22 @@ from microslip.si.fitting.friction_models import FrictionModel
 from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
-PIECES = 96
-"""Number of points of a curve, approximately: a column of a journal is some 1000 pixels wide."""
+PIECES = 60
+"""Number of points with even steps, and of points with even ratios, on a curve."""
 
 
 class Curve(NamedTuple):
-    """Friction of the fitted contact along its abscissa, one curve after another, shape (n,) each.
+    """Points of the model curves of a fit, one curve after another, shape (n,) each.
 
-    The abscissa is the condition with the most values.  Rows that agree in all other conditions
-    share a curve, if there are two of them at least.
+    The abscissa is the condition with the most values.  At least two rows with equal other
+    conditions share a curve.
 
     Attributes
     ----------
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray
         The conditions, as for the rows of a Fit.
     fitted, fitted_error : np.ndarray
-        Friction of the model and the largest error that it may have, in the unit of the rows.
+        Friction of the model and its error estimate, in the unit of the rows.
     """
 
     speed_m_s: np.ndarray
@@ -38,7 +38,7 @@ class Curve(NamedTuple):
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
-    """The name of the condition with the most values, the first of several."""
+    """Name of the condition with the most values; the first one of equals."""
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
@@ -50,7 +50,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     scale : Scale
         The second unknown, with the rows.
     model : FrictionModel
-        Anchored at the best fit.
+        Model, anchored at the best fit.
     mu, size : float
         Both unknowns at the best fit.
     """
@@ -58,40 +58,31 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     columns = {name: getattr(rows, name) for name in ("speed", "amplitude", "load", "frequency")}
     along = abscissa(columns)
     others = np.stack([values for name, values in columns.items() if name != along], axis=1)
-    _, kinds = np.unique(others, axis=0, return_inverse=True)
-    # The solver answered for the rows alone: what the coarse map is off there is interpolated.
-    at_rows = scale.points(mu, size)
-    off, error = model.at(at_rows) - model.rough(at_rows), model.errors(at_rows)
-    parts = []
-    for kind in np.unique(kinds):
-        chosen = np.flatnonzero(kinds.reshape(-1) == kind)
-        _, first = np.unique(columns[along][chosen], return_index=True)
-        chosen = chosen[first]  # in the order of the abscissa
-        if len(chosen) < 2:
+    _, curve_of_row = np.unique(others, axis=0, return_inverse=True)
+    # The correction of the coarse map is known at the rows, and interpolated between them.
+    points = scale.points(mu, size)
+    correction, error = model.at(points) - model.rough(points), model.errors(points)
+    parts = [np.empty((6, 0))]
+    for curve in np.unique(curve_of_row):
+        members = np.flatnonzero(curve_of_row.reshape(-1) == curve)
+        values, first = np.unique(columns[along][members], return_index=True)
+        if len(values) < 2:
             continue
-        place = np.linspace(0, len(chosen) - 1, _count(len(chosen)))
-        fine = {name: np.full(len(place), values[chosen[0]]) for name, values in columns.items()}
-        fine[along] = _between(columns[along][chosen], place)
-        known = np.arange(len(chosen))
-        corrections = (np.interp(place, known, part[chosen]) for part in (off, error))
-        parts.append(np.stack([*(fine[name] for name in columns), *corrections]))
-    speed, amplitude, load, frequency, off, error = np.concatenate([np.empty((6, 0)), *parts], 1)
+        members, axis = members[first], _axis(values)
+        conditions = {name: np.full(len(axis), each[members[0]]) for name, each in columns.items()}
+        conditions[along] = axis
+        between = (np.interp(axis, values, part[members]) for part in (correction, error))
+        parts.append(np.stack([*conditions.values(), *between]))
+    speed, amplitude, load, frequency, correction, error = np.concatenate(parts, axis=1)
     blank = np.full(len(speed), np.nan)
-    drawn = Measured(speed, amplitude, frequency, load, blank, blank, rows.quantity, {})
-    ratio = model.rough(scale.points(mu, size, drawn)) + off if len(speed) else blank
-    factor = mu * drawn.weight
+    fine = Measured(speed, amplitude, frequency, load, blank, blank, rows.quantity, {})
+    ratio = model.rough(scale.points(mu, size, fine)) + correction if len(speed) else blank
+    factor = mu * fine.weight
     return Curve(speed, amplitude, frequency, load, factor * ratio, factor * error)
 
 
-def _count(rows: int) -> int:
-    """Number of points of a curve through so many rows, which are among them."""
-    return 1 + (rows - 1) * -(-PIECES // (rows - 1))
-
-
-def _between(values: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Values at places between their indices, in equal ratios where both neighbours are above 0."""
-    cell = np.clip(place.astype(int), 0, len(values) - 2)
-    share, low, high = place - cell, values[cell], values[cell + 1]
-    ratio = np.divide(high, low, out=np.ones_like(low), where=low > 0.0)
-    even = np.where(low > 0.0, low * ratio**share, low + share * (high - low))
-    return np.where(share == 0.0, low, np.where(share == 1.0, high, even))
+def _axis(values: np.ndarray) -> np.ndarray:
+    """Sorted values, with more values between them in even steps and in even ratios."""
+    least, most = values[values > 0.0][0], values[-1]
+    even = np.linspace(values[0], most, PIECES), np.geomspace(least, most, PIECES)
+    return np.unique(np.clip(np.concatenate([values, *even]), values[0], most))

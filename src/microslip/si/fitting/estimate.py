@@ -1,42 +1,49 @@
 """Least squares of two positive numbers, with intervals from the profile of the sum of squares.
 
-Both are looked for by their logarithms, theta = (ln mu, ln scale).  An interval holds all values of
-one number for which the other one can be chosen so that the sum of squares stays below a threshold:
-the least one plus a quantile of chi square where the errors of the rows are given, and else of F
-times the mean square that is left.  It does not depend on how the numbers are written, and it may
-be open to one side, which is how rows say that they cannot tell a number.
+The unknowns are theta = (ln mu, ln scale).  The interval of one unknown holds all of its values
+for which the least sum of squares over the other unknown stays below a threshold.  The threshold is
+the least sum of squares plus a quantile: of chi square if the rows have errors, else of the F
+distribution times the mean square residual.  Such an interval does not depend on the
+parametrisation, and it may be infinite on one side.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 SCANNED = 61
-"""Values of the scale between its bounds from which the best one is looked for."""
+"""Number of values of the scale in the scan for initial guesses."""
 MOST_STARTS = 3
+"""Largest number of initial guesses."""
 GUESSED_MU = 0.3
+"""Coefficient of friction at the start of the scan."""
 PASSES = 3
+"""Number of linear fits of mu in the scan."""
 STILL = 1e-10
-"""Change of theta that is none."""
+"""Smallest change of theta that counts."""
 FIRST_STEP = 0.1
+"""First step from the best fit towards an end of an interval, if the curvature is singular."""
 DOUBLINGS = 12
+"""Largest number of steps towards the end of an interval, each twice as long as the last one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Rows that a model is fitted to: value = mu weight ratio + error.
+    """Measured rows, and the model for them: value = mu * weight * ratio + error.
 
     Attributes
     ----------
     ratios : callable
-        thetas, shape (k, 2), to an array, shape (k, n).
-    value, weight, error : np.ndarray, shape (n,)
-        error: the standard error, or what all rows have in common, in any unit.
+        Takes thetas, shape (k, 2), and returns the ratios, shape (k, n).
+    value, weight : np.ndarray, shape (n,)
+        Measured values, in any unit, and the factors from mu to a value.
+    error : np.ndarray, shape (n,)
+        Standard errors in the unit of the values.  If they are unknown, a common scale.
     absolute : bool
-        Whether the errors are known; else they tell no more than how rows compare.
+        Whether the errors are known.
     lower, upper : np.ndarray, shape (2,)
         Bounds of theta.
     """
@@ -50,22 +57,22 @@ class Rows:
     upper: np.ndarray
 
     def residuals(self, theta: np.ndarray) -> np.ndarray:
-        """Value minus model over the error, shape (n,)."""
+        """Value minus model, divided by the error, shape (n,)."""
         (ratio,) = self.ratios(theta[None])
         return (self.value - np.exp(theta[0]) * self.weight * ratio) / self.error
 
 
 @dataclass(frozen=True, eq=False)
 class Best:
-    """A least sum of squares.
+    """A minimum of the sum of squares.
 
     Attributes
     ----------
     theta : np.ndarray, shape (2,)
-        Where it is.
+        Its position.
     squares : float
         Its value.
-    slopes : np.ndarray, shape (n, 2)
+    slopes : np.ndarray, shape (n, number of free unknowns)
         Derivatives of the residuals.
     """
 
@@ -74,23 +81,41 @@ class Best:
     slopes: np.ndarray
 
 
-def best_near(rows: Rows, theta: np.ndarray) -> Best:
-    """The least sum of squares next to a start."""
+def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Best:
+    """The minimum of the sum of squares next to a start, over some unknowns.
+
+    Parameters
+    ----------
+    theta : np.ndarray, shape (2,)
+        The start.
+    free : sequence of int
+        Indices of the unknowns to fit; the other one is fixed.
+    """
     from scipy.optimize import least_squares
 
-    inside = np.clip(theta, rows.lower + STILL, rows.upper - STILL)
-    settings = {"bounds": (rows.lower, rows.upper), "xtol": STILL, "ftol": STILL, "gtol": STILL}
-    found = least_squares(rows.residuals, inside, diff_step=1e-5, **settings)
-    return Best(found.x, 2.0 * float(found.cost), found.jac)
+    free = list(free)
+    theta = np.array(theta)
+
+    def residuals(values: np.ndarray) -> np.ndarray:
+        point = theta.copy()
+        point[free] = values
+        return rows.residuals(point)
+
+    bounds = rows.lower[free], rows.upper[free]
+    start = np.clip(theta[free], bounds[0] + STILL, bounds[1] - STILL)
+    settings = {"xtol": STILL, "ftol": STILL, "gtol": STILL, "diff_step": 1e-5}
+    solution = least_squares(residuals, start, bounds=bounds, **settings)
+    theta[free] = solution.x
+    return Best(theta, 2.0 * float(solution.cost), solution.jac)
 
 
 def starts(rows: Rows) -> list[np.ndarray]:
-    """Initial guesses: the best places of a scan over all scales, the best one first."""
+    """Initial guesses of theta from a scan over all scales, the best one first."""
     thetas = np.empty((SCANNED, 2))
     thetas[:, 0] = np.clip(np.log(GUESSED_MU), rows.lower[0], rows.upper[0])
     thetas[:, 1] = np.linspace(rows.lower[1], rows.upper[1], SCANNED)
     measured = rows.value / rows.error
-    for _ in range(PASSES):  # mu by linear least squares, for the ratios that belong to the last mu
+    for _ in range(PASSES):  # mu by linear least squares, with the ratios of the last mu
         slopes = rows.weight / rows.error * rows.ratios(thetas)
         mu = slopes @ measured / np.maximum((slopes * slopes).sum(axis=1), np.finfo(float).tiny)
         mu = np.maximum(mu, np.finfo(float).tiny)
@@ -103,13 +128,13 @@ def starts(rows: Rows) -> list[np.ndarray]:
 
 
 def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> float:
-    """How much above the least one a sum of squares may be.
+    """Largest difference from the least sum of squares inside an interval.
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
-        Largest error of the model, over the error of the row: what is less than it in one row
-        tells nothing.
+        Largest error of the model in each row, divided by the error of the row.  The threshold is
+        at least the mean square of these.
     """
     from scipy.stats import chi2, f
 
@@ -122,14 +147,14 @@ def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> f
 
 
 def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float, float]:
-    """Both ends of one number of theta, infinite where the rows leave it open.
+    """Both ends of the interval of one unknown; an end that the rows do not determine is infinite.
 
     Parameters
     ----------
     which : int
         0 for mu, 1 for the scale.
     allowed : float
-        What `threshold` says.
+        The value of `threshold`.
     """
     return _end(rows, best, which, allowed, -1.0), _end(rows, best, which, allowed, 1.0)
 
@@ -137,21 +162,23 @@ def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float,
 def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> float:
     from scipy.optimize import brentq
 
-    other = 1 - which
-    last = [best.theta[other]]
+    last = best.theta
 
-    def above(value: float) -> float:
-        """Sum of squares above what is allowed, with the other number as good as it can be."""
-        last[0], squares = _other_best(rows, which, value, last[0])
-        return squares - best.squares - allowed
+    def excess(value: float) -> float:
+        """Least sum of squares at a value of the unknown, above the threshold."""
+        nonlocal last
+        start = np.where(np.arange(2) == which, value, last)
+        minimum = best_near(rows, start, free=[1 - which])
+        last = minimum.theta
+        return minimum.squares - best.squares - allowed
 
     start = float(best.theta[which])
     bound = float((rows.lower if side < 0.0 else rows.upper)[which])
     step, inner = _first_step(best, which, allowed), start
     for _ in range(DOUBLINGS):
         outer = start + side * step if step < abs(bound - start) else bound
-        if above(outer) > 0.0:
-            return float(brentq(above, inner, outer, xtol=1e-6)) if inner != outer else start
+        if excess(outer) > 0.0:
+            return float(brentq(excess, inner, outer, xtol=1e-6)) if inner != outer else start
         if outer == bound:
             return side * np.inf
         inner, step = outer, 2.0 * step
@@ -166,40 +193,16 @@ def _first_step(best: Best, which: int, allowed: float) -> float:
     return float(np.clip(np.sqrt(allowed * np.linalg.inv(curvature)[which, which]), 1e-6, 1.0))
 
 
-def _other_best(rows: Rows, which: int, value: float, start: float) -> tuple[float, float]:
-    """The other number where one is held, and the sum of squares there."""
-    from scipy.optimize import least_squares
-
-    other = 1 - which
-
-    def theta(x: np.ndarray) -> np.ndarray:
-        both = np.empty(2)
-        both[which], both[other] = value, x[0]
-        return both
-
-    bounds = rows.lower[other], rows.upper[other]
-    inside = np.clip(start, bounds[0] + STILL, bounds[1] - STILL)
-    found = least_squares(
-        lambda x: rows.residuals(theta(x)), [inside], bounds=bounds, diff_step=1e-5
-    )
-    return float(found.x[0]), 2.0 * float(found.cost)
-
-
-def shifts(best: Best, model: np.ndarray, told: list[int]) -> np.ndarray:
-    """How far errors of the model can move the numbers that are told, to first order.
+def shifts(best: Best, model: np.ndarray, determined: list[int]) -> np.ndarray:
+    """Largest effect of the errors of the model on theta, to first order, shape (2,).
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
-        Largest error of the model in each row, over the error of the row.
-    told : list of int
-        Which of theta are told; the others are held.
-
-    Returns
-    -------
-    np.ndarray, shape (2,)
-        0 for those that are not.
+        Largest error of the model in each row, divided by the error of the row.
+    determined : list of int
+        Indices of the unknowns that the rows determine.  The shift of the other one is 0.
     """
-    moved = np.zeros(2)
-    moved[told] = np.abs(np.linalg.pinv(best.slopes[:, told])) @ model
-    return moved
+    shift = np.zeros(2)
+    shift[determined] = np.abs(np.linalg.pinv(best.slopes[:, determined])) @ model
+    return shift

@@ -9,7 +9,7 @@ import numpy as np
 from microslip.foundation.arguments import SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError
 from microslip.si.fitting import estimate
-from microslip.si.fitting.conclusions import Settled, concluded
+from microslip.si.fitting.conclusions import concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import (
     LEAST,
@@ -28,9 +28,11 @@ SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
 """Default and largest accepted error of mu_macro, where the solver computes it."""
 CONFIDENCE = 0.95
+"""Default confidence level of the intervals."""
 MOST_PASSES = 6
+"""Largest number of fits with a newly anchored model."""
 SETTLED = 5e-4
-"""Relative change of both numbers from pass to pass."""
+"""Relative change of both numbers between two fits that ends the iteration."""
 
 
 def fit(
@@ -52,9 +54,9 @@ def fit(
 ) -> Fit:
     """Fit mu, and u_lim or the shear modulus, to measured friction.
 
-    Without a radius u_lim is fitted, and Poisson's ratio is the only property of the bodies that is
-    needed.  With a radius the shear modulus is fitted, by Hertz's theory.  In both cases Hertz's
-    theory brings rows under several loads together.
+    Without a radius, the unknowns are mu and u_lim, and Poisson's ratio is the only property of the
+    bodies.  With a radius, the unknowns are mu and the shear modulus.  In both cases the dependence
+    on the load follows Hertz's theory.
 
     Parameters
     ----------
@@ -62,25 +64,26 @@ def fit(
         "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
     measured : path, mapping or pandas DataFrame
         A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns
-        under such headings, in the SI where they have no unit: speed, amplitude, frequency, load;
-        friction (the mean forward force) or mu (the same over the load); friction_error or
-        mu_error, standard errors, if known; texts named label, name, id, sample or comment.
+        under such headings; without a unit they are in SI units.  The columns are speed,
+        amplitude, frequency, load; friction (mean forward force) or mu (friction over load);
+        optionally their standard errors friction_error or mu_error, and texts named label, name,
+        id, sample or comment.
     map : xarray.Dataset, optional
-        Dataset of a sweep of this motion, see open_map.  Interpolating it is fast; without it the
-        solver computes every point.
+        Dataset of a sweep of this motion, see open_map.  Interpolation in a map is fast.  Without a
+        map the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
-        What all rows have in common, in place of a column.
+        Common value of all rows, in place of a column.
     nu : quantity, optional
-        Poisson's ratio of the one half-space that stands for both bodies; that of the map or 0 if
-        not given.  With a radius it is needed: that of the bodies.
+        Poisson's ratio of the equivalent half-space; default: that of the map, or 0.  With a radius
+        it is required, and is Poisson's ratio of the bodies.
     radius : quantity, optional
-        Radius of relative curvature, m: of a sphere on a flat its own.
+        Radius of relative curvature, m; for a sphere on a flat the radius of the sphere.
     counterbody : str, optional
-        Beside a radius "rigid", which it is if not given, or "same": as the first body.
+        With a radius: "rigid" (default), or "same" for the material of the first body.
     confidence : quantity, optional
-        Confidence level of the intervals, 0.95 if not given.
+        Confidence level of the intervals, default 0.95.
     tolerance : quantity, optional
-        Largest accepted error of mu_macro where the solver answers, 1e-3 if not given.
+        Largest accepted error of mu_macro of the solver, default 1e-3.
     decimal, encoding : str
         The decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
 
@@ -92,8 +95,8 @@ def fit(
     Raises
     ------
     InputError
-        For a table that cannot be read, fewer rows than it takes, rows of one condition, and rows
-        that do not even tell mu.
+        For an unreadable table, too few rows, rows of one condition, and rows that do not determine
+        mu.
     """
     if not isinstance(motion, str) or motion not in UNIT_OF_AMPLITUDE:
         raise InputError("motion", motion, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
@@ -110,37 +113,44 @@ def fit(
         model: FrictionModel = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
         limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
-        given = TOLERANCE if tolerance is None else tolerance
-        allowed_error = read("tolerance", given, "", low_open=False, **limits).si
-        reached = [scale.points(0.3, end) for end in ends]
-        model = SolvedFriction(motion, scale.poisson, allowed_error, reached)
+        accuracy = TOLERANCE if tolerance is None else tolerance
+        allowed_error = read("tolerance", accuracy, "", low_open=False, **limits).si
+        extremes = [scale.points(0.3, end) for end in ends]
+        model = SolvedFriction(motion, scale.poisson, allowed_error, extremes)
     rows_to_fit = _rows(rows, scale, model, ends)
-    best, others = _best(rows_to_fit, scale, model)
-    settled = Settled(motion, scale, model, rows_to_fit, best, others)
+    fits = _fits(rows_to_fit, scale, model)
     try:
-        return concluded(settled, accepted, texts | rows.texts)
+        return concluded(
+            scale,
+            model,
+            rows_to_fit,
+            fits,
+            motion=motion,
+            confidence=accepted,
+            texts=texts | rows.texts,
+        )
     except InputError as error:
         if error.argument != "measured":
             raise
         raise error.renamed("measured", named(measured)) from None
 
 
-def _refuse_too_few(rows: Measured, given: object) -> None:
+def _refuse_too_few(rows: Measured, table: object) -> None:
     least = 2 if rows.has_errors else 3
-    given, count = named(given), len(rows.value)
+    name, count = named(table), len(rows.value)
     if count < least:
         more = "" if rows.has_errors else ", or two with errors of their own"
         allowed = f"{count} row{'s' if count > 1 else ''}; two numbers take at least {least}{more}"
-        raise InputError("measured", given, allowed)
+        raise InputError("measured", name, allowed)
     if rows.distinct < 2:
-        allowed = "all rows are of one condition, which tells one number; allowed: two or more"
-        raise InputError("measured", given, allowed)
+        allowed = "all rows are of one condition; allowed: two or more conditions"
+        raise InputError("measured", name, allowed)
 
 
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
 ) -> tuple[Scale, dict[str, str]]:
-    """The second unknown, and texts of what was understood."""
+    """The second unknown, and the texts of its inputs."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
@@ -149,10 +159,10 @@ def _scale(
         if motion == "bore":
             raise InputError("radius", None, "bore needs it: its amplitude is an angle")
         if counterbody is not None:
-            raise InputError("counterbody", counterbody, "allowed beside a radius")
+            raise InputError("counterbody", counterbody, "allowed with a radius")
         return Displacement(rows, 0.0 if ratio is None else ratio.si), texts
     if ratio is None:
-        raise InputError("nu", None, "needed beside a radius")
+        raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
     texts["counterbody"] = "rigid, as none was given" if counterbody is None else counterbody
@@ -167,7 +177,7 @@ def _rows(
     """The rows, weights and limits for the least squares."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
-        """Ratios of all guesses in one call, which takes a map as long as a single guess."""
+        """Ratios of all guesses in one call, which is faster for a map."""
         parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
         return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
 
@@ -183,16 +193,13 @@ def _rows(
     )
 
 
-def _best(
-    rows: estimate.Rows, scale: Scale, model: FrictionModel
-) -> tuple[estimate.Best, list[estimate.Best]]:
-    """The best fit, and others that were tried, the best one first."""
-    tried = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
-    tried.sort(key=lambda one: one.squares)
-    best = tried[0]
+def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
+    """The best fit, with the model anchored at it, then the fits from other initial guesses."""
+    fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
+    best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):
         model.anchor(scale.points(*np.exp(best.theta)))
         last, best = best, estimate.best_near(rows, best.theta)
         if np.abs(best.theta - last.theta).max() <= SETTLED:
             break
-    return best, tried[1:]
+    return [best, *others]

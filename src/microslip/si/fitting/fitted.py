@@ -18,60 +18,60 @@ if TYPE_CHECKING:
 class Fit:
     """Coefficient of friction and u_lim of a contact, from measured friction.
 
-    Intervals hold the scatter of the rows, at the confidence that was asked for, and on top of it
-    the largest error that the model may have, which is not a matter of chance.
+    An interval covers the scatter of the rows at a confidence level, plus the error estimate of the
+    model, which is not random.
 
     Attributes
     ----------
     motion : str
         The motion.
     quantity : str
-        What was measured: "friction", a force in N, or "mu", a coefficient.
+        Measured quantity: "friction", a force in N, or "mu", a coefficient.
     mu, mu_low, mu_high : float
         Coefficient of friction without vibration, dimensionless, and its interval.
     u_lim_m, u_lim_low_m, u_lim_high_m : float or None
-        Displacement that lets the whole contact slide under the mean load, m, and its interval;
-        None where the rows do not tell it, or leave it open to that side.
+        Displacement at which the whole contact slides under the mean load, m, and its interval.
+        None if the rows do not determine it, or leave the interval open on this side.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
-        Shear modulus of the bodies, Pa, and its interval; None unless their radius was given.
+        Shear modulus of the bodies, Pa, and its interval; None in a fit without a radius.
     load_N : float
         The mean load, N.
     confidence : float
         Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
-        How far errors of the model can move mu, and u_lim or the shear modulus: the relative part
-        of the intervals that is not scatter.
+        Largest relative effect of model errors on mu, and on u_lim or the shear modulus, which the
+        intervals include.
     standard_error : float or None
-        Standard error of one row, from the residuals of the fit, in the unit of the rows.  None if
-        the rows have errors of their own.
+        Standard error of one row, from the residuals of the fit, in the unit of the rows.  None for
+        rows with standard errors.
     chi_square, p_value : float or None
-        Weighted sum of squares of rows with errors of their own, and the probability that chance
-        makes it larger.
+        Weighted sum of squares, and the probability of a larger one by chance.  None for rows
+        without standard errors.
     degrees_of_freedom : int
-        Rows less two.
+        Number of rows minus 2.
     told : tuple of str
-        What the rows tell: "mu", and "u_lim" or "shear_modulus".
+        Numbers that the rows determine: "mu", and "u_lim" or "shear_modulus".
     reason : str
-        Why not both of them.
+        The reason if the rows do not determine both numbers, else empty.
     warnings : tuple of str
-        What makes the answer doubtful.
+        Doubts about the result.
     understood : dict of str
-        What was asked.
+        Inputs as text.
     labels : dict of list
         Columns of texts in the table, by their names.
     left_out : tuple of str
-        Lines of the table that cannot be read, and why; the fit is without them.
+        Unreadable lines of the table, with reasons; the fit does not use them.
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
         Conditions of each row; the amplitude in m, or rad for a bore.
     velocity, amplitude : np.ndarray, shape (rows,)
         Speed and amplitude of each row as dimensionless groups at the best fit, as for
         microslip.solve.
     measured, measured_error : np.ndarray, shape (rows,)
-        N or dimensionless; the error NaN where none was given.
+        Measured values and standard errors, N or dimensionless; NaN for an unknown error.
     fitted, fitted_error : np.ndarray, shape (rows,)
-        What the model says, and the largest error that it may have there, in the same unit.
+        Values of the model and their error estimates, in the unit of the measured values.
     residual : np.ndarray, shape (rows,)
-        Measured less fitted over the standard error, dimensionless.
+        (measured - fitted) / standard error, dimensionless.
     curve : Curve
         Friction of the model between the rows, for figures.
     """
@@ -115,7 +115,7 @@ class Fit:
     curve: Curve = field(repr=False)
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict, arrays and tuples as lists; without the curve."""
+        """All fields except the curve as a dict, with lists for arrays and tuples."""
 
         def plain(value: object) -> object:
             if isinstance(value, np.ndarray):
@@ -126,36 +126,36 @@ class Fit:
         return {name: plain(getattr(self, name)) for name in names}
 
     def to_xarray(self) -> xr.Dataset:
-        """Rows as variables over `row`, other numbers without a dimension, texts as attributes.
+        """The fit as a dataset: rows along `row`, numbers without a dimension, texts as attributes.
 
-        The curve is in variables `curve_NAME` over `curve_point`.
+        The curve is in variables `curve_NAME` along `curve_point`.
         """
         import xarray as xr
 
         names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
         units = dict.fromkeys(names, "N" if self.quantity == "friction" else "1")
         units["amplitude_si"] = "rad" if self.motion == "bore" else "m"
-        found: dict[str, tuple] = {}
-        about: dict[str, str] = {}
+        variables: dict[str, tuple] = {}
+        attributes: dict[str, str] = {}
         for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
             if isinstance(value, Curve):
                 for part, values in value._asdict().items():
-                    found[f"curve_{part}"] = (
+                    variables[f"curve_{part}"] = (
                         "curve_point",
                         values,
                         {"units": units.get(part, unit_of(part))},
                     )
             elif isinstance(value, np.ndarray):
-                found[name] = ("row", value, {"units": units.get(name, unit_of(name))})
+                variables[name] = ("row", value, {"units": units.get(name, unit_of(name))})
             elif name == "labels":
-                found |= {label: ("row", texts) for label, texts in value.items()}
+                variables |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
-                about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
+                attributes[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
             elif isinstance(value, tuple):
-                about[name] = "; ".join(value)
+                attributes[name] = "; ".join(value)
             elif isinstance(value, str):
-                about[name] = value
+                attributes[name] = value
             else:
                 number = np.nan if value is None else value
-                found[name] = ((), number, {"units": units.get(name, unit_of(name))})
-        return xr.Dataset(found, attrs=about)
+                variables[name] = ((), number, {"units": units.get(name, unit_of(name))})
+        return xr.Dataset(variables, attrs=attributes)

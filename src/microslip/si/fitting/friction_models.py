@@ -1,9 +1,9 @@
 """Friction of the rows of a fit: from a finished map, or from the solver and a coarse map.
 
-A fit asks for the same rows hundreds of times, at other guesses of both unknowns.  The solver
-answers once for a coarse map, which tells how friction changes from guess to guess, and then for
-the rows themselves at the best guess so far, which tells how far the coarse map is off there.  What
-is left of the coarse map's error at the end is of second order.
+A fit needs the friction of all rows at hundreds of guesses of both unknowns.  The solver computes a
+coarse map once, for the change of friction between guesses.  Then it computes the rows themselves
+at the best guess so far, which corrects the coarse map there.  At the end, the remaining error of
+the coarse map is of second order.
 """
 
 from __future__ import annotations
@@ -19,38 +19,39 @@ from microslip.foundation.errors import InputError
 from microslip.si.fitting.scales import Points
 
 LEAST, MOST = 0.03, 20.0
-"""Amplitudes beyond which more or less of it tells nothing: nearly all of the contact sticks, and
-nearly all of it slides all the time."""
+"""Smallest and largest amplitude of the coarse map.  Below, nearly all of the contact sticks;
+above, nearly all of it slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Velocities over the amplitude, or velocities of a bore, outside which friction tells nothing."""
+"""Smallest and largest velocity over amplitude (velocity for a bore) of the coarse map."""
 PROVED = ("transverse", "bore")
-"""Motions that a map answers for beyond its own range, for Poisson's ratio 0."""
+"""Motions whose maps have values outside the tabulated range, for Poisson's ratio 0."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
+"""Nodes of the coarse map per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio is 0 to save time: it hardly changes the slopes."""
+"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes; 0 saves time."""
 MOST_SOLVED = 200
-"""Rows that the solver answers for one by one."""
+"""Largest number of rows for a fit without a map."""
 
 
 class FrictionModel:
     """A model that gives mu_macro of the rows and its estimated error, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
-        """mu_macro of all rows for one guess after the other.
+        """mu_macro of all rows, for one guess after the other.
 
-        An error of it only bends the way to the answer.
+        Its errors far from the anchor only affect the path of the iteration.
         """
         raise NotImplementedError
 
     def rough(self, points: Points) -> np.ndarray:
-        """mu_macro at any points, without what the anchor corrects at the rows."""
+        """mu_macro at any points, without the corrections at the anchor."""
         return self.at(points)
 
     def anchor(self, points: Points) -> None:
-        """Take these points for the best guess so far, and be as right as can be around them."""
+        """Compute corrections at the points of the best guess so far."""
 
     def errors(self, points: Points) -> np.ndarray:
-        """Largest error of `at` next to the points of the last anchor."""
+        """Error estimates of `at` next to the points of the last anchor."""
         raise NotImplementedError
 
 
@@ -67,7 +68,7 @@ class MapFriction(FrictionModel):
     Raises
     ------
     InputError
-        For what is no such dataset, or does not know that ratio.
+        For another dataset, or one without this Poisson's ratio.
     """
 
     def __init__(self, dataset: Any, motion: str, poisson: float | None):
@@ -77,15 +78,15 @@ class MapFriction(FrictionModel):
             what = attributes.get("motion") or kind
             raise InputError("map", what, f"allowed is the dataset of a sweep of {motion}")
         if {"drive", "contacts"} & set(attributes):
-            allowed = "allowed is that of one contact that is moved at a velocity"
-            raise InputError("map", motion, f"it is pulled or has several contacts; {allowed}")
+            allowed = "allowed is a map of one contact with a prescribed velocity"
+            raise InputError("map", motion, f"it has a drive or several contacts; {allowed}")
         self._dataset, self._poisson = dataset, poisson
         axes = (dataset[name] for name in ("velocity", "amplitude"))
         self._ends = [(float(axis.where(axis > 0.0).min()), float(axis.max())) for axis in axes]
         self._proved = motion in PROVED and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
-        if not self._proved:  # what is asked on the way may lie anywhere
+        if not self._proved:  # guesses may lie outside the map
             parts = zip(points, self._ends, strict=True)
             points = Points(*(np.clip(part, *ends) for part, ends in parts))
         return self._answer(points)[0]
@@ -94,7 +95,7 @@ class MapFriction(FrictionModel):
         try:
             return self._answer(points)[1]
         except ValueError as error:
-            problem = f"does not hold the rows at the best fit: {error}"
+            problem = f"does not contain the rows at the best fit: {error}"
             raise InputError("map", self._dataset.attrs.get("motion"), problem) from None
 
     def _answer(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -102,33 +103,33 @@ class MapFriction(FrictionModel):
 
         velocity, amplitude = (DataArray(part, dims="row") for part in points)
         try:
-            found = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
+            answer = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
         except InputError as error:
             if error.argument == "poisson":
                 raise error.renamed("nu") from None
             raise
-        return found.mu_macro.values, found.mu_macro_error.values
+        return answer.mu_macro.values, answer.mu_macro_error.values
 
 
 class SolvedFriction(FrictionModel):
     """The solver by way of a coarse map over the logarithms of amplitude and ratio.
 
-    The ratio is the velocity over the amplitude, which of a motion along a line does not depend on
-    u_lim; of a bore the velocity is such a ratio itself.
+    The ratio is the velocity over the amplitude, which does not depend on u_lim; for a bore the
+    velocity itself is such a ratio.
 
     Parameters
     ----------
     motion : str
-        The motion.
+        Name of the motion.
     poisson, tolerance : float
-        As microslip.solve takes them.
+        Arguments of microslip.solve.
     ends : list of Points
-        Points of the rows at both ends of what may be guessed.
+        Points of the rows at the smallest and the largest guess.
 
     Raises
     ------
     InputError
-        For more rows than the solver answers for.
+        For more than MOST_SOLVED rows.
     """
 
     def __init__(self, motion: str, poisson: float, tolerance: float, ends: list[Points]):
@@ -149,12 +150,12 @@ class SolvedFriction(FrictionModel):
         self._errors = np.full(count, np.inf)
 
     def at(self, points: Points) -> np.ndarray:
-        off = np.resize(self._off, len(points.amplitude))  # of each row, for every guess
+        off = np.resize(self._off, len(points.amplitude))  # for each row of every guess
         return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
 
     def anchor(self, points: Points) -> None:
-        found = [self._solved(v, a) for v, a in zip(*points, strict=True)]
-        values, self._errors = np.array(found).T
+        answers = [self._solved(v, a) for v, a in zip(*points, strict=True)]
+        values, self._errors = np.array(answers).T
         self._off = values - self._coarse(points)
 
     def errors(self, points: Points) -> np.ndarray:
@@ -189,7 +190,7 @@ class SolvedFriction(FrictionModel):
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 
     def _solved(self, velocity: float, amplitude: float) -> tuple[float, float]:
-        """mu_macro and its error by the solver, each point once."""
+        """mu_macro and its error estimate by the solver; each point is solved once."""
         point = float(velocity), float(amplitude)
         if point not in self._known:
             self._known[point] = _solution(self._motion, *point, self._settings)
@@ -199,20 +200,20 @@ class SolvedFriction(FrictionModel):
 def _solution(
     motion: str, velocity: float, amplitude: float, settings: dict[str, Any]
 ) -> tuple[float, float]:
-    """mu_macro and its error by the solver."""
+    """mu_macro and its error estimate by the solver."""
     if amplitude == 0.0:
         return 1.0, 0.0
     point = (min(part, LARGEST["velocity"]) for part in (velocity, amplitude))
-    found = solve(motion, *point, **settings)
-    if not np.isfinite(found.mu_macro):
+    result = solve(motion, *point, **settings)
+    if not np.isfinite(result.mu_macro):
         where = f"velocity {velocity:.3g} and amplitude {amplitude:.3g}"
-        problem = f"no answer at {where}: {found.reason}"
+        problem = f"no answer at {where}: {result.reason}"
         raise InputError("tolerance", settings["tolerance"], problem)
-    return found.mu_macro, found.mu_macro_error
+    return result.mu_macro, result.mu_macro_error
 
 
 def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
-    """Nodes from the least to the largest of some logarithms, at least four."""
+    """At least four nodes that cover some logarithms."""
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
     return np.linspace(low, high, count)

@@ -1,4 +1,4 @@
-"""The rows of a table of measured friction, completed by what is the same for all of them.
+"""Rows of a table of measured friction, with the values that all rows share.
 
 speed [mm/s],amplitude [um],friction [N]
 1,0.5,1.93
@@ -21,15 +21,16 @@ from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, is_table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
-"""Conditions that every row needs."""
+"""Conditions of every row."""
 COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
     "friction": Range("N", low=-math.inf),
     "friction_error": Range("N"),
     "mu": Range("", low=-math.inf),
     "mu_error": Range(""),
 }
-"""Columns that a table may have; the amplitude of a bore is in rad."""
+"""Allowed columns; the amplitude of a bore is in rad."""
 MOST_ROWS = 10_000
+"""Largest number of rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +42,15 @@ class Measured:
     speed, amplitude, frequency, load : np.ndarray
         m/s, m (rad for a bore), Hz and N.
     value, error : np.ndarray
-        Measured friction, N or dimensionless, and its standard error; NaN where none was given.
+        Measured friction, N or dimensionless, and its standard error; NaN if unknown.
     quantity : str
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
-        What was understood of what all rows share.
+        Inputs that all rows share, as text.
     labels : dict of list
         Columns of texts, by their names.
     left_out : tuple of str
-        Lines that cannot be read, and why.
+        Unreadable lines, with reasons.
     """
 
     speed: np.ndarray
@@ -79,12 +80,12 @@ class Measured:
 
     @property
     def distinct(self) -> int:
-        """How many different conditions there are."""
+        """Number of different conditions."""
         return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
 
 
 def read_measured(
-    motion: str, given: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
+    motion: str, source: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
 ) -> Measured:
     """The rows of a CSV file or of a table of columns, checked; raises InputError.
 
@@ -92,26 +93,26 @@ def read_measured(
     ----------
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
-    given : path, mapping or pandas DataFrame
-        The file, or columns by their names: in the SI, or with a unit as in "speed [mm/s]".
+    source : path, mapping or pandas DataFrame
+        The file, or columns by their names: in SI units, or with a unit as in "speed [mm/s]".
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
-        speed, amplitude, frequency and load where they are no columns.
+        Values of speed, amplitude, frequency and load in place of columns.
     """
-    if not is_table(given):
-        raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
+    if not is_table(source):
+        raise InputError("measured", source, "allowed is the path of a CSV file, or its columns")
     units = {name: column.unit for name, column in COLUMNS.items()}
     units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
     needed = {name: bool(unit) for name, unit in units.items()}
-    table = table_of("measured", given, needed, decimal=decimal, encoding=encoding)
-    columns, labels, left_out = _numbers(table, given, units)
+    table = table_of("measured", source, needed, decimal=decimal, encoding=encoding)
+    columns, labels, left_out = _numbers(table, source, units)
     count = len(next(iter(columns.values())))
     texts: dict[str, str] = {}
     conditions: dict[str, Any] = {}
     for name in CONDITIONS:
         if (name in columns) == (shared[name] is not None):
-            where = "both a column and given for all rows" if name in columns else "missing"
+            where = "both a column and an argument" if name in columns else "missing"
             allowed = f"it is {where}; allowed is a column, or one value for all rows"
             raise InputError(name, shared[name], allowed)
         if name in columns:
@@ -121,9 +122,9 @@ def read_measured(
             one = read(name, shared[name], units[name], low_open=low_open)
             conditions[name], texts[name] = np.full(count, one.si), one.text
     if not (conditions["amplitude"] > 0.0).any():
-        allowed = "no row with an amplitude above 0; nothing vibrates"
-        raise InputError("measured", named(given), allowed)
-    quantity = _quantity(columns, given)
+        allowed = "no row with an amplitude above 0, so that nothing vibrates"
+        raise InputError("measured", named(source), allowed)
+    quantity = _quantity(columns, source)
     return Measured(
         **conditions,
         value=columns[quantity],
@@ -136,33 +137,33 @@ def read_measured(
 
 
 def _numbers(
-    table: Table, given: object, units: Mapping[str, str]
+    table: Table, source: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
-    """Columns in the SI, labels, and messages about lines of a file that cannot be read.
+    """Columns in SI units, labels, and messages about unreadable lines of a file.
 
-    Rows without any value are left out, and lines that cannot be read; elsewhere the first value
-    that cannot be read is an error.
+    Rows without any value and unreadable lines of a file are left out.  An unreadable value of
+    other tables raises InputError.
     """
     names = [name for name in table.columns if name not in LABELS]
-    strange = [name for name in names if name not in COLUMNS]
-    if strange or not names:
-        which = repr(strange[0]) if strange else "nothing"
+    unknown = [name for name in names if name not in COLUMNS]
+    if unknown or not names:
+        which = repr(unknown[0]) if unknown else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
-        raise InputError("measured", named(given), allowed)
+        raise InputError("measured", named(source), allowed)
     for name, column in table.columns.items():
         if not isinstance(column, list):
             allowed = f"allowed is a sequence of numbers, in {units.get(name, 'a text each')}"
             raise InputError(name, column, allowed)
     if len({len(column) for column in table.columns.values()}) > 1:
-        raise InputError("measured", named(given), "columns of several lengths; allowed is one")
-    rows, kept, left_out = [], [], []
+        raise InputError("measured", named(source), "columns of several lengths; allowed is one")
+    rows, indices, left_out = [], [], []
     for index, row in enumerate(zip(*(table.columns[name] for name in names), strict=True)):
         if index in table.errors:
             left_out.append(table.errors[index])
         elif any(value is not None for value in row):
             try:
                 rows.append([_number(*pair, units) for pair in zip(names, row, strict=True)])
-                kept.append(index)
+                indices.append(index)
             except InputError as error:
                 if not table.lines:
                     allowed = f"{error.allowed}, in row {index + 1}"
@@ -171,16 +172,16 @@ def _numbers(
                 left_out.append(f"line {table.lines[index]}: {problem}")
     if not rows:
         problem = left_out[0] if left_out else "no rows; allowed is a row for each measurement"
-        raise InputError("measured", named(given), problem)
+        raise InputError("measured", named(source), problem)
     if len(rows) > MOST_ROWS:
         raise InputError("measured", len(rows), f"allowed are at most {MOST_ROWS} rows")
     columns = dict(zip(names, np.array(rows).T, strict=True))
-    labels = {name: [texts[index] for index in kept] for name, texts in table.labels.items()}
+    labels = {name: [texts[index] for index in indices] for name, texts in table.labels.items()}
     return columns, labels, tuple(left_out)
 
 
 def _number(name: str, value: object, units: Mapping[str, str]) -> float:
-    """A value in the SI; raises InputError."""
+    """A value in SI units; raises InputError."""
     if value is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
@@ -188,18 +189,18 @@ def _number(name: str, value: object, units: Mapping[str, str]) -> float:
     return read(name, value, units[name], low=column.low, low_open=column.low_open).si
 
 
-def _quantity(table: Mapping[str, np.ndarray], given: object) -> str:
-    """Which of both was measured."""
-    there = [name for name in ("friction", "mu") if name in table]
-    if len(there) != 1:
-        many = "both friction and mu" if there else "neither friction nor mu"
-        raise InputError("measured", named(given), f"has {many}; allowed is one of them")
+def _quantity(table: Mapping[str, np.ndarray], source: object) -> str:
+    """The measured quantity, friction or mu."""
+    columns = [name for name in ("friction", "mu") if name in table]
+    if len(columns) != 1:
+        many = "both friction and mu" if columns else "neither friction nor mu"
+        raise InputError("measured", named(source), f"has {many}; allowed is one of them")
     for name in ("friction", "mu"):
-        if f"{name}_error" in table and name not in there:
-            raise InputError("measured", named(given), f"has {name}_error without {name}")
-    return there[0]
+        if f"{name}_error" in table and name not in columns:
+            raise InputError("measured", named(source), f"has {name}_error without {name}")
+    return columns[0]
 
 
-def named(given: Any) -> str | list:
-    """A table as messages show it: its path, or the names of its columns."""
-    return str(given) if isinstance(given, str | os.PathLike) else list(given)
+def named(source: Any) -> str | list:
+    """A table in messages: its path, or the names of its columns."""
+    return str(source) if isinstance(source, str | os.PathLike) else list(source)

@@ -1,8 +1,8 @@
-"""From a guess of both unknowns to the dimensionless points of all rows, and back.
+"""From a guess of both unknowns to the dimensionless points of all rows.
 
-The unknowns are mu and a second one that sets the scale: u_lim at the mean load, which needs no
-knowledge of the bodies, or the shear modulus.  Under another load u_lim goes like
-its power 2/3 and the contact radius like its power 1/3 (Hertz).
+The unknowns are mu, and either u_lim at the mean load or the shear modulus.  For u_lim no property
+of the bodies is needed.  u_lim is proportional to load^(2/3), and the contact radius to load^(1/3)
+(Hertz).
 """
 
 from __future__ import annotations
@@ -34,8 +34,7 @@ class Scale:
     rows : Measured
         The measurements.
     poisson : float
-        Poisson's ratio, dimensionless: of the one half-space that stands for both bodies, or of the
-        bodies.
+        Poisson's ratio of the equivalent half-space, or of the bodies.
     unit, name : str
         Unit of the second unknown, and its name in words.
     """
@@ -47,15 +46,15 @@ class Scale:
 
     @property
     def mean_load(self) -> float:
-        """N."""
+        """Mean load of the rows, N."""
         return float(self.rows.load.mean())
 
     def u_lim(self, mu: float, scale: float) -> float:
-        """At the mean load, m."""
+        """u_lim at the mean load, m."""
         raise NotImplementedError
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown, for amplitudes from `least` to `most`."""
+        """Range of the second unknown that gives amplitudes from `least` to `most`."""
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
@@ -72,13 +71,13 @@ class Displacement(Scale):
     unit, name = "m", "u_lim"
 
     def u_lim(self, mu: float, scale: float) -> float:
-        """At the mean load, m."""
+        """u_lim at the mean load, m."""
         return scale
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range that lets the amplitudes of some rows be within a range.
+        """Range of u_lim that gives amplitudes from `least` to `most`.
 
-        At its ends all that are not 0 are at most `least`, or at least `most`.
+        At the ends of the range, all amplitudes except 0 are at most `least`, or at least `most`.
         """
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
@@ -87,14 +86,16 @@ class Displacement(Scale):
 
 @dataclass(frozen=True, eq=False)
 class Modulus(Scale):
-    """The second unknown is the shear modulus, Pa: of one body on a rigid one, or of two alike.
+    """The second unknown is the shear modulus, Pa.
+
+    The bodies are of this modulus, or one of them is rigid.
 
     Attributes
     ----------
     spin : bool
-        Whether the amplitude is an angle, of a bore.
+        True for a bore, whose amplitude is an angle.
     alike : bool
-        Whether both bodies have that modulus; else the second one is rigid.
+        True if both bodies have this modulus, False if the second one is rigid.
     radius : float
         Radius of relative curvature, m.
     """
@@ -105,7 +106,7 @@ class Modulus(Scale):
     unit, name = "Pa", "shear modulus"
 
     def contact(self, mu: float, scale: float) -> TwoBodies:
-        """The contact under the mean load."""
+        """The contact at the mean load."""
         body = Material(2.0 * scale * (1.0 + self.poisson), self.poisson)
         other = body if self.alike else RIGID
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
@@ -117,17 +118,17 @@ class Modulus(Scale):
             return super().points(mu, scale, rows)
         contact, share = self.contact(mu, scale), rows.load / self.mean_load
         arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
-        moving = arc > 0.0  # an angle of 0 leaves no unit for the velocity, and needs none
+        moving = arc > 0.0  # at an angle of 0 the velocity does not matter
         velocity = np.divide(rows.speed, rows.omega * arc, out=np.zeros_like(arc), where=moving)
         size = arc / (contact.u_lim * share ** (2.0 / 3.0))
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Shear moduli of bodies that are pressed on one another, whatever the amplitudes."""
+        """Smallest and largest shear modulus of solid bodies, for all amplitudes."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:
-        """At the mean load, m."""
+        """u_lim at the mean load, m."""
         return self.contact(mu, scale).u_lim
 
 
