@@ -53,7 +53,7 @@ _WHERE = {
     "propulsion": "microslip.adaptive.propulsion",
     "shakedown": "microslip.adaptive.shakedown",
     "Shakedown": "microslip.adaptive.shakedown",
-    "PropulsionLine": "microslip.adaptive.propulsion_line",
+    "PropulsionLine": "microslip.adaptive.propulsion",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }

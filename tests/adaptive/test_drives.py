@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import microslip
-from microslip.adaptive import pulled as adaptive_pulled
+from microslip.adaptive import driven_contact
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder
 from microslip.estimate.refine import unknown
@@ -20,8 +20,8 @@ from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.method import Method
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.theory import indenters, paper
 
@@ -141,7 +141,7 @@ def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
 
 def moving_at(problem, drive, cells=24, steps=64, method=None):
     settings = Settings() if method is None else Settings(method)
-    found = simulate_pulled(
+    found = simulate_driven(
         replace(problem, drive=drive),
         "radial",
         Resolution(cells, 1, steps),
@@ -173,11 +173,10 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
     def unsolved(asked, accuracy):
-        refined = unknown("a step was left unsolved")
-        refined = replace(refined, value=Estimate(5.4, {"solver": 1e9}))
-        return refined, Ladder(1, 0, 0)
+        refined = unknown("a step was left unsolved", Ladder(1, 0, 0))
+        return replace(refined, value=Estimate(5.4, {"solver": 1e9}))
 
-    monkeypatch.setattr(adaptive_pulled, "_refined", unsolved)
+    monkeypatch.setattr(driven_contact, "_refined", unsolved)
     found = microslip.solve("transverse", amplitude=1.0, force=0.8)
     assert math.isnan(found.velocity) and found.velocity_error == math.inf
     assert (found.converged, found.reason) == (False, "a step was left unsolved")

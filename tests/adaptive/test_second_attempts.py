@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive import continuation, moved
+from microslip.adaptive import continuation, friction
 from microslip.solver import simulate
 from microslip.solver.effort import Effort
 
@@ -102,7 +102,7 @@ def test_these_points_need_it(monkeypatch):
     motion, poisson, velocity, amplitude, tolerance = HARD[3]
     settings = {"poisson": poisson, "tolerance": tolerance}
     assert answered(*HARD[3]).effort.retried > 0
-    monkeypatch.setattr(moved, "run_safely", lambda run_at, v, guess: run_at(v, guess))
+    monkeypatch.setattr(friction, "run_safely", lambda run_at, v, guess: run_at(v, guess))
     answer = microslip.solve(motion, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason

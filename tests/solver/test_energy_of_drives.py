@@ -18,7 +18,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.run import AS_SHIPPED
 
 DRIVES = {
@@ -51,7 +51,7 @@ def travel_of(contact, problem, phase):
 def balance(problem, drive, model, resolution):
     """Mean powers: of the vibration, of the drive, of slip and of the dashpot."""
     driven = replace(problem, drive=drive)
-    found = simulate_pulled(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    found = simulate_driven(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
     assert found.converged, found.reason
     contact = contact_of(problem, model, resolution)
     load = (drive.force or 0.0) - drive.damping * problem.drift

@@ -8,6 +8,7 @@ from microslip.adaptive.history import STARTS
 from microslip.models.polar.contact import PolarContact
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.continuous_bore import ContinuousBore
+from microslip.motions.problem import Problem
 from microslip.solver.steady import steady_state
 from microslip.theory import hertz, paper
 
@@ -91,11 +92,7 @@ def test_steady_field_covers_the_disc():
 def test_nothing_sticks_around_a_centre_of_rotation_inside(build):
     """Claim 4, from the operator: tractions that stand still slip with the rigid velocity."""
     contact = build()
-
-    def displacement(phase):
-        return ContinuousBore().displacement(phase, 0.5, None, 0.3)
-
-    found = steady_state(contact, displacement, 0.5, 1e-5, 1e-8)
+    found = steady_state(contact, Problem(ContinuousBore(), 0.5, poisson=0.3), 1e-5, 1e-8)
     assert found.converged
     loaded = np.broadcast_to(contact.bound > 0, contact.forward_position.shape)
     used = np.hypot(*found.state)[loaded] / np.broadcast_to(contact.bound, loaded.shape)[loaded]

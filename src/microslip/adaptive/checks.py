@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from microslip.foundation.arguments import (
@@ -230,12 +229,6 @@ def refuse_bounds(**given: float | None) -> None:
     for name, value in given.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
-
-
-def refuse_progress(progress: Callable | None) -> None:
-    """Raise InputError where `progress` is neither None nor callable."""
-    if progress is not None and not callable(progress):
-        raise InputError("progress", progress, "allowed is a function of one argument")
 
 
 def _count(name: str, value: int | None, low: int) -> int | None:

@@ -180,13 +180,12 @@ def traction_field(
         count("cells", cells, 2, most=LARGEST["cells"])
     contact = _contact(problem, "polar", cells)
     assert isinstance(contact, PolarContact)
-    found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
-    if not found.converged:
-        failure = (
-            f"no steady state: {found.distance:.1e} left, residual {found.solver_residual:.1e}"
-        )
+    run = steady_state(contact, problem, 1e-6, STEP_TOLERANCE)
+    if not run.converged:
+        failure = f"{run.reason}, residual {run.solver_residual:.1e}"
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
-    (forward,), (lateral,) = whole_disc(contact, -found.state[None])
+    assert run.state is not None  # as of every steady state
+    (forward,), (lateral,) = whole_disc(contact, -run.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {
         "lateral_position": lateral_position,

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.checks import (
-    checked_driven_problem,
-    checked_request,
-    refuse_bounds,
-    refuse_progress,
-)
-from microslip.adaptive.choice import choose_model, method_refusal
-from microslip.adaptive.request import TOLERANCE, Request, budget_for
+from microslip.adaptive.checks import checked_driven_problem
+from microslip.adaptive.request import TOLERANCE, Request, request_for
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.foundation.errors import InputError
@@ -22,8 +15,7 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.method import Method
-from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
+from microslip.solver.method_names import SHIPPED
 
 
 def solve(
@@ -118,24 +110,16 @@ def solve(
         mass=mass,
         damping=damping,
     )
-    tolerance, cells, steps = checked_request(tolerance, cells, steps)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
-    refuse_progress(progress)
-    name = choose_model(problem, model)
-    how = method_named(method)
-    _refuse_method(problem, name, method, how)
-    request = Request(
-        problem=problem,
-        model=name,
-        chosen=model == "auto",
-        method=method,
-        how=how,
-        tolerance=tolerance,
+    request = request_for(
+        problem,
+        model,
+        tolerance,
         cells=cells,
         steps=steps,
-        budget=budget_for(name, most_work, time_limit),
+        method=method,
+        most_work=most_work,
+        time_limit=time_limit,
         progress=progress,
-        started=time.perf_counter(),
     )
     return _answer(request) if problem.velocity >= 0.0 else _answer_backward(request)
 
@@ -143,10 +127,11 @@ def solve(
 def _answer(request: Request) -> Result:
     if request.problem.drive is None:
         return solve_each(request)
-    from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
+    # imported only here, since it loads compiled code
+    from microslip.adaptive.driven_contact import refuse_request, solve_driven
 
-    refuse_pull(request)
-    return solve_pulled(request)
+    refuse_request(request)
+    return solve_driven(request)
 
 
 def _answer_backward(request: Request) -> Result:
@@ -155,17 +140,6 @@ def _answer_backward(request: Request) -> Result:
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
     answer = _answer(replace(request, problem=behind))
     return replace(answer, mean_velocity=-answer.mean_velocity, friction=-answer.friction)
-
-
-def _refuse_method(problem: Problem, model: str, method: str, how: Method) -> None:
-    """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
-    refuse_missing(method)
-    refusal = method_refusal(problem, model, how)
-    if not refusal and how.run is not None:
-        refusal = "it is one run, which cannot be refined"
-    if refusal:
-        name = problem.motion.name
-        raise InputError("method", method, f"does not apply to {name}, model {model}: {refusal}")
 
 
 KERNELS: dict[str, tuple[dict[str, Any], ...]] = {

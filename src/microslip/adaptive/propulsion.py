@@ -27,21 +27,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
-from microslip.adaptive.checks import (
-    checked_propulsion,
-)
-from microslip.adaptive.moved import Marched, marched
-from microslip.adaptive.no_load import NoLoad, no_load
-from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.checks import checked_propulsion
+from microslip.adaptive.friction import Plan, plan_for
 from microslip.adaptive.request import TOLERANCE, Request, request_for
-from microslip.adaptive.vibration_power import mean_speed, power_as_force
+from microslip.adaptive.vibration_power import Answer, mean_speed
 from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
+from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
@@ -51,8 +49,89 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
+FACTOR = 4.0
+"""From one velocity to the next in search of one at which the contact resists."""
+FASTEST = 1e6
+MOST_HALVINGS = 60
+WIDENING = 1.5
+"""Steps away from the no-load velocity over the way in which friction rises by its error."""
+MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
 """The reason of a motion that propels nothing, with the lowest and the highest of these forces."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PropulsionLine:
+    """Load and velocity of a self-propelled motion, from stall to no load.
+
+    All values except the time are dimensionless.  Forces are divided by mu times the mean normal
+    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the unit of
+    the motion's own velocity.  Every error estimate belongs to the field before it.
+
+    Attributes
+    ----------
+    motion, pressure, model : str
+        What moves, how the load is spread, and the contact model.
+    amplitude, poisson, tolerance : float
+        As asked for.
+    stall_force, stall_force_error : float
+        Load that stops the motion; 0 where it propels nothing, below 0 where it propels backward.
+    no_load_velocity, no_load_velocity_error : float
+        Velocity without a load, with the same sign.
+    holding_force_low, holding_force_low_error : float or None
+        Lowest of the forces against which friction holds a body at rest, below 0: a pull backward;
+        None where the motion propels the contact.
+    holding_force_high, holding_force_high_error : float or None
+        Highest of these forces.
+    velocity, force, force_error : np.ndarray, shape (points,)
+        From 0 to the no-load velocity in equal parts, and the force that is pulled with there.  No
+        points where nothing is driven.
+    power_out, power_out_error : np.ndarray, shape (points,)
+        force times velocity.
+    power_in, power_in_error : np.ndarray, shape (points,)
+        Mean work of the oscillation.
+    efficiency, efficiency_error : np.ndarray, shape (points,)
+        Power out over power in.
+    converged : bool
+        Whether the forces and powers are within the tolerance; of powers over the mean speed of the
+        oscillation.
+    reason : str
+        Why not, or why nothing is driven; else empty.
+    solve_time_s : float
+        Seconds by the wall clock.
+    """
+
+    motion: str
+    pressure: str
+    model: str
+    amplitude: float
+    poisson: float
+    tolerance: float
+    stall_force: float
+    stall_force_error: float
+    no_load_velocity: float
+    no_load_velocity_error: float
+    holding_force_low: float | None = None
+    holding_force_low_error: float | None = None
+    holding_force_high: float | None = None
+    holding_force_high_error: float | None = None
+    velocity: np.ndarray
+    force: np.ndarray
+    force_error: np.ndarray
+    power_out: np.ndarray
+    power_out_error: np.ndarray
+    power_in: np.ndarray
+    power_in_error: np.ndarray
+    efficiency: np.ndarray
+    efficiency_error: np.ndarray
+    converged: bool
+    reason: str
+    solve_time_s: float
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict, arrays as lists."""
+        fields = dict(vars(self))
+        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
 
 def propulsion(
@@ -103,25 +182,12 @@ def propulsion(
     """
     problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
     points = count("points", points, 2, most=MOST_POINTS)
-    bounds = {"most_work": most_work, "time_limit": time_limit}
-    request = request_for(problem, model, tolerance, **bounds, progress=progress)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    request = request_for(
+        problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
+    )
     return _line(_Contact(request), points)
-
-
-class Known(NamedTuple):
-    """The value of a quantity at a velocity, with its error estimate.
-
-    Attributes
-    ----------
-    value, error : float
-        The value, and its estimated error.
-    reason : str
-        Why it is not within the tolerance, else empty.
-    """
-
-    value: float
-    error: float
-    reason: str
 
 
 class _Contact:
@@ -151,37 +217,40 @@ class _Contact:
         image.sign = -self.sign
         return image
 
-    def friction(self, velocity: float) -> Known:
+    def friction(self, velocity: float) -> Answer:
         return self._certified(velocity, "mu")
 
-    def power(self, velocity: float) -> Known:
+    def power(self, velocity: float) -> Answer:
         """Mean work of the oscillation: its error is that of a force times the mean speed."""
         found = self._certified(velocity, "power")
-        return Known(self.speed * found.value, self.speed * found.error, found.reason)
+        return Answer(self.speed * found.value, self.speed * found.error, found.reason)
 
-    def _certified(self, velocity: float, quantity: str) -> Known:
+    def _certified(self, velocity: float, quantity: str) -> Answer:
         if (velocity, quantity) not in self.done:
-            run, ladder, readings = self._marched(velocity)
+            run, ladder, readings = self._plan(velocity)
+            read: Callable[[Run], float] = attrgetter("mu")
             if quantity == "power":
-                run = power_as_force(run, self.speed)
-                readings = [power_as_force(other, self.speed) for other in readings]
-            found = refine(run, ladder, self.request.accuracy, readings)
+                read = self._power_as_force
+            found = refine(run, ladder, self.request.accuracy, readings, read)
             reason, estimate = found.reason, found.value
             if found.converged and estimate.error > self.request.accuracy:
                 reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.done[velocity, quantity] = Known(estimate.value, estimate.error, reason)
+            self.done[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
         return self.done[velocity, quantity]
 
-    def _marched(self, velocity: float) -> Marched:
+    def _power_as_force(self, run: Run) -> float:
+        return run.power / self.speed
+
+    def _plan(self, velocity: float) -> Plan:
         if velocity not in self.done:
             there = replace(
                 self.request,
                 problem=replace(self.request.problem, velocity=velocity),
                 budget=self.request.budget.renewed(),
             )
-            plan = marched(there)
+            plan = plan_for(there)
             readings = [_remembered(run) for run in plan.readings]
             self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
         return self.done[velocity]
@@ -222,26 +291,26 @@ def _line(contact: _Contact, points: int) -> PropulsionLine:
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
-    found = NoLoad(0.0, spread, "")
-    known = Known(0.0, stall_error, "")
+    found = Answer(0.0, spread, "")
+    known = Answer(0.0, stall_error, "")
     line = _record(contact, known, found, np.zeros(0), (converged, reason))
     return replace(line, **holding)
 
 
 def _moving(contact: _Contact, points: int) -> PropulsionLine:
     """The PropulsionLine of a motion that drives in its own forward direction."""
-    stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
+    stall, found = contact.friction(0.0), Answer(math.nan, math.inf, "")
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
         found = no_load(contact.friction, contact.first)
-    if math.isfinite(found.velocity):
-        velocity = np.linspace(0.0, found.velocity, points)
+    if math.isfinite(found.value):
+        velocity = np.linspace(0.0, found.value, points)
     reason = stall.reason or found.reason
     return _record(contact, stall, found, velocity, (not reason, reason))
 
 
 def _record(
-    contact: _Contact, stall: Known, found: NoLoad, velocity: np.ndarray, verdict: tuple[bool, str]
+    contact: _Contact, stall: Answer, found: Answer, velocity: np.ndarray, verdict: tuple[bool, str]
 ) -> PropulsionLine:
     request, sign = contact.request, contact.sign
     problem, (converged, reason) = request.problem, verdict
@@ -264,7 +333,7 @@ def _record(
         tolerance=request.accuracy,
         stall_force=sign * -stall.value + 0.0,
         stall_force_error=stall.error,
-        no_load_velocity=sign * found.velocity,
+        no_load_velocity=sign * found.value,
         no_load_velocity_error=found.error,
         velocity=sign * velocity + 0.0,  # no zero has a sign
         force=sign * force,
@@ -279,3 +348,73 @@ def _record(
         reason=reason,
         solve_time_s=request.seconds,
     )
+
+
+def no_load(friction: Callable, first: float) -> Answer:
+    """The velocity at which friction vanishes, 0 where it is not negative at velocity 0.
+
+    Parameters
+    ----------
+    friction : callable
+        friction(velocity) -> a record with value, error and reason, for velocities of at least 0,
+        where 0 stands for the limit.
+    first : float
+        Velocity above 0 to begin with.
+    """
+    still = friction(0.0)
+    high = first
+    while not (resists := friction(high)).value > 0.0:
+        high *= FACTOR
+        if resists.reason or high > FASTEST:
+            return Answer(math.nan, math.inf, resists.reason or "drives at any velocity")
+    velocity, slope = 0.0, (resists.value - still.value) / high
+    if still.value < 0.0:
+        velocity, slope, reason = _root(friction, (0.0, still.value), (high, resists.value))
+        if reason:
+            return Answer(math.nan, math.inf, reason)
+    below = _certain(friction, velocity, -1.0, slope)
+    above = _certain(friction, velocity, 1.0, slope)
+    if above is None or below is None:
+        return Answer(velocity, math.inf, "no velocity is known at which it resists for certain")
+    return Answer(velocity, max(above - velocity, velocity - below), "")
+
+
+def _root(
+    friction: Callable, low: tuple[float, float], high: tuple[float, float]
+) -> tuple[float, float, str]:
+    """A velocity at which friction is 0 within its error, the slope there, and why there is none.
+
+    low, high: velocity and friction on both sides.  Chords and halvings take turns.
+    """
+    for turn in range(MOST_HALVINGS):
+        width, rise = high[0] - low[0], high[1] - low[1]
+        slope = rise / width
+        middle = low[0] - low[1] / slope if turn % 2 == 0 else 0.5 * (low[0] + high[0])
+        found = friction(middle)
+        if found.reason:
+            return middle, slope, found.reason
+        if abs(found.value) <= found.error:
+            # by the slope to the side on which more is known of it
+            return max(middle - found.value / slope, 0.5 * middle), slope, ""
+        if found.value < 0.0:
+            low = middle, found.value
+        else:
+            high = middle, found.value
+    return middle, slope, ""
+
+
+def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
+    """The velocity next to another at which the sign of friction is certain; 0 below the lowest
+    such one, None above the highest."""
+    step = WIDENING * friction(velocity).error / slope
+    if not math.isfinite(step):
+        return 0.0 if sign < 0.0 else None
+    for _ in range(MOST_WIDENINGS):
+        place = velocity + sign * step
+        if place <= 0.0:
+            return 0.0
+        found = friction(place)
+        if sign * found.value > found.error:
+            return place
+        step *= 2.0
+    return 0.0 if sign < 0.0 else None

@@ -49,6 +49,6 @@ def _solve(request: Request) -> Result:
     exact = known_exactly(request)
     if exact is not None:
         return exact
-    from microslip.adaptive.moved import solve_moved  # only now: it loads compiled code
+    from microslip.adaptive.friction import solve_friction  # only now: it loads compiled code
 
-    return solve_moved(request)
+    return solve_friction(request)

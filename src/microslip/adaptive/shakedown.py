@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
+from operator import attrgetter
 from typing import Any
 
-from microslip.adaptive.checks import (
-    checked_problem,
-)
-from microslip.adaptive.pulled import STATIC_TOLERANCE, refuse_drive
+from microslip.adaptive.checks import checked_problem
+from microslip.adaptive.driven_contact import STATIC_TOLERANCE, refuse_drive
 from microslip.adaptive.request import Request, request_for, verdict
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
@@ -26,8 +25,8 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
-from microslip.estimate.ladder import Ladder, ladder_for
-from microslip.estimate.refine import Refined, refine, run_tolerance, unknown
+from microslip.estimate.ladder import ladder_for
+from microslip.estimate.refine import refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -35,11 +34,9 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run, Settings
 from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
-from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
@@ -160,9 +157,12 @@ def shakedown(
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
     problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
-    bounds = {"most_work": most_work, "time_limit": time_limit}
-    request = request_for(problem, model, tolerance, **bounds, progress=progress)
+    request = request_for(
+        problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
+    )
     refuse_drive(problem, request.model)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
@@ -209,44 +209,34 @@ def _threshold(request: Request, force: float) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Fields of a Shakedown that comes of runs."""
+    """Fields of a Shakedown that follow from its runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
-    try:  # the plan depends on where slip starts, and finds it again by itself
-        found_focus(planned, request.model, request.budget, request.progress)
-    except Spent as spent:
-        return _fields(request, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
     ladder = ladder_for(planned, request.model, request.accuracy)
     # the coarsest run, too, must hold the force
     ladder = replace(ladder, start=2 * ladder.start)
     left = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
-    finest: dict[Resolution, ShakedownRun] = {}
+    runs: dict[Resolution, ShakedownRun] = {}
 
     def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
         if request.progress is not None:
             request.progress(resolution)
-        finest[resolution] = run_to_rest(
+        runs[resolution] = run_to_rest(
             request.problem, force, request.model, resolution, left, settings
         )
-        return finest[resolution]
+        return runs[resolution]
 
-    refined = refine(run, ladder, request.accuracy, (), "displacement")
-    last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
-    return _fields(request, refined, ladder, last)
-
-
-def _fields(
-    request: Request, refined: Refined, ladder: Ladder, last: ShakedownRun | None
-) -> dict[str, Any]:
-    """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
-    said = verdict(request, refined, ladder, request.tolerance)
-    taken = {field.name for field in fields(Shakedown)}
-    errors = {ERRORS[source]: error for source, error in refined.value.by_source.items()}
-    return {name: value for name, value in said.items() if name in taken} | {
-        **errors,
+    refined = refine(run, ladder, request.accuracy, read=attrgetter("displacement"))
+    answer = verdict(request, refined, request.tolerance)
+    names = {field.name for field in fields(Shakedown)}
+    result = {name: value for name, value in answer.items() if name in names}
+    result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
+    result |= {
         "work": refined.effort.work,
         "displacement": refined.value.value,
         "displacement_error": refined.value.error,
-        "pushed": math.nan if last is None else last.pushed,
-        "most_after": math.nan if last is None else last.most_after,
     }
+    if runs:
+        finest = runs[max(runs, key=lambda one: (one.cells, one.steps))]
+        result |= {"pushed": finest.pushed, "most_after": finest.most_after}
+    return result

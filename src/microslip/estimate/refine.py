@@ -62,6 +62,8 @@ class Refined:
         Why it is not converged, else empty.
     periodic : bool
         Whether every run found its periodic state.
+    ladder : ladder.Ladder
+        Ladder of the runs.
     """
 
     value: Estimate
@@ -73,16 +75,17 @@ class Refined:
     converged: bool
     reason: str
     periodic: bool
+    ladder: Ladder
 
 
 UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
 """The estimate of a quantity of which nothing is known."""
 
 
-def unknown(reason: str) -> Refined:
+def unknown(reason: str, ladder: Ladder) -> Refined:
     """Result of a problem whose budget ended before the first estimate."""
     none = Resolution(0, 0, 0)
-    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False)
+    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False, ladder)
 
 
 def run_tolerance(tolerance: float) -> float:
@@ -95,7 +98,7 @@ def refine(
     ladder: Ladder,
     tolerance: float,
     readings: Sequence[Callable] = (),
-    quantity: str = "mu",
+    read: Callable[[Run], float] = attrgetter("mu"),
 ) -> Refined:
     """Refine until the estimated error is within the tolerance.
 
@@ -109,8 +112,8 @@ def refine(
         Absolute, on the quantity.
     readings : sequence of callable
         Like `run`, under other pressures that the same numbers may stand for.
-    quantity : str
-        Attribute of a run.Run: "mu", or "velocity" under a prescribed force.
+    read : callable
+        read(run) -> the quantity.
 
     Returns
     -------
@@ -118,7 +121,7 @@ def refine(
         Not converged, with the reason, where a run did not converge, the levels end, or a run
         raised budget.Spent: then it is the estimate before that run, NaN if there was none.
     """
-    levels = _Levels(run, ladder, readings, quantity)
+    levels = _Levels(run, ladder, readings, read)
     goal, refined = tolerance, None
     try:
         for level in ladder.levels(tolerance):
@@ -134,7 +137,7 @@ def refine(
             goal = tolerance - rest
     except Spent as spent:
         if refined is None:
-            return unknown(f"{spent}: no error is known yet")
+            return unknown(f"{spent}: no error is known yet", ladder)
         reason = f"{spent}: the error is still {refined.value.error:.1e}"
         return replace(refined, converged=False, reason=reason)
     assert refined is not None  # as no ladder is without levels
@@ -150,10 +153,9 @@ class _Levels:
         run: Callable[[Resolution, Run | None], Run],
         ladder: Ladder,
         readings: Sequence[Callable],
-        quantity: str,
+        read: Callable[[Run], float],
     ):
-        self.run, self.ladder, self.readings = run, ladder, readings
-        self.read = attrgetter(quantity)
+        self.run, self.ladder, self.readings, self.read = run, ladder, readings, read
         self.runs: dict[int, Run] = {}
         self.other_runs: dict[tuple[int, int], Run] = {}
 
@@ -197,6 +199,7 @@ class _Levels:
             converged=not reason,
             reason=reason,
             periodic=not reason,
+            ladder=self.ladder,
         )
 
     def _of(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from microslip.models.contact import (
     forces,
     forward_slip,
 )
+from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
@@ -108,7 +110,7 @@ def _run(
     """Like `simulate`, but the tolerance is a force over mu F_z, and failures raise StepFailure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
-        return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
+        return steady_state(contact, problem, tolerance, STEP_SHARE * tolerance)
     share = step_share(contact.stiffness * problem.drift, resolution.steps, settings.tighter)
     step_tolerance = share * tolerance
     search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
@@ -171,7 +173,16 @@ class _Search:
             found = self._find(start, near=start is not guess.state)
         if found is None or not found.converged:
             found = self._search_afresh()
-        return self._summary(found)
+        return run_of_searches(
+            self.contact,
+            self.problem,
+            self.path,
+            self.done,
+            self.step_tolerance,
+            self.problem.mean_load,
+            static_force=self.drift_rate.static_force,
+            power=oscillation_power(self.problem, self.path, found.forces),
+        )
 
     def _start_from(self, guess: Run | None) -> np.ndarray | None:
         """Tractions of a guess on the points of this contact; None: it is of no use here."""
@@ -235,45 +246,44 @@ class _Search:
         self.done.append(search(period_map, start, goal))
         return self.done[-1]
 
-    def _summary(self, found: PeriodicState) -> Run:
-        full = self.problem.mean_load
-        forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
-        solves = sum(one.solves for one in self.done)
-        iterations = sum(one.iterations for one in self.done)
-        periods = periods_of(sum(one.marches for one in self.done), self.problem)
-        reason = unsolved(found.solver_residual, self.path.solves, self.step_tolerance)
-        if not found.converged:
-            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
-        return Run(
-            mu=float(forward) / full,
-            torque=float(torque) / self.problem.pressure.torque,
-            distance=found.distance / full,
-            solver_residual=found.solver_residual / full,
-            periods=periods,
-            effort=Effort.of(solves, iterations, found.start.size),
-            converged=not reason,
-            reason=reason,
-            state=found.start,
-            static_force=self.drift_rate.static_force,
-            power=oscillation_power(self.problem, self.path, found.forces),
-        )
+
+def run_of_searches(
+    contact: Contact,
+    problem: Problem,
+    path: Path,
+    searches: Sequence[PeriodicState],
+    step_tolerance: float,
+    unit: float,
+    **others: float,
+) -> Run:
+    """The Run of the last search, with the effort of all searches.
+
+    unit: force over mu F_z by which its distance and residual are divided; others: further fields
+    of the Run.
+    """
+    found = searches[-1]
+    forward, _, torque = mean_forces(contact, problem, path, found.forces)
+    periods = periods_of(sum(one.marches for one in searches), problem)
+    reason = unsolved(found.solver_residual, path.solves, step_tolerance)
+    if not found.converged:
+        reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+    solves = sum(one.solves for one in searches)
+    iterations = sum(one.iterations for one in searches)
+    return Run(
+        mu=float(forward) / problem.mean_load,
+        torque=float(torque) / problem.pressure.torque,
+        distance=found.distance / unit,
+        solver_residual=found.solver_residual / unit,
+        periods=periods,
+        effort=Effort.of(solves, iterations, found.start.size),
+        converged=not reason,
+        reason=reason,
+        state=found.start,
+        **others,
+    )
 
 
 def periods_of(marches: int, problem: Problem) -> float:
     """Full periods in so many marches: each is half a period if the second half is the mirror image
     of the first."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)
-
-
-def _steady_run(contact: Contact, problem: Problem, tolerance: float, step_tolerance: float) -> Run:
-    found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
-    return Run(
-        mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / problem.pressure.torque,
-        distance=found.distance,
-        solver_residual=found.solver_residual,
-        periods=0.0,
-        effort=Effort.of(found.solves, found.iterations, found.state.size),
-        converged=found.converged,
-        reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
-    )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from operator import attrgetter
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
-from microslip.adaptive.request import Request, verdict, within_friction
+from microslip.adaptive.request import Request, driven_by, verdict, within_friction
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -26,20 +26,19 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.estimate.ladder import Ladder, ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance, unknown
+from microslip.estimate.ladder import ladder_for, refuse_free, with_mass
+from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
-from microslip.motions.drive import Drive, Force
+from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Run, Settings
-from microslip.solver.stick_edge import found_focus
 from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
@@ -83,7 +82,7 @@ def refuse_drive(problem: Problem, model: str) -> None:
         raise InputError("velocity", 0.0, allowed)
 
 
-def refuse_pull(request: Request) -> None:
+def refuse_request(request: Request) -> None:
     """Raise InputError where what is asked does not go with a drive."""
     drive = drive_of(request.problem)
     refuse_drive(request.problem, request.model)
@@ -92,35 +91,27 @@ def refuse_pull(request: Request) -> None:
         raise InputError("method", request.method, f"allowed is {SHIPPED} with a {pulls}")
 
 
-def solve_pulled(request: Request) -> Result:
-    """The friction, or under a force the velocity, with its error estimate: a result.Result; see
-    microslip.solve.
+def solve_driven(request: Request) -> Result:
+    """The Result of a contact with a drive: its friction, or under a force its velocity.
 
-    It is for the caller to `refuse_pull` before.
+    The caller checks the request by `refuse_request` first.
     """
-    drive = drive_of(request.problem)
+    problem, drive = request.problem, drive_of(request.problem)
     if drive.force is not None:
         return _under_force(request)
-    body: dict[str, Any] = {
-        "stiffness": drive.stiffness,
-        "mass": drive.mass,
-        "damping": drive.damping,
-    }
-    problem = request.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
-        # what is steady stretches the spring to one length, whatever it is
-        return replace(solve_each(_prescribed(request)), **body)
+        # a constant force stretches the spring to a constant length
+        answer = solve_each(replace(request, problem=replace(problem, drive=None)))
+        return replace(answer, **driven_by(drive))
     bracket = _bracket(request)
     if bracket is not None:
-        point = request.point | {"model": CLOSED_FORM}
-        return replace(of_closed_form(point, bracket, request.seconds), **body)
-    refined, ladder = _refined(request, Accuracy(request.accuracy))
+        return of_closed_form(request.point | {"model": CLOSED_FORM}, bracket, request.seconds)
+    refined = _refined(request, Accuracy(request.accuracy))
     return Result(
         **request.point,
-        **body,
         model=request.model,
         friction=within_friction(problem, refined.value),
-        **verdict(request, refined, ladder, request.tolerance),
+        **verdict(request, refined, request.tolerance),
     )
 
 
@@ -142,11 +133,6 @@ def _bracket(request: Request) -> tuple[float, None, float] | None:
     drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.size)
     error = 0.5 * drop + ROUNDING
     return (1.0 - 0.5 * drop, None, error) if error <= request.tolerance else None
-
-
-def _prescribed(request: Request) -> Request:
-    """The request at the prescribed velocity of the problem, without its drive."""
-    return replace(request, problem=replace(request.problem, drive=None))
 
 
 def _driven(request: Request, **drive: float) -> Request:
@@ -237,26 +223,16 @@ def _at_rest(request: Request, tolerance: float | None) -> Result:
 
 def _known(request: Request, velocity: float, error: float, reason: str = "") -> Result:
     """The Result where nothing has to be marched."""
-    drive, force = drive_of(request.problem), force_of(request.problem)
+    force, tolerance = force_of(request.problem), request.tolerance
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
-        **_pulling(drive),
         model=CLOSED_FORM if request.chosen else request.model,
         friction=Estimate(math.copysign(1.0, force) if reason else force),
-        converged=not reason and _good_enough(error, velocity, request.tolerance),
+        converged=not reason and (tolerance is None or error <= tolerance * max(1.0, velocity)),
         periodic=not reason,
         reason=reason,
         solve_time_s=request.seconds,
     )
-
-
-def _good_enough(error: float, velocity: float, tolerance: float | None) -> bool:
-    return tolerance is None or error <= tolerance * max(1.0, abs(velocity))
-
-
-def _pulling(drive: Drive) -> dict[str, Any]:
-    """Fields that say how a force pulls."""
-    return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
 def _moving(request: Request, marched: float) -> Result:
@@ -265,7 +241,7 @@ def _moving(request: Request, marched: float) -> Result:
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    drive, force, original = drive_of(request.problem), force_of(request.problem), request
+    force, original = force_of(request.problem), request
     request = _driven(request, force=marched)
     try:
         near = _near(request)
@@ -275,7 +251,7 @@ def _moving(request: Request, marched: float) -> Result:
     scale = SCALE_SHARE * near.velocity
     while True:
         accuracy = Accuracy(request.accuracy * max(1.0, scale), near.slope)
-        refined, ladder = _refined(request, accuracy)
+        refined = _refined(request, accuracy)
         velocity = abs(refined.value.value)
         if not refined.converged or scale <= max(1.0, velocity):
             break
@@ -292,11 +268,10 @@ def _moving(request: Request, marched: float) -> Result:
     tolerance = request.tolerance
     largest = None if tolerance is None else tolerance * max(1.0, abs(found.value))
     return Result(
-        **request.point | {"mean_velocity": found},
-        **_pulling(drive),
+        **original.point | {"mean_velocity": found},
         model=request.model,
         friction=Estimate(force),
-        **verdict(request, refined, ladder, largest),
+        **verdict(request, refined, largest),
     )
 
 
@@ -308,8 +283,6 @@ def _near(request: Request) -> Near:
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
-    # the plan depends on where slip starts, and finds it again by itself
-    found_focus(moving, request.model, request.budget, request.progress)
     ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
     if request.tolerance is None:
         refuse_free(ladder, request.cells, request.steps)
@@ -325,7 +298,7 @@ def _near(request: Request) -> Near:
     near = velocity_near(moving, force, friction_at)
     place = replace(moving, velocity=near.velocity)
     accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
-    found = simulate_pulled(place, request.model, coarse, accuracy, settings)
+    found = simulate_driven(place, request.model, coarse, accuracy, settings)
     if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
         return near._replace(velocity=found.velocity)
     return near
@@ -342,14 +315,10 @@ def _given_up(request: Request, reason: str) -> Result:
     )
 
 
-def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
-    """The refine.Refined to an accuracy, and its ladder."""
+def _refined(request: Request, accuracy: Accuracy) -> Refined:
+    """The refine.Refined of a driven contact to an accuracy."""
     problem, tolerance = request.problem, accuracy.tolerance
     drive = drive_of(problem)
-    try:
-        found_focus(problem, request.model, request.budget, request.progress)
-    except Spent as spent:
-        return unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0)
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
     contact = contact_of(problem, request.model, COARSEST)
     ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
@@ -361,14 +330,14 @@ def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
     def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
         if request.progress is not None:
             request.progress(resolution)
-        return simulate_pulled(problem, request.model, resolution, share, settings, guess=guess)
+        return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
 
     readings = [
         partial(run, problem=replace(problem, pressure=other))
         for other in problem.pressure.readings
     ]
-    quantity = "mu" if drive.force is None else "velocity"
-    refined = refine(run, ladder, tolerance, readings, quantity)
+    read = attrgetter("mu" if drive.force is None else "velocity")
+    refined = refine(run, ladder, tolerance, readings, read)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
-    return refined, ladder
+    return refined

@@ -3,6 +3,16 @@
 It begins with the contact moved at a given velocity, whose tractions are near: that of the spring's
 far end, or under a force one that is about as slow.  From there an accelerated search goes on.  A
 search takes as many periods with few steps as with many, so that many steps begin where few ended.
+
+The state is one row of numbers: the tractions, and where the body remembers (models/pull.py) how
+far it is ahead of the path, x, and how fast that grows, x'.  In the mirror image of half a period
+later these two are what they were.
+
+In one period a heavy body hardly notices that the forces on it do not balance, nor does a soft
+spring that the contact stays behind.  So the map moves the body on as if it were no heavier, and
+its spring no softer, than the contact is: by so many times what it moved.  What repeats itself is
+the same.  A contact that slides as a whole gives way far more than one that sticks: the stiffness
+that counts there is the rise of its mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -15,18 +25,17 @@ import numpy as np
 
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.path import Path
 from microslip.models.pull import Body
 from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
-from microslip.solver.effort import Effort
-from microslip.solver.means import mean_forces
-from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState
+from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.pulled_map import PulledMap
-from microslip.solver.run import Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import periods_of, step_share
+from microslip.solver.run import Run, Settings, failed_run
+from microslip.solver.simulate import run_of_searches, step_share
+from microslip.states.search import Inertia
 
 MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search: twice the default, since a body may swing."""
@@ -37,6 +46,10 @@ COARSENING, PREPARED_FROM = 6, 96
 little, and are what tolerances of 1e-3 ask for."""
 MOST_SCALED = 4.0
 """By how much the tractions of a contact that is moved are scaled to the force at most."""
+
+
+CAUTION = 0.3
+"""Largest effective stiffness of a soft spring over that of the contact: more would overshoot."""
 
 
 class Accuracy(NamedTuple):
@@ -55,7 +68,7 @@ class Accuracy(NamedTuple):
     slope: float = np.inf
 
 
-def simulate_pulled(
+def simulate_driven(
     problem: Problem,
     model: str,
     resolution: Resolution,
@@ -92,7 +105,7 @@ def simulate_pulled(
     budget.Spent
         Where the budget is.
     """
-    pulled = _Pulled(problem, model, resolution, settings)
+    pulled = _DrivenSearch(problem, model, resolution, settings)
     pulled.slope = accuracy.slope
     try:
         return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
@@ -100,12 +113,12 @@ def simulate_pulled(
         return failed_run(str(failure))
 
 
-class _Pulled:
+class _DrivenSearch:
     """The search for the periodic state of one run."""
 
     def __init__(self, problem: Problem, model: str, resolution: Resolution, settings: Settings):
         drive = problem.drive
-        assert drive is not None  # as simulate_pulled demands
+        assert drive is not None  # as simulate_driven demands
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
         # or one that counts its marches
@@ -134,7 +147,7 @@ class _Pulled:
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance: float, guess: Run | None = None) -> Run:
-        """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_pulled."""
+        """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, done = Goal(tolerance, step_tolerance, MARCHES), []
@@ -147,16 +160,16 @@ class _Pulled:
                 break
         return self._summary(done, static_force, step_tolerance)
 
-    def _map(self, static_force: float, rate: float, mu: float) -> PulledMap:
+    def _map(self, static_force: float, rate: float, mu: float) -> DrivenMap:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
             drift_rate = DriftRate(static_force, full, rate * self.interval)
             # 1 - mu falls at most as 1 / velocity^2, the law of large velocities
             slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
         mirror = self.problem.half_period_mirror
-        return PulledMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
+        return DrivenMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
 
-    def _fits(self, start: np.ndarray, period_map: PulledMap) -> bool:
+    def _fits(self, start: np.ndarray, period_map: DrivenMap) -> bool:
         return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape
 
     def _starts(
@@ -183,7 +196,7 @@ class _Pulled:
         """The Run with fewer steps."""
         fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
         accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
-        found = simulate_pulled(self.problem, self.model, fewer, accuracy, self.settings)
+        found = simulate_driven(self.problem, self.model, fewer, accuracy, self.settings)
         self.before.append(found)
         return found
 
@@ -206,27 +219,92 @@ class _Pulled:
     def _summary(
         self, done: list[PeriodicState], static_force: float, step_tolerance: float
     ) -> Run:
-        problem, unit, found = self.problem, self.force_of_answer, done[-1]
-        forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
-        periods = periods_of(sum(one.marches for one in done), problem)
-        reason = unsolved(found.solver_residual, self.path.solves, step_tolerance)
-        if not found.converged:
-            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
-        assert found.body is not None  # as of all contacts that are pulled
-        ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
-        drift = problem.unit_drift
-        solves, iterations = (sum(getattr(m, n) for m in done) for n in ("solves", "iterations"))
-        effort = Effort.of(solves, iterations, found.start.size)
-        return Run(
-            mu=float(forward) / problem.mean_load,
-            torque=float(torque) / problem.pressure.torque,
-            distance=found.distance / unit,
-            solver_residual=found.solver_residual / unit,
-            periods=periods + sum(run.periods for run in self.before),
-            effort=sum((run.effort for run in self.before), effort),
-            converged=not reason,
-            reason=reason,
-            state=found.start,
+        path = self.path
+        run = run_of_searches(
+            self.contact,
+            self.problem,
+            path,
+            done,
+            step_tolerance,
+            self.force_of_answer,
             static_force=static_force,
-            velocity=problem.velocity + ahead / drift,
+        )
+        body = done[-1].body
+        assert body is not None  # as of all driven contacts
+        drift_rate = float(body[-1, 0] - body[0, 0]) / self.interval
+        return replace(
+            run,
+            periods=run.periods + sum(one.periods for one in self.before),
+            effort=sum((one.effort for one in self.before), run.effort),
+            velocity=self.problem.velocity + drift_rate / self.problem.unit_drift,
+        )
+
+
+class DrivenMap(PeriodMap):
+    """The map of a contact and a body over a path; see period_map.PeriodMap.
+
+    Parameters
+    ----------
+    contact : SystemContact
+        What is marched.
+    path : path.Path
+        From which the body may stay behind or run ahead.
+    body : pull.Body
+        What is pulled, and by what.
+    drift_rate : period_map.DriftRate or None
+        Given where the motion may be slow and its velocity is known.
+    mirror : bool
+        Whether the second half of the period is the mirror image of the path.
+    slope : float
+        Largest rise of the mean forward force for a body that gains a unit of x in the interval.
+    """
+
+    contact: SystemContact
+
+    def __init__(
+        self,
+        contact: SystemContact,
+        path: Path,
+        body: Body,
+        drift_rate: DriftRate | None = None,
+        mirror: bool = True,
+        slope: float = np.inf,
+    ):
+        super().__init__(contact, path, drift_rate, mirror)
+        self.body = body
+        self._shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
+        self._points = int(np.prod(self._shape))
+        spread = np.broadcast_to(contact.bound, self._shape[1:])
+        load = float(np.sum(contact.weight * spread))
+        # a period that begins without contact has no tractions there to correct
+        self._spread = spread / load if load > 0.0 else 0.0 * spread
+        interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
+        self._mass = min(body.mass, stiffness * interval**2)
+        self._held = body.stiffness * min(1.0, body.stiffness / stiffness)
+        self._haste = np.ones(2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        if body.stiffness > 0.0:
+            steepest = min(CAUTION * stiffness, slope)
+            self._haste[0] = max(1.0, steepest / body.stiffness * slow)
+        if body.mass > 0.0:
+            self._haste[1] = max(1.0, body.mass / (self._mass * slow))
+
+    def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """The state of tractions and of (x, x'), one row."""
+        return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
+
+    def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions of a state, and x and x' if they belong to it, else 0."""
+        moved = state[self._points :] if self.body.remembers else np.zeros(2)
+        return state[: self._points].reshape(self._shape), moved
+
+    def inertia(self) -> Inertia:
+        """Stiffness, mass and acceleration factors of the driven body, for compiled code."""
+        return Inertia(
+            self.body.along(self.path, np.zeros(2)),
+            float(self._haste[0]),
+            float(self._haste[1]),
+            float(self._held),
+            float(self._mass),
+            self.contact.layout.pack(self._spread),
         )
