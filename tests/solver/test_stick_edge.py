@@ -15,17 +15,17 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import (
-    gathered_on_a_line,
-    gathered_on_a_loop,
+    edges_on_a_line,
+    edges_on_a_loop,
     simulate_static,
 )
 from microslip.solver.stick_edge import (
-    TELLING_FINER,
-    TELLING_LINE,
-    TELLING_SWEPT,
-    TOLD,
-    TOLD_FINER,
-    found_focus,
+    FINE_RESOLUTION,
+    FINE_TOLERANCE,
+    LINE_RESOLUTION,
+    SWEPT_RESOLUTION,
+    TOLERANCE,
+    edge_focus,
 )
 from microslip.theory import hertz, indenters
 
@@ -33,7 +33,7 @@ RING = "ring:inner=0.5"
 
 
 def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
-    return found_focus(
+    return edge_focus(
         Problem(motion_named(motion), velocity, amplitude, 0.0, pressure_named(pressure)), model
     )
 
@@ -91,9 +91,9 @@ def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model
 def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(amplitude):
     motion = motion_named("transverse")
     limit, exact = Problem(motion, 0.0, amplitude, 0.0), np.sqrt(1.0 - amplitude)
-    near = gathered_on_a_line(limit, "radial", TELLING_LINE, TOLD)
+    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
     assert near == pytest.approx([exact], abs=5e-3)
-    found = gathered_on_a_line(limit, "radial", TELLING_FINER, TOLD_FINER, near=near)
+    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
     assert found == pytest.approx([exact], abs=5e-4)
 
 
@@ -103,8 +103,8 @@ def test_a_ring_that_slips_little_sticks_between_two_edges_next_to_its_own(inner
     limit = Problem(
         motion_named("transverse"), 0.0, amplitude, 0.0, pressure_named(f"ring:inner={inner}")
     )
-    near = gathered_on_a_line(limit, "radial", TELLING_LINE, TOLD)
-    found = gathered_on_a_line(limit, "radial", TELLING_FINER, TOLD_FINER, near=near)
+    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
+    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
     assert len(found) == 2  # slivers between the last rings that seem to stick are scatter
     narrower = 1.0 - np.sqrt(1.0 - amplitude)  # by so much would the contact of a sphere stick less
     assert inner < found[0] < inner + narrower and 1.0 - narrower < found[1] < 1.0
@@ -212,8 +212,8 @@ def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges
 def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     """As many rings that look for it again and again come to the same."""
     problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
-    focus, resolution = found_focus(problem, "radial"), Resolution(48, 1, 192)
-    by_itself, radii = gathered_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
+    focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
+    by_itself, radii = edges_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
     told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
     assert told.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
@@ -233,7 +233,7 @@ def test_limits_under_a_ring_are_those_of_squares():
 
 def slow_bores(name, rings, focused=True):
     problem = Problem(motion_named("bore"), 1e-3, 0.4, 0.0, pressure_named(name))
-    settings = Settings(focus=found_focus(problem, "polar") if focused else None)
+    settings = Settings(focus=edge_focus(problem, "polar") if focused else None)
     found = [
         simulate(problem, "polar", Resolution(cells, 4, 24), 1e-6, settings=settings).mu
         for cells in rings
@@ -266,7 +266,7 @@ SWEPT = "normal:lateral=1,angle=1"
 def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
     seen, spent = [], "work" if "most_work" in bound else "time"
     found = microslip.solve(SWEPT, 0.0, 0.4375, progress=seen.append, **bound)
-    assert seen == [TELLING_SWEPT]  # nothing else has begun
+    assert seen == [SWEPT_RESOLUTION]  # nothing else has begun
     assert not found.converged and np.isnan(found.mu_macro)
     assert found.exhausted == spent
     assert "no error is known yet" in found.reason
@@ -275,12 +275,12 @@ def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
 def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
     problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
     first, later, seen = Budget(), Budget(), []
-    focus = found_focus(problem, "radial", first, seen.append)
+    focus = edge_focus(problem, "radial", first, seen.append)
     assert len(seen) >= 1 and first.taken.work > 0
-    assert found_focus(problem, "radial", later, seen.append) == focus
+    assert edge_focus(problem, "radial", later, seen.append) == focus
     assert later.taken == first.taken
     with pytest.raises(Spent, match="the work that the point may take"):
-        found_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
+        edge_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from microslip.solver.method_names import SHIPPED
 from microslip.solver.run import Run, Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.stick_edge import edge_focus
 
 
 class Plan(NamedTuple):
@@ -54,7 +54,7 @@ def plan_for(request: Request) -> Plan:
 
     @cache  # the search for the slip front counts once
     def settings() -> Settings:
-        focus = found_focus(problem, request.model, request.budget, request.progress)
+        focus = edge_focus(problem, request.model, request.budget, request.progress)
         return Settings(request.how, budget=request.budget, focus=focus)
 
     def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:

@@ -133,7 +133,9 @@ def request_for(
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
     name, how = choose_model(problem, model), method_names.method_named(method)
-    method_names.refuse_missing(method)
+    lack = method_names.missing(method)
+    if lack:
+        raise InputError("method", method, lack)
     refusal = method_refusal(problem, name, how)
     if not refusal and how.run is not None:
         refusal = "it is one run, which cannot be refined"

@@ -139,7 +139,7 @@ def _as_text(found: Fit) -> str:
         text = f"{found.chi_square:.3g} for {found.degrees_of_freedom} degrees of freedom{chance}"
         lines.append(line("chi square", text))
     if found.reason:
-        lines.append(f"NOT TOLD: {found.reason}")
+        lines.append(f"NOT TOLERANCE: {found.reason}")
     return "\n".join(lines + [f"warning: {text}" for text in found.warnings])
 
 

@@ -209,24 +209,9 @@ def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
         raise InputError("tolerance", None, allowed)
 
 
-class WithMass(NamedTuple):
-    """Ladder whose steps suit a mass.
-
-    Attributes
-    ----------
-    ladder : Ladder
-        With shorter steps.
-    reason : str
-        Why its steps do not resolve the natural oscillation of the mass; "" if they do.
-    """
-
-    ladder: Ladder
-    reason: str
-
-
 def with_mass(
     ladder: Ladder, problem: Problem, contact: Contact, mass: float, tolerance: float
-) -> WithMass:
+) -> tuple[Ladder, str]:
     """Shorten the steps of a ladder until they resolve a mass that oscillates against the contact.
 
     The natural frequency is sqrt(stiffness / mass), with the stiffness of the contact (1.5 for a
@@ -248,9 +233,15 @@ def with_mass(
         Over mu F_z / (u_lim omega^2).
     tolerance : float
         Absolute, on the answer.
+
+    Returns
+    -------
+    tuple of Ladder and str
+        The ladder, and why its steps do not resolve the natural oscillation of the mass; "" if they
+        do.
     """
     if mass == 0.0 or not ladder.steps:
-        return WithMass(ladder, "")
+        return ladder, ""
     count = ladder.resolution(ladder.levels(tolerance)[0]).steps
     frequency = (contact.stiffness / mass) ** 0.5
     longest = float(np.diff(path_of(problem, contact, count).phase).max())
@@ -258,10 +249,9 @@ def with_mass(
     finer = max(longest * frequency / allowed, 1.0)
     if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
         most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)
-        return WithMass(
-            ladder,
+        return ladder, (
             f"mass too small for {most} steps in a period: it oscillates against the contact at"
             f" {frequency:.3g} times the frequency of the vibration, which takes"
-            f" {2 * int(np.ceil(finer * count))}",
+            f" {2 * int(np.ceil(finer * count))}"
         )
-    return WithMass(replace(ladder, steps=finer * ladder.steps), "")
+    return replace(ladder, steps=finer * ladder.steps), ""

@@ -63,39 +63,21 @@ def split(text: str) -> tuple[str, dict[str, float]]:
     return spec.split(text, "method", names())
 
 
-def refusal(text: str) -> str:
-    """Why a text names no method, as one line; "" if it does.  Imports no solver."""
-    try:
-        check(text)
-    except InputError as error:
-        return str(error)
-    return ""
-
-
 def check(text: str) -> None:
     """Raise InputError where a text names no method.  Imports no solver."""
     name, numbers = split(text)
-    spec.refuse_unknown(text, "method", numbers, _parameters(name))
+    spec.refuse_unknown(text, "method", numbers, tuple(declared(name, "parameters") or ()))
 
 
 def missing(text: str) -> str:
-    """Why a method cannot run here, as one line: the package that it requires is not installed.
+    """Why a method cannot run here: the package that it requires is not installed; "" if it can.
 
-    "" if it can.  Imports neither the solver nor the package.  Raises InputError as `split`.
+    Imports neither the solver nor the package.  Raises InputError as `split` does.
     """
-    try:
-        refuse_missing(text)
-    except InputError as error:
-        return str(error)
-    return ""
-
-
-def refuse_missing(text: str) -> None:
-    """Raise InputError where the package that a method requires is not installed, see above."""
-    name, _ = split(text)
-    package = declared(name, "requires")
+    package = declared(split(text)[0], "requires")
     if package and find_spec(package) is None:
-        raise InputError("method", text, f"needs the package {package}, which is not installed")
+        return f"needs the package {package}, which is not installed"
+    return ""
 
 
 def method_named(text: str) -> Method:
@@ -114,11 +96,6 @@ def method_named(text: str) -> Method:
         reason = f"{path} cannot be imported: {described(error, path)}"
         raise InputError("method", text, reason) from error
     return replace(method, parameters={**method.parameters, **numbers})
-
-
-def _parameters(name: str) -> tuple[str, ...]:
-    """Names of the numbers that a method takes."""
-    return tuple(declared(name, "parameters") or ())
 
 
 @cache

@@ -83,12 +83,12 @@ def _on_a_loop(
     if settings.focus is not None:  # the edges are known
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
-    done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
+    done, _ = edges_on_a_loop(problem, model, resolution, tolerance, settings)
     effort = sum((one.effort for one in done), Effort())
     return replace(done[-1], periods=sum(one.periods for one in done), effort=effort)
 
 
-def gathered_on_a_loop(
+def edges_on_a_loop(
     problem: Problem,
     model: str,
     resolution: Resolution,
@@ -96,25 +96,23 @@ def gathered_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Runs on rings that gather at the edges of what never slips, which no formula tells; arguments
-    as for `simulate_static`.
+    """Find the edges of the stick zone of a motion on a loop; no formula gives them.
 
-    progress: called with the Resolution of every run before it starts, None: nothing is.
-    Returns the Runs, of which the last is the answer, and the radii of these edges, none if nothing
-    sticks, or everything, or the contact tells no radii.
+    The arguments are those of `simulate_static`, and progress: called with the Resolution of every
+    run before it starts.  Returns the Runs, of which the last one is the answer, and the radii of
+    the edges; there are none if the whole contact sticks or slips, or if it has no rings.
     """
 
-    def run_on(contact: Contact) -> np.ndarray | None:
-        run, left = _on_these_points(contact, problem, resolution, tolerance, settings)
+    def points_that_stick(contact: Contact) -> np.ndarray | None:
+        run, sticks = _on_these_points(contact, problem, resolution, tolerance, settings)
         done.append(run)
-        return left if run.converged else None
+        return sticks if run.converged else None
 
     done: list[Run] = []
-    radii = _gathered(_contacts(problem, model, resolution, settings, progress), run_on)
-    return done, radii
+    return done, _edges(problem, model, resolution, points_that_stick, settings, progress)
 
 
-def gathered_on_a_line(
+def edges_on_a_line(
     problem: Problem,
     model: str,
     resolution: Resolution,
@@ -124,51 +122,44 @@ def gathered_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
-    tell; near: what they are about, where that is known."""
+    """Radii of the edges of the stick zone of a motion on a line, from its turning points.
 
-    def run_on(contact: Contact) -> np.ndarray | None:
+    The arguments are those of `edges_on_a_loop`, and near: approximate radii, if they are known.
+    """
+
+    def points_that_stick(contact: Contact) -> np.ndarray | None:
         limit = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
         if unsolved(limit.solver_residual, limit.solves, STEP_SHARE * tolerance):
             return None
         bounds = np.broadcast_to(contact.bound, limit.residual[0].shape)
         return np.hypot(*limit.residual) > NOTHING_LEFT * bounds.max()
 
-    return _gathered(_contacts(problem, model, resolution, settings, progress), run_on, near)
+    return _edges(problem, model, resolution, points_that_stick, settings, progress, radii=near)
 
 
-def _contacts(
+def _edges(
     problem: Problem,
     model: str,
     resolution: Resolution,
+    points_that_stick: Callable[[Contact], np.ndarray | None],
     settings: Settings,
     progress: Callable[[Resolution], object] | None,
-) -> Callable[[Focus | None], Contact]:
-    """contact(focus) -> the contact of a run that is about to start."""
+    *,
+    radii: tuple[float, ...] = (),
+) -> tuple[float, ...]:
+    """Radii of the edges of the stick zone on rings that are graded towards them.
 
-    def contact(focus: Focus | None) -> Contact:
+    Repeats the run on new rings until the radii stay the same, or MOST_PASSES times.
+    points_that_stick(contact) -> which points stick, None: unknown; radii: first grading.
+    """
+    for _ in range(MOST_PASSES):
         if progress is not None:
             progress(resolution)
-        return settings.contact(problem, model, resolution, focus)
-
-    return contact
-
-
-def _gathered(
-    contact_at: Callable[[Focus | None], Contact],
-    run_on: Callable[[Contact], np.ndarray | None],
-    near: tuple[float, ...] = (),
-) -> tuple[float, ...]:
-    """Radii that stay where they are once rings gather there, or the last ones; run_on(contact) ->
-    which points have something left to resist with, or None."""
-    focus = Focus(near, STRONGEST_FOCUS) if near else None
-    radii: tuple[float, ...] = ()
-    for _ in range(MOST_PASSES):
-        contact = contact_at(focus)
-        radii = _stick_radii(contact, run_on(contact))
-        if not radii or (focus is not None and radii == focus.radii):
+        before, focus = radii, Focus(radii, STRONGEST_FOCUS) if radii else None
+        contact = settings.contact(problem, model, resolution, focus)
+        radii = _stick_radii(contact, points_that_stick(contact))
+        if not radii or radii == before:
             break
-        focus = Focus(radii, STRONGEST_FOCUS)
     return radii
 
 
