@@ -15,7 +15,6 @@ from microslip.motions.continuous_bore import ContinuousBore
 from microslip.motions.problem import Problem
 from microslip.motions.transverse import Transverse
 from microslip.solver.discretise import Resolution
-from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
@@ -74,15 +73,6 @@ def test_unknown_models_are_refused(model):
 
 
 # Closed forms
-
-
-@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
-@pytest.mark.parametrize("poisson", [0.0, 0.5])
-def test_no_vibration_needs_no_run(motion, poisson):
-    for velocity in (0.0, 1e-6, 1.0, 1e3):
-        result = microslip.solve(motion.name, velocity, 0.0, poisson=poisson)
-        assert (result.model, result.mu_macro) == ("closed-form", 1.0)
-        assert 0.0 < result.mu_macro_error <= 1e-9 and result.cells == 0
 
 
 @pytest.mark.parametrize(
@@ -189,13 +179,3 @@ def test_a_model_asked_for_is_run_where_a_form_is_known():
 
 
 # Resolutions
-
-
-def test_imposed_resolution_is_that_of_one_run():
-    result = microslip.solve("transverse", 0.01, 0.6, cells=8, steps=24, tolerance=1e-3)
-    problem = Problem(Transverse(), 0.01, 0.6, 0.0)
-    finer = simulate(problem, "radial", Resolution(64, 1, 96), 1e-6)
-    run = simulate(problem, "radial", Resolution(8, 1, 12), 1e-6)
-    assert (result.cells, result.steps_per_period) == (8, 24)
-    assert result.mu_macro == pytest.approx(run.mu, abs=1.5e-4)
-    assert abs(finer.mu - run.mu) > 5e-4  # which is not what the tolerance would have chosen

@@ -222,12 +222,6 @@ def test_all_effort_is_counted(steps):
     assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work
 
 
-def test_equal_runs_give_equal_bits():
-    one, other = (radial_run(0.01, 0.5, 8, 48) for _ in range(2))
-    assert one.mu == other.mu and one.distance == other.distance
-    assert np.array_equal(one.state, other.state)
-
-
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():
     problem = Problem(Transverse(), 50.0, 0.5, 0.0)
     run = simulate(problem, "radial", Resolution(6, 1, 12), 1e-6)
