@@ -94,7 +94,7 @@ def solve_friction(request: Request) -> Result:
 
 
 def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
-    """Raise InputError where a resolution would have to be chosen without a tolerance."""
+    """Raise InputError if a resolution has to be chosen without a tolerance."""
     exact = no_vibration(problem)
     if exact is None and model == "auto":
         exact = unless_imposed(problem, None, cells, steps)

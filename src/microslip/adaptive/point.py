@@ -53,7 +53,7 @@ def solve(
         pushed back, are allowed for self-propelled motions; otherwise the friction at -v is that at
         v with the opposite sign.
     amplitude : float or None
-        The paper's dimensionless group, in the same units; None for steady motions.
+        The paper's dimensionless amplitude; None for steady motions.
     force : float or None
         Prescribed forward force divided by mu times the mean normal load.  Give either this or
         `velocity`.
@@ -78,7 +78,7 @@ def solve(
     cells, steps : int or None
         Impose a resolution instead of letting the tolerance choose; steps in a full period.
     method : str
-        One of solver.method_names.names(), to be compared with what ships.
+        "shipped", or another one of solver.method_names.names(), for comparison.
     most_work : float or None
         Largest number of step solves times unknowns, over all runs; None: MOST_WORK.
     time_limit : float or None
@@ -135,7 +135,7 @@ def _answer(request: Request) -> Result:
 
 
 def _answer_backward(request: Request) -> Result:
-    """The answer at a velocity below 0: that of the mirror image at the opposite one."""
+    """The Result at a negative velocity, from the mirror image at the opposite velocity."""
     problem = request.problem
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
     answer = _answer(replace(request, problem=behind))
@@ -151,25 +151,25 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
-"""Points that need what is compiled, by the name of the kernels."""
+"""Points whose solution compiles the kernels, by the name of the kernels."""
 
 
 def warm_up(*kernels: str) -> None:
-    """Compile kernels of the automatic models (and leave them in Numba's cache).
+    """Compile kernels of the automatic models; Numba caches them.
 
-    Takes a while the first time.  Processes that compile different ones may do so side by side.
-    Squares are compiled when they are first used.
+    The first time takes up to a minute.  Several processes can compile different kernels at the
+    same time.  Squares are compiled at their first use.
 
     Parameters
     ----------
     kernels : str
-        Which: "rings", "angles" (of motions that turn, and Poisson's ratios above 0) or "pulled"
-        (contacts that a force or a spring pulls).  Rings and angles, unless any is named.
+        Names of kernels: "rings", "angles" (for rotations and Poisson's ratios above 0), "pulled"
+        (for a force or a spring).  Default: "rings" and "angles".
 
     Raises
     ------
     InputError
-        There are no such kernels.
+        For an unknown name.
     """
     kernels = kernels or ("rings", "angles")
     for name in kernels:

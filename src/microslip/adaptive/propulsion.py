@@ -1,26 +1,26 @@
-"""A self-propelled motion: its pull from stall force to no-load velocity, and the power it takes.
+"""Self-propelled motions: force from stall to the no-load velocity, power and efficiency.
 
-Signs.  The sphere is what moves; its forward velocity v is held, as of a body so heavy that it does
-not feel a single period.  Friction mu(v) is the mean forward force that it takes to move it, so
-that the contact pulls its own body forward by the force -mu(v), against a load that pulls it back:
+The sphere moves forward at a prescribed velocity v, like a body so heavy that its velocity stays
+constant during a period.  Friction mu(v) is the mean forward force that moves the sphere.  So the
+contact exerts the force -mu(v) on its own body, against a load that pulls the body back:
 
     force(v) = -mu(v)             power out = force v, the work on the load
     stall force = force(v -> 0)   the load that stops it
-    no-load velocity: force = 0   as fast as it gets without a load
+    no-load velocity: force = 0   the highest velocity, without a load
 
-Power in is the mean work of the oscillation on the contact: of whatever moves the sphere to and fro
-relative to its body.  An oscillating normal load adds nothing to it over a period.  Elastic energy
-returns, and so
+Power in is the mean power of the oscillation on the contact, supplied by the actuator between the
+sphere and its body.  An oscillating normal load does no work over a period.  Elastic energy is
+recovered, so
 
     power in - power out = dissipation >= 0.
 
-Friction never falls with the velocity (theory/bounds.py), so that the line falls from stall to no
-load, and two velocities at which the sign of friction is certain enclose the no-load velocity.
-A motion may drive backward as well: then velocities and forces of the line are below 0.  Where
-friction keeps a body at rest against a small force in either direction, the motion propels nothing.
+Friction never falls with the velocity (theory/bounds.py).  So the force falls from stall to the
+no-load velocity, and two velocities with friction of known sign enclose the no-load velocity.
+A motion can also propel the body backward: then the velocities and forces are negative.  If
+friction holds the body at rest against small forces in both directions, the motion propels nothing.
 
-A body without mass under a constant load is another case: it goes along with a forward oscillation,
-and nothing drives (see under_force.without_forward_motion).
+A body without mass under a constant load is not propelled: it follows the forward oscillation (see
+under_force.without_forward_motion).
 """
 
 from __future__ import annotations
@@ -50,14 +50,15 @@ from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
 FACTOR = 4.0
-"""From one velocity to the next in search of one at which the contact resists."""
+"""Factor between the velocities that are tried until the friction is positive."""
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5
-"""Steps away from the no-load velocity over the way in which friction rises by its error."""
+"""First distance from the no-load velocity, over the distance in which friction rises by its
+error."""
 MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
-"""The reason of a motion that propels nothing, with the lowest and the highest of these forces."""
+"""Reason of a motion that propels nothing, with the lowest and the highest of these forces."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -71,34 +72,34 @@ class PropulsionLine:
     Attributes
     ----------
     motion, pressure, model : str
-        What moves, how the load is spread, and the contact model.
+        Names of the motion, the pressure distribution and the contact model.
     amplitude, poisson, tolerance : float
-        As asked for.
+        Arguments of the request.
     stall_force, stall_force_error : float
-        Load that stops the motion; 0 where it propels nothing, below 0 where it propels backward.
+        Load that stops the motion; 0 if it propels nothing, negative if it propels backward.
     no_load_velocity, no_load_velocity_error : float
-        Velocity without a load, with the same sign.
+        Velocity without a load, with the sign of the stall force.
     holding_force_low, holding_force_low_error : float or None
-        Lowest of the forces against which friction holds a body at rest, below 0: a pull backward;
-        None where the motion propels the contact.
+        Lowest force against which friction holds the body at rest; it is negative (backward).  None
+        if the motion propels the body.
     holding_force_high, holding_force_high_error : float or None
-        Highest of these forces.
+        Highest force against which friction holds the body at rest.
     velocity, force, force_error : np.ndarray, shape (points,)
-        From 0 to the no-load velocity in equal parts, and the force that is pulled with there.  No
-        points where nothing is driven.
+        Equidistant velocities from 0 to the no-load velocity, and the force at each.  Empty if the
+        motion propels nothing.
     power_out, power_out_error : np.ndarray, shape (points,)
-        force times velocity.
+        Mean power on the load: force times velocity.
     power_in, power_in_error : np.ndarray, shape (points,)
-        Mean work of the oscillation.
+        Mean power of the oscillation.
     efficiency, efficiency_error : np.ndarray, shape (points,)
         Power out over power in.
     converged : bool
-        Whether the forces and powers are within the tolerance; of powers over the mean speed of the
-        oscillation.
+        Whether the errors of forces, and of powers over the mean speed of the oscillation, are
+        within the tolerance.
     reason : str
-        Why not, or why nothing is driven; else empty.
+        Why it is not converged, or why the motion propels nothing; else empty.
     solve_time_s : float
-        Seconds by the wall clock.
+        Wall-clock time in seconds.
     """
 
     motion: str
@@ -129,7 +130,7 @@ class PropulsionLine:
     solve_time_s: float
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict, arrays as lists."""
+        """The fields as a dict, with arrays as lists."""
         fields = dict(vars(self))
         return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
@@ -147,33 +148,32 @@ def propulsion(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> PropulsionLine:
-    """The line from stall force to no-load velocity of a self-propelled motion.
+    """Compute force, power and efficiency of a self-propelled motion, from stall to no load.
 
     Parameters
     ----------
     motion : str
-        A motion that may drive by itself: "elliptic:..." or "normal:forward=1,..." without the
-        symmetry that keeps it from that.
+        A motion that can propel the contact: "elliptic:..." or "normal:forward=1,..." without the
+        symmetry that makes the mean force vanish.
     amplitude : float
         As for `microslip.solve`, above 0.
     pressure, poisson, model
         As for `microslip.solve`.
     tolerance : float
-        Absolute, on every force; on powers times the mean speed of the oscillation.
+        Absolute, on every force.  For powers it is multiplied by the mean speed of the oscillation.
     points : int
-        On the line, its ends included.
+        Number of velocities, including both ends.
     most_work : float or None
-        As for `microslip.solve`, at every velocity that is looked at.
+        Limit of the work at each velocity, see `microslip.solve`.
     time_limit : float or None
-        Seconds by the wall clock after which the line is given up, looked at between marches; None:
-        never.
+        Limit of the wall-clock time in seconds, checked between marches; None: no limit.
     progress : callable or None
         As for `microslip.solve`.
 
     Returns
     -------
     PropulsionLine
-        For signs and units see there and the docstring of this module.
+        The line; the head of this module defines the signs.
 
     Raises
     ------
@@ -191,26 +191,26 @@ def propulsion(
 
 
 class _Contact:
-    """Friction and power of a motion at any velocity of at least 0; no run is done twice."""
+    """Friction and power of a motion at velocities of at least 0; every run is done once."""
 
     def __init__(self, request: Request):
         self.request, self.sign = request, 1
-        self.done: dict[object, Any] = {}
+        self.cache: dict[object, Any] = {}
         self.speed = mean_speed(request.problem)
 
     @property
     def drift(self) -> float:
-        """Drift in a radian at the velocity 1."""
+        """Forward displacement in a radian of phase at the velocity 1, in u_lim."""
         problem = self.request.problem
         return problem.unit_drift
 
     @property
     def first(self) -> float:
-        """Velocity as fast as the oscillation, where a search may begin."""
+        """Velocity equal to the mean speed of the oscillation: the start of a search."""
         return self.speed / self.drift
 
     def reversed(self) -> _Contact:
-        """The mirror image, which moves forward where this one moves back."""
+        """The mirror image of the contact across the forward direction."""
         problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
         image = _Contact(replace(self.request, problem=behind))
@@ -221,30 +221,30 @@ class _Contact:
         return self._certified(velocity, "mu")
 
     def power(self, velocity: float) -> Answer:
-        """Mean work of the oscillation: its error is that of a force times the mean speed."""
-        found = self._certified(velocity, "power")
-        return Answer(self.speed * found.value, self.speed * found.error, found.reason)
+        """Mean power of the oscillation; its error is that of a force times the mean speed."""
+        answer = self._certified(velocity, "power")
+        return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
 
     def _certified(self, velocity: float, quantity: str) -> Answer:
-        if (velocity, quantity) not in self.done:
+        if (velocity, quantity) not in self.cache:
             run, ladder, readings = self._plan(velocity)
             read: Callable[[Run], float] = attrgetter("mu")
             if quantity == "power":
                 read = self._power_as_force
-            found = refine(run, ladder, self.request.accuracy, readings, read)
-            reason, estimate = found.reason, found.value
-            if found.converged and estimate.error > self.request.accuracy:
+            answer = refine(run, ladder, self.request.accuracy, readings, read)
+            reason, estimate = answer.reason, answer.value
+            if answer.converged and estimate.error > self.request.accuracy:
                 reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.done[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
-        return self.done[velocity, quantity]
+            self.cache[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
+        return self.cache[velocity, quantity]
 
     def _power_as_force(self, run: Run) -> float:
         return run.power / self.speed
 
     def _plan(self, velocity: float) -> Plan:
-        if velocity not in self.done:
+        if velocity not in self.cache:
             there = replace(
                 self.request,
                 problem=replace(self.request.problem, velocity=velocity),
@@ -252,24 +252,24 @@ class _Contact:
             )
             plan = plan_for(there)
             readings = [_remembered(run) for run in plan.readings]
-            self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
-        return self.done[velocity]
+            self.cache[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
+        return self.cache[velocity]
 
 
 def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """A cache of `run` by resolution, so that two quantities share their runs."""
-    done = {}
+    """`run` with a cache by resolution, so that two quantities share their runs."""
+    cache = {}
 
     def again(resolution: Resolution, guess: Run | None) -> Run:
-        if resolution not in done:
-            done[resolution] = run(resolution, guess)
-        return done[resolution]
+        if resolution not in cache:
+            cache[resolution] = run(resolution, guess)
+        return cache[resolution]
 
     return again
 
 
 def _line(contact: _Contact, points: int) -> PropulsionLine:
-    """The PropulsionLine of the motion, forward or back."""
+    """The PropulsionLine of a motion that propels forward, backward, or not at all."""
     ahead = contact.friction(0.0)
     if ahead.value < 0.0 or not math.isfinite(ahead.value):
         return _moving(contact, points)
@@ -291,39 +291,42 @@ def _line(contact: _Contact, points: int) -> PropulsionLine:
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
-    found = Answer(0.0, spread, "")
-    known = Answer(0.0, stall_error, "")
-    line = _record(contact, known, found, np.zeros(0), (converged, reason))
+    stall, fastest = Answer(0.0, stall_error, ""), Answer(0.0, spread, "")
+    line = _record(contact, stall, fastest, np.zeros(0), (converged, reason))
     return replace(line, **holding)
 
 
 def _moving(contact: _Contact, points: int) -> PropulsionLine:
-    """The PropulsionLine of a motion that drives in its own forward direction."""
-    stall, found = contact.friction(0.0), Answer(math.nan, math.inf, "")
+    """The PropulsionLine of a motion that propels forward."""
+    stall, fastest = contact.friction(0.0), Answer(math.nan, math.inf, "")
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
-        found = no_load(contact.friction, contact.first)
-    if math.isfinite(found.value):
-        velocity = np.linspace(0.0, found.value, points)
-    reason = stall.reason or found.reason
-    return _record(contact, stall, found, velocity, (not reason, reason))
+        fastest = no_load(contact.friction, contact.first)
+    if math.isfinite(fastest.value):
+        velocity = np.linspace(0.0, fastest.value, points)
+    reason = stall.reason or fastest.reason
+    return _record(contact, stall, fastest, velocity, (not reason, reason))
 
 
 def _record(
-    contact: _Contact, stall: Answer, found: Answer, velocity: np.ndarray, verdict: tuple[bool, str]
+    contact: _Contact,
+    stall: Answer,
+    fastest: Answer,
+    velocity: np.ndarray,
+    verdict: tuple[bool, str],
 ) -> PropulsionLine:
     request, sign = contact.request, contact.sign
     problem, (converged, reason) = request.problem, verdict
     friction = [contact.friction(v) for v in velocity]
     power = [contact.power(v) for v in velocity]
-    force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
-    power_in, power_in_error = (np.array([known[k] for known in power]) for k in (0, 1))
+    force, error = (np.array([one[k] for one in friction]) for k in (0, 1))
+    power_in, power_in_error = (np.array([one[k] for one in power]) for k in (0, 1))
     force, power_out = -force, -force * velocity * contact.drift
     power_out_error = error * velocity * contact.drift
     efficiency = power_out / power_in
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
-    reason = reason or next((known.reason for known in friction + power if known.reason), "")
+    reason = reason or next((one.reason for one in friction + power if one.reason), "")
     return PropulsionLine(
         motion=problem.motion.name,
         pressure=problem.pressure.name,
@@ -333,8 +336,8 @@ def _record(
         tolerance=request.accuracy,
         stall_force=sign * -stall.value + 0.0,
         stall_force_error=stall.error,
-        no_load_velocity=sign * found.value,
-        no_load_velocity_error=found.error,
+        no_load_velocity=sign * fastest.value,
+        no_load_velocity_error=fastest.error,
         velocity=sign * velocity + 0.0,  # no zero has a sign
         force=sign * force,
         force_error=error,
@@ -351,15 +354,14 @@ def _record(
 
 
 def no_load(friction: Callable, first: float) -> Answer:
-    """The velocity at which friction vanishes, 0 where it is not negative at velocity 0.
+    """The velocity at which friction vanishes; 0 if friction is not negative at velocity 0.
 
     Parameters
     ----------
     friction : callable
-        friction(velocity) -> a record with value, error and reason, for velocities of at least 0,
-        where 0 stands for the limit.
+        friction(velocity) -> Answer, for velocities of at least 0; 0 means the static limit.
     first : float
-        Velocity above 0 to begin with.
+        First velocity to try, above 0.
     """
     still = friction(0.0)
     high = first
@@ -382,30 +384,32 @@ def no_load(friction: Callable, first: float) -> Answer:
 def _root(
     friction: Callable, low: tuple[float, float], high: tuple[float, float]
 ) -> tuple[float, float, str]:
-    """A velocity at which friction is 0 within its error, the slope there, and why there is none.
+    """A velocity at which friction is 0 within its error, the slope, and a reason for failure.
 
-    low, high: velocity and friction on both sides.  Chords and halvings take turns.
+    low, high: velocity and friction on both sides.  Secant steps and bisections alternate.
     """
     for turn in range(MOST_HALVINGS):
         width, rise = high[0] - low[0], high[1] - low[1]
         slope = rise / width
         middle = low[0] - low[1] / slope if turn % 2 == 0 else 0.5 * (low[0] + high[0])
-        found = friction(middle)
-        if found.reason:
-            return middle, slope, found.reason
-        if abs(found.value) <= found.error:
-            # by the slope to the side on which more is known of it
-            return max(middle - found.value / slope, 0.5 * middle), slope, ""
-        if found.value < 0.0:
-            low = middle, found.value
+        answer = friction(middle)
+        if answer.reason:
+            return middle, slope, answer.reason
+        if abs(answer.value) <= answer.error:
+            # one more secant step
+            return max(middle - answer.value / slope, 0.5 * middle), slope, ""
+        if answer.value < 0.0:
+            low = middle, answer.value
         else:
-            high = middle, found.value
+            high = middle, answer.value
     return middle, slope, ""
 
 
 def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
-    """The velocity next to another at which the sign of friction is certain; 0 below the lowest
-    such one, None above the highest."""
+    """A velocity below or above another one at which friction certainly has the given sign.
+
+    Returns 0 if there is none below, None if there is none above.
+    """
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):
         return 0.0 if sign < 0.0 else None
@@ -413,8 +417,8 @@ def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> 
         place = velocity + sign * step
         if place <= 0.0:
             return 0.0
-        found = friction(place)
-        if sign * found.value > found.error:
+        answer = friction(place)
+        if sign * answer.value > answer.error:
             return place
         step *= 2.0
     return 0.0 if sign < 0.0 else None

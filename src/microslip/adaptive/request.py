@@ -1,4 +1,4 @@
-"""The request for an answer at a point: problem, model, method, accuracy and budget."""
+"""A request: problem, model, method, tolerance and budget."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from microslip.solver import method_names
 from microslip.solver.budget import Budget
 from microslip.solver.method import Method
 
-if TYPE_CHECKING:  # it loads compiled code, which a closed form does without
+if TYPE_CHECKING:  # it loads compiled code, which a closed form does not need
     from microslip.estimate.refine import Refined
 
 TOLERANCE = 1e-3
-"""Default tolerance, also that of runs without a tolerance."""
+"""Default tolerance, and accuracy of runs if no tolerance is requested."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Default largest work by model: more than ten times the work of the slowest points of the paper's
-range at the tolerance 1e-4."""
+"""Default limit of the work by model, step solves times unknowns: over ten times the work of the
+slowest points of the paper's range at a tolerance of 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ class Request:
     how : method.Method
         The method.
     tolerance : float or None
-        Absolute; None: any error is accepted.
+        Absolute tolerance; None: any error is accepted.
     cells, steps : int or None
         Imposed resolution; steps in a full period.
     budget : budget.Budget
@@ -72,12 +72,12 @@ class Request:
 
     @property
     def accuracy(self) -> float:
-        """Tolerance of the runs."""
+        """Tolerance to which the runs are refined."""
         return TOLERANCE if self.tolerance is None else self.tolerance
 
     @property
     def point(self) -> dict:
-        """Fields of a result.Result that repeat the request."""
+        """Fields of a result.Result that are taken from the request."""
         problem = self.problem
         several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
         return (
@@ -96,7 +96,7 @@ class Request:
 
     @property
     def seconds(self) -> float:
-        """Seconds by the wall clock since the request."""
+        """Wall-clock time since the request, in seconds."""
         return time.perf_counter() - self.started
 
 
@@ -184,9 +184,9 @@ def driven_by(drive: Drive | None) -> dict:
 
 
 def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
-    """Fields of a result.Result that say how an answer was found, and whether it is good enough.
+    """Fields of a result.Result that describe convergence, resolution and effort.
 
-    largest: error that is accepted, None: any.
+    largest: largest accepted error; None: any.
     """
     if request.budget.exhausted:
         refined = replace(refined, effort=request.budget.taken)

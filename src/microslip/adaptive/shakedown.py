@@ -1,9 +1,9 @@
-"""How far a contact goes under a force that does not keep it moving, before it stands for good.
+"""Displacement of a vibrated contact under a constant force until it comes to rest (shakedown).
 
-Below the static limit a vibrated contact under a constant force settles: its slip regions relax,
-period by period, and what they carried goes over to the rest, until nothing slips forward any more
-(shakedown).  How far it goes until then depends on how it begins: here the force comes first, on a
-contact that nothing has pulled before, and then the vibration, at its mean position.
+Below the static limit a vibrated contact under a constant force settles.  Period by period its slip
+zones relax and transfer their load to the stick zone, until no point slips forward any more.  The
+displacement depends on the history.  Here the force is applied first, to a contact without
+tangential load; then the vibration starts at its mean position.
 """
 
 from __future__ import annotations
@@ -41,46 +41,46 @@ from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
-"""Tolerance of a run divided by that of a periodic state.  The residuals of its steps add up over
-all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
+"""Tolerance of a shakedown run, over that of a periodic state.  The residuals of its steps add up
+over all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity for which the steps are planned: at the static limit there would be none."""
+"""Velocity at which the time steps are chosen: at velocity 0 the ladder would have none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shakedown:
-    """How far a contact goes that comes to rest; dimensionless.
+    """Displacement of a contact until it comes to rest; dimensionless.
 
     Attributes
     ----------
     motion, pressure, model : str
-        What moves, how the load is spread, and the contact model.
+        Names of the motion, the pressure distribution and the contact model.
     amplitude, poisson, force, tolerance : float
-        As asked for.
+        Arguments of the request.
     threshold, threshold_error : float
-        Force from which on the contact does not come to rest, the static limit, over mu times the
-        mean normal load.
+        Static limit over mu times the mean normal load: from this force on the contact does not
+        come to rest.
     displacement, displacement_error : float
-        Forward, in u_lim, from where nothing pulled the contact until it stands; infinite where it
-        does not.  The error is the largest one, by estimate.
+        Forward displacement in u_lim from the position without a force to the position at rest,
+        with its estimated error; infinite if the contact does not come to rest.
     pushed : float
-        Part of the displacement that the force makes before anything oscillates.
+        Part of the displacement caused by the force before the oscillation starts.
     most_after : float
-        Periods after which nine tenths of the rest is gone.
+        Number of periods in which the contact covers nine tenths of the remaining displacement.
     converged : bool
-        Whether the contact comes to rest for certain and the error is within the tolerance.
+        Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
-        Why not, else empty.
+        Why it is not converged, else empty.
     error_resolution, error_periodicity, error_solver : float
-        Parts of the error: what may be left of the way is the periodicity.
+        Parts of the error by source; the periodicity bounds the displacement after the last period.
     cells, angles, steps_per_period : int
-        The finest used.
+        Resolution of the finest run.
     periods : float
-        The most that were marched.
+        Number of periods of the longest run.
     work : int
-        Unknowns times steps, of all runs.
+        Step solves times unknowns, of all runs.
     solve_time_s : float
-        Seconds by the wall clock.
+        Wall-clock time in seconds.
     """
 
     motion: str
@@ -109,7 +109,7 @@ class Shakedown:
     solve_time_s: float = 0.0
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict."""
+        """The fields as a dict."""
         return asdict(self)
 
 
@@ -126,28 +126,29 @@ def shakedown(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Shakedown:
-    """How far a vibrated contact goes under a constant force below the static limit.
+    """Compute the displacement of a vibrated contact under a force below the static limit.
 
     Parameters
     ----------
     motion : str
         A motion that exerts no forward force by itself, such as "transverse" or "bore".
     amplitude, pressure, poisson, model, most_work, time_limit, progress
-        As for `microslip.solve`.
+        See `microslip.solve`.
     force : float
         0 to below the static limit, over mu times the mean normal load; the contact has no mass.
     tolerance : float
-        Absolute, of the displacement, in u_lim.
+        Absolute tolerance of the displacement, in u_lim.
 
     Returns
     -------
     Shakedown
-        With an infinite displacement and the reason where the contact does not come to rest.
+        The displacement is infinite, with a reason, if the contact does not come to rest.
 
     Raises
     ------
     InputError
-        For bad input, and for motions of which no force is known to be held: it names the argument.
+        For an argument out of range, or a motion that exerts a forward force by itself.  It names
+        the argument.
     """
     if isinstance(motion, Problem) and isinstance(motion.drive, Force):
         if force is not None:
@@ -173,7 +174,7 @@ def shakedown(
 def _answer(request: Request, force: float) -> Shakedown:
     """The Shakedown under a force."""
     threshold, error, away = _threshold(request, force)
-    known: dict[str, Any] = {
+    request_fields: dict[str, Any] = {
         "motion": request.problem.motion.name,
         "pressure": request.problem.pressure.name,
         "model": request.model,
@@ -191,12 +192,12 @@ def _answer(request: Request, force: float) -> Shakedown:
     if away:
         endless: dict[str, Any] = {"displacement": math.inf, "displacement_error": math.inf}
         endless |= {"converged": False, "reason": away, "solve_time_s": request.seconds}
-        return Shakedown(**known, **endless)
-    return Shakedown(**known, **_certified(request, force))
+        return Shakedown(**request_fields, **endless)
+    return Shakedown(**request_fields, **_certified(request, force))
 
 
 def _threshold(request: Request, force: float) -> tuple[float, float, str]:
-    """The static limit, its error, and why the contact does not even come near it, or ""."""
+    """The static limit, its error, and why the contact runs away ("" if it does not)."""
     problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):
@@ -212,9 +213,9 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     """Fields of a Shakedown that follow from its runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     ladder = ladder_for(planned, request.model, request.accuracy)
-    # the coarsest run, too, must hold the force
+    # the contact of the coarsest run, too, must come to rest
     ladder = replace(ladder, start=2 * ladder.start)
-    left = RUN_SHARE * run_tolerance(request.accuracy)
+    remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
     runs: dict[Resolution, ShakedownRun] = {}
 
@@ -222,7 +223,7 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
         if request.progress is not None:
             request.progress(resolution)
         runs[resolution] = run_to_rest(
-            request.problem, force, request.model, resolution, left, settings
+            request.problem, force, request.model, resolution, remaining, settings
         )
         return runs[resolution]
 

@@ -1,7 +1,7 @@
-"""Power needed to vibrate a contact: mean work of the oscillation, with an error estimate.
+"""Power needed to vibrate a contact: mean power of the oscillation, with an error estimate.
 
-The forward drive does the work mu_macro v in addition.  Elastic energy is returned, so that
-friction dissipates the sum of both.
+The forward drive adds the power mu_macro v.  Elastic energy is recovered, so that friction
+dissipates the sum of both powers.
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ def vibration_power(
     poisson: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> Answer:
-    """Mean work that an oscillation does on the contact.
+    """Compute the mean power of the oscillation on the contact.
 
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson
-        As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0.
+        See `microslip.solve`; the motion oscillates, velocity and amplitude are above 0.
     tolerance : float
-        Accepted error, over the mean speed of the oscillation.
+        Largest accepted error, over the mean speed of the oscillation.
 
     Returns
     -------
@@ -81,6 +81,6 @@ def vibration_power(
 
 
 def mean_speed(problem: Problem) -> float:
-    """Mean speed of the oscillation: distance in a radian of phase, in u_lim."""
+    """Mean speed of the oscillation: path length in a radian of phase, in u_lim."""
     moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
     return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)

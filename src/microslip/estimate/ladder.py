@@ -203,7 +203,7 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
     """Raise InputError where a tolerance would have to choose the cells or the steps."""
     numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
-    free = " and ".join(name for name, refined, given in numbers if refined and given is None)
+    free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
     if free:
         allowed = f"allowed is a number, or none where {free} are imposed"
         raise InputError("tolerance", None, allowed)

@@ -187,15 +187,15 @@ class _Levels:
             "periodicity": _weighted(weights, [one.distance for one in three]),
             "solver": _weighted(weights, [one.solver_residual for one in three]),
         }
-        done = [*self.runs.values(), *self.other_runs.values()]
-        reason = next((one.reason for one in done if not one.converged), "")
+        runs = [*self.runs.values(), *self.other_runs.values()]
+        reason = next((one.reason for one in runs if not one.converged), "")
         return Refined(
             value=Estimate(value, errors | common),
             torque=Estimate(torque, torque_errors | common),
             order=order,
             finest=self.ladder.resolution(level),
-            periods=max(one.periods for one in done),
-            effort=sum((one.effort for one in done), Effort()),
+            periods=max(one.periods for one in runs),
+            effort=sum((one.effort for one in runs), Effort()),
             converged=not reason,
             reason=reason,
             periodic=not reason,

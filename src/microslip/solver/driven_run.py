@@ -39,7 +39,7 @@ from microslip.states.search import Inertia
 
 MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search: twice the default, since a body may swing."""
-LOOSEST_MOVED = 1e-4
+LOOSEST_START = 1e-4
 """Force over mu F_z to which the state of a contact that is moved is found at least."""
 COARSENING, PREPARED_FROM = 6, 96
 """By how much steps are fewer where a search begins, and from how many steps on it does: fewer cost
@@ -105,10 +105,10 @@ def simulate_driven(
     budget.Spent
         Where the budget is.
     """
-    pulled = _DrivenSearch(problem, model, resolution, settings)
-    pulled.slope = accuracy.slope
+    search = _DrivenSearch(problem, model, resolution, settings)
+    search.slope = accuracy.slope
     try:
-        return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
+        return search.run(accuracy.tolerance * search.force_of_answer, guess)
     except StepFailure as failure:
         return failed_run(str(failure))
 
@@ -130,7 +130,7 @@ class _DrivenSearch:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
         self.slope = np.inf
-        self.before: list[Run] = []
+        self.earlier: list[Run] = []
 
     @property
     def force_of_answer(self) -> float:
@@ -150,15 +150,15 @@ class _DrivenSearch:
         """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
-        goal, done = Goal(tolerance, step_tolerance, MARCHES), []
+        goal, searches = Goal(tolerance, step_tolerance, MARCHES), []
         for start, static_force, mu in self._starts(tolerance, guess):
             period_map = self._map(static_force, rate, mu)
             if not self._fits(start, period_map):
                 continue
-            done.append(find_periodic_state(period_map, start, goal))
-            if done[-1].converged:
+            searches.append(find_periodic_state(period_map, start, goal))
+            if searches[-1].converged:
                 break
-        return self._summary(done, static_force, step_tolerance)
+        return self._summary(searches, static_force, step_tolerance)
 
     def _map(self, static_force: float, rate: float, mu: float) -> DrivenMap:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
@@ -183,59 +183,59 @@ class _DrivenSearch:
             coarser = self._coarser(tolerance)
             if coarser.state is not None and coarser.converged:
                 yield coarser.state, coarser.static_force, coarser.mu
-        moved = self._moved(tolerance)
-        self.before.append(moved)
+        prescribed = self._at_prescribed_velocity(tolerance)
+        self.earlier.append(prescribed)
         slipping = forward_slip(self.contact)
-        if moved.state is not None:
-            state = self._state(moved.state, moved.mu * self.problem.mean_load)
-            yield state, moved.static_force, moved.mu
+        if prescribed.state is not None:
+            state = self._state(prescribed.state, prescribed.mu * self.problem.mean_load)
+            yield state, prescribed.static_force, prescribed.mu
         full = float(forces(self.contact, slipping)[FORWARD])
-        yield self._state(slipping, full), moved.static_force, moved.mu
+        yield self._state(slipping, full), prescribed.static_force, prescribed.mu
 
     def _coarser(self, tolerance: float) -> Run:
         """The Run with fewer steps."""
         fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
         accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
-        found = simulate_driven(self.problem, self.model, fewer, accuracy, self.settings)
-        self.before.append(found)
-        return found
+        run = simulate_driven(self.problem, self.model, fewer, accuracy, self.settings)
+        self.earlier.append(run)
+        return run
 
-    def _moved(self, tolerance: float) -> Run:
+    def _at_prescribed_velocity(self, tolerance: float) -> Run:
         """The Run at a velocity that is given."""
-        share = max(tolerance, LOOSEST_MOVED) / self.problem.mean_load
+        share = max(tolerance, LOOSEST_START) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
         """State near tractions whose mean force in a period is about `mean`."""
         if self.drive.force is not None:
-            wanted = self.drive.force * self.problem.mean_load
-            if mean > 0.0 and 0.0 <= wanted < MOST_SCALED * mean:
-                tractions = tractions * (wanted / mean)
+            force = self.drive.force * self.problem.mean_load
+            if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
+                tractions = tractions * (force / mean)
             tractions = project(tractions, self.contact.bound)
         place = (self.body.load - mean) / self.drive.stiffness if self.drive.stiffness else 0.0
-        moved = np.array([place, 0.0]) if self.body.remembers else np.zeros(0)
-        return np.append(tractions.ravel(), moved)
+        place_and_rate = np.array([place, 0.0]) if self.body.remembers else np.zeros(0)
+        return np.append(tractions.ravel(), place_and_rate)
 
     def _summary(
-        self, done: list[PeriodicState], static_force: float, step_tolerance: float
+        self, searches: list[PeriodicState], static_force: float, step_tolerance: float
     ) -> Run:
         path = self.path
         run = run_of_searches(
             self.contact,
             self.problem,
             path,
-            done,
+            searches,
             step_tolerance,
             self.force_of_answer,
             static_force=static_force,
         )
-        body = done[-1].body
+        body = searches[-1].body
         assert body is not None  # as of all driven contacts
         drift_rate = float(body[-1, 0] - body[0, 0]) / self.interval
         return replace(
             run,
-            periods=run.periods + sum(one.periods for one in self.before),
-            effort=sum((one.effort for one in self.before), run.effort),
+            periods=run.periods + sum(one.periods for one in self.earlier),
+            effort=sum((one.effort for one in self.earlier), run.effort),
             velocity=self.problem.velocity + drift_rate / self.problem.unit_drift,
         )
 
@@ -280,7 +280,7 @@ class DrivenMap(PeriodMap):
         self._spread = spread / load if load > 0.0 else 0.0 * spread
         interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
         self._mass = min(body.mass, stiffness * interval**2)
-        self._held = body.stiffness * min(1.0, body.stiffness / stiffness)
+        self._stiffness = body.stiffness * min(1.0, body.stiffness / stiffness)
         self._haste = np.ones(2)
         slow = max(1.0, body.damping / (stiffness * interval))
         if body.stiffness > 0.0:
@@ -289,14 +289,15 @@ class DrivenMap(PeriodMap):
         if body.mass > 0.0:
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
-    def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    def state(self, tractions: np.ndarray, place_and_rate: np.ndarray) -> np.ndarray:
         """The state of tractions and of (x, x'), one row."""
-        return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
+        flat = tractions.ravel()
+        return np.append(flat, place_and_rate) if self.body.remembers else flat
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Tractions of a state, and x and x' if they belong to it, else 0."""
-        moved = state[self._points :] if self.body.remembers else np.zeros(2)
-        return state[: self._points].reshape(self._shape), moved
+        place_and_rate = state[self._points :] if self.body.remembers else np.zeros(2)
+        return state[: self._points].reshape(self._shape), place_and_rate
 
     def inertia(self) -> Inertia:
         """Stiffness, mass and acceleration factors of the driven body, for compiled code."""
@@ -304,7 +305,7 @@ class DrivenMap(PeriodMap):
             self.body.along(self.path, np.zeros(2)),
             float(self._haste[0]),
             float(self._haste[1]),
-            float(self._held),
+            float(self._stiffness),
             float(self._mass),
             self.contact.layout.pack(self._spread),
         )

@@ -63,16 +63,16 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     layout = contact.layout
     memory = search.memory_of(layout.pack(tractions), place, stages, path.steps, target)
     system, loading, inertia = contact.system(), contact.loading(path), period_map.inertia()
-    done, most = False, goal.most_marches
-    while not done and memory.counts[0] < most:
+    finished, most = False, goal.most_marches
+    while not finished and memory.counts[0] < most:
         marches, iterations = memory.counts[:2]
         affordable = contact.affordable(path.solves * tractions.size)
         some = int(min(most - marches, affordable))
-        done, broken = search.search(system, loading, inertia, target, memory, some)
+        finished, broken = search.search(system, loading, inertia, target, memory, some)
         if broken:
             signal.raise_signal(signal.SIGINT)
-        marched = int(memory.counts[0] - marches)
-        contact.take(marched * path.solves, int(memory.counts[1] - iterations), tractions.size)
+        marches_made = int(memory.counts[0] - marches)
+        contact.take(marches_made * path.solves, int(memory.counts[1] - iterations), tractions.size)
     marches, iterations = map(int, memory.counts[:2])
     state, forces, body, numbers = memory.best
     state = layout.unpack(state)

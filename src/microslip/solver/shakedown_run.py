@@ -107,7 +107,7 @@ class _Walk:
         self.map = PeriodMap(contact, path, mirror=problem.half_period_mirror)
         self.marches = 0
         self.interval = path.phase[-1] - path.phase[0]
-        self.gone: list[float] = []
+        self.ways: list[float] = []
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
     def to_rest(self, tolerance: float) -> ShakedownRun:
@@ -116,7 +116,7 @@ class _Walk:
         state = 0.0 * forward_slip(self.contact)
         still, pushed = self._march(self._still(), state, step_tolerance)
         first, images = self._first_part()
-        march, begun = self._march(first, still.state, step_tolerance)
+        march, first_way = self._march(first, still.state, step_tolerance)
         state = march.state
         for _ in range(images):
             state = self.map.image(state)
@@ -124,18 +124,18 @@ class _Walk:
         for turn in range(MOST_INTERVALS):
             previous, way = self._march(self.map.path, state, step_tolerance, previous)
             state = self.map.image(previous.state)
-            self.gone.append(way)
+            self.ways.append(way)
             self.marches += 1
             if turn + 1 == look:
-                left = self._left()
-                if left <= tolerance or self._drifts():
+                remaining = self._remaining()
+                if remaining <= tolerance or self._drifts():
                     break
                 look = round(look * LOOKS[look % 3 == 0])
         reason = unsolved(self.residual, self.solves, step_tolerance)
-        if left > tolerance:
-            reason = f"still moves after {self._periods:g} periods, by {self.gone[-1]:.1e} in the "
+        if remaining > tolerance:
+            reason = f"still moves after {self._periods:g} periods, by {self.ways[-1]:.1e} in the "
             reason += "last march"
-        return self._summary((pushed, begun), left, reason, state)
+        return self._summary((pushed, first_way), remaining, reason, state)
 
     @property
     def _periods(self) -> float:
@@ -189,9 +189,9 @@ class _Walk:
     def _drifts(self) -> bool:
         """Whether the contact goes on as fast as it did long before."""
         before, last = self._last_two()
-        return len(self.gone) >= LONG and last > DRIFTING * before
+        return len(self.ways) >= LONG and last > DRIFTING * before
 
-    def _left(self) -> float:
+    def _remaining(self) -> float:
         """How much of the way may be left: the series of distances that are gone while the number
         of intervals doubles, if it went on as it did last; infinite if that does not end."""
         before, last = self._last_two()
@@ -202,24 +202,24 @@ class _Walk:
 
     def _last_two(self) -> tuple[float, float]:
         """Distances gone while the number of intervals doubled to half of what it is, and to it."""
-        count = len(self.gone)
-        before, last = sum(self.gone[count // 4 : count // 2]), sum(self.gone[count // 2 :])
+        count = len(self.ways)
+        before, last = sum(self.ways[count // 4 : count // 2]), sum(self.ways[count // 2 :])
         return max(before, 0.0), max(last, 0.0)
 
     def _summary(
-        self, parts: tuple[float, float], left: float, reason: str, state: np.ndarray
+        self, parts: tuple[float, float], remaining: float, reason: str, state: np.ndarray
     ) -> ShakedownRun:
-        pushed, begun = parts
-        marched = np.cumsum([begun, *self.gone])
-        added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)
-        most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
+        pushed, first_way = parts
+        travel = np.cumsum([first_way, *self.ways])
+        added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
+        most = int(np.searchsorted(np.maximum.accumulate(travel), MOST_SHARE * added))
         if added <= self.residual / self.contact.stiffness:  # no more than steps leave unsolved
             most = 0
         periods = self.interval / (2.0 * np.pi)
         return ShakedownRun(
             mu=self.body.load / self.problem.mean_load,
             torque=0.0,
-            distance=0.5 * left,
+            distance=0.5 * remaining,
             solver_residual=self.residual / self.contact.stiffness,
             periods=self._periods,
             effort=Effort.of(self.solves, self.iterations, state.size),

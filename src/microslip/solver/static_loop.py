@@ -91,27 +91,27 @@ def loop_limit(
     start = np.zeros((2, *shape))
     goal, rounds = Goal(tolerance, step_tolerance, MARCHES), []
     for _ in range(MOST_ROUNDS):
-        found = find_periodic_state(period_map, start, goal)
-        rounds.append(found)
-        start = found.start
-        if found.converged:
+        periodic = find_periodic_state(period_map, start, goal)
+        rounds.append(periodic)
+        start = periodic.start
+        if periodic.converged:
             break
     counts = ("marches", "iterations", "solves")
-    found = replace(found, **{n: sum(getattr(one, n) for one in rounds) for n in counts})
-    force = float(mean_forces(contact, problem, path, found.forces)[FORWARD])
-    residual, solves = found.solver_residual, path.solves
+    periodic = replace(periodic, **{n: sum(getattr(one, n) for one in rounds) for n in counts})
+    force = float(mean_forces(contact, problem, path, periodic.forces)[FORWARD])
+    residual, solves = periodic.solver_residual, path.solves
     if not contact.sticks:
-        return LoopLimit(found, np.zeros((2, *shape)), force, residual, solves)
-    shown = frames(contact, path, start, step_tolerance, found)
-    residual, solves = residual + shown.residual, solves + shown.solves
-    tractions = shown.tractions
+        return LoopLimit(periodic, np.zeros((2, *shape)), force, residual, solves)
+    march = frames(contact, path, start, step_tolerance, periodic)
+    residual, solves = residual + march.residual, solves + march.solves
+    tractions = march.tractions
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     if mirror:
         bounds = np.concatenate([bounds, bounds])
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
     shift = largest_shift(tractions, bounds)
     force += float(np.sum(contact.weight * shift[FORWARD]))
-    return LoopLimit(found, shift, force, residual, solves)
+    return LoopLimit(periodic, shift, force, residual, solves)
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:

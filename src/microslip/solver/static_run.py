@@ -59,17 +59,17 @@ def simulate_static(
 
 
 def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
-    force, solves, left, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
+    force, solves, residual, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
     if contact.sticks:
         limit = static_state(contact, problem.displacement, step_tolerance)
         force = float(forces(contact, limit.residual)[FORWARD])
-        solves, left = limit.solves, limit.solver_residual
-    reason = unsolved(left, solves, step_tolerance)
+        solves, residual = limit.solves, limit.solver_residual
+    reason = unsolved(residual, solves, step_tolerance)
     return Run(
         mu=force / problem.mean_load,
         torque=0.0,
         distance=0.0,
-        solver_residual=left / problem.mean_load,
+        solver_residual=residual / problem.mean_load,
         periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
         effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
@@ -83,9 +83,9 @@ def _on_a_loop(
     if settings.focus is not None:  # the edges are known
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
-    done, _ = edges_on_a_loop(problem, model, resolution, tolerance, settings)
-    effort = sum((one.effort for one in done), Effort())
-    return replace(done[-1], periods=sum(one.periods for one in done), effort=effort)
+    runs, _ = edges_on_a_loop(problem, model, resolution, tolerance, settings)
+    effort = sum((one.effort for one in runs), Effort())
+    return replace(runs[-1], periods=sum(one.periods for one in runs), effort=effort)
 
 
 def edges_on_a_loop(
@@ -105,11 +105,11 @@ def edges_on_a_loop(
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
         run, sticks = _on_these_points(contact, problem, resolution, tolerance, settings)
-        done.append(run)
+        runs.append(run)
         return sticks if run.converged else None
 
-    done: list[Run] = []
-    return done, _edges(problem, model, resolution, points_that_stick, settings, progress)
+    runs: list[Run] = []
+    return runs, _edges(problem, model, resolution, points_that_stick, settings, progress)
 
 
 def edges_on_a_line(
@@ -163,13 +163,13 @@ def _edges(
     return radii
 
 
-def _stick_radii(contact: Contact, left: np.ndarray | None) -> tuple[float, ...]:
+def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
     """Radii between rings of which more than half has something `left` and others, the outermost
     alone where there are too many; none where these are not known."""
     edges = contact.edges
-    if left is None or edges is None:
+    if sticks is None or edges is None:
         return ()
-    sticks = (left.mean(axis=0) if left.ndim > 1 else left) > 0.5
+    sticks = (sticks.mean(axis=0) if sticks.ndim > 1 else sticks) > 0.5
     radii = _without_slivers([float(radius) for radius in edges[1:-1][np.diff(sticks)]])
     return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
 
@@ -191,26 +191,26 @@ def _on_these_points(
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
-    limit, left = loop_limit(contact, problem, path, distance, inner), None
-    found = limit.periodic
+    limit, sticks = loop_limit(contact, problem, path, distance, inner), None
+    periodic = limit.periodic
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
-        left = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
-    near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
-    periods = periods_of(found.marches, problem)
+        sticks = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
+    near = periodic.converged or periodic.distance <= ENOUGH * distance  # and its error is told
+    periods = periods_of(periodic.marches, problem)
     reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:
-        reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
     run = Run(
         mu=limit.force / problem.mean_load,
         torque=0.0,
-        distance=FELT * found.distance / problem.mean_load,
+        distance=FELT * periodic.distance / problem.mean_load,
         solver_residual=limit.solver_residual / problem.mean_load,
         periods=periods,
-        effort=Effort.of(found.solves, found.iterations, found.start.size),
+        effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
         converged=not reason,
         reason=reason,
         # a constant traction does no work on a motion that returns
-        power=oscillation_power(problem, path, found.forces),
+        power=oscillation_power(problem, path, periodic.forces),
     )
-    return run, left
+    return run, sticks

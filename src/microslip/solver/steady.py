@@ -1,4 +1,4 @@
-"""The steady state of a motion that does not oscillate: marched until its tractions stand still."""
+"""The steady state of a motion without oscillation, found by marching."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 STEADY_STRETCH = 8
-"""Steps marched between two looks at whether a steady motion has reached its steady state."""
+"""Number of steps between two checks of the steady state."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
+"""Largest number of such stretches of steps."""
 
 
 def steady_state(
     contact: Contact, problem: Problem, tolerance: float, step_tolerance: float
 ) -> Run:
-    """March a steady motion until its tractions stand still.
+    """March a steady motion until its tractions no longer change.
 
     Parameters
     ----------
@@ -47,7 +48,7 @@ def steady_state(
         state = march.state
         iterations += march.iterations
         solves += march.solves
-        # the changes of a contraction fall geometrically, so that their sum is known
+        # the remaining changes are a geometric series
         if np.isfinite(previous):
             ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
             distance = change / (1.0 - ratio)

@@ -74,8 +74,8 @@ class Solver:
         self.solves += 1
         self.failed += not (step.converged and step.proj_residual <= ACCEPTED)
         q, slip = np.stack([step.qx, step.qy]), np.stack([step.slip_x, step.slip_y])
-        left = project(q + slip / self.scale, self.bound) - q
-        force, residual = q[0].sum(), np.hypot(*left).sum()
+        remaining = project(q + slip / self.scale, self.bound) - q
+        force, residual = q[0].sum(), np.hypot(*remaining).sum()
         return float(force) * self.size**2, float(residual) * self.size**2
 
 
@@ -86,8 +86,8 @@ def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, fl
     sign = (-1) ** number
     forward = path.positions[1:, 0] - start[0] + number * (end[0] - start[0])
     lateral = sign * path.positions[1:, 1] - start[1]
-    found = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
-    return found[:, 0], float(found[:, 1].sum())
+    steps_made = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
+    return steps_made[:, 0], float(steps_made[:, 1].sum())
 
 
 def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float) -> Run:
