@@ -25,7 +25,7 @@ from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
-"""Default resolution: the mean force agrees with `solve` to 2e-3 (tests/adaptive/test_period.py)."""
+"""Default resolution: the mean force agrees with `solve` to 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
 """Largest distance from the periodic state, a force over mu F_z, far below those 2e-3."""
 ON_BOUND = 1.0 - 1e-4

@@ -1,4 +1,4 @@
-"""One run of a body on several contacts at a prescribed velocity, where contacts do not interact."""
+"""One run of a body on several contacts at a prescribed velocity; contacts do not interact."""
 
 from __future__ import annotations
 

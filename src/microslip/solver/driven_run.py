@@ -1,18 +1,18 @@
-"""One run at one resolution of a contact that a force or a spring pulls.
+"""One run at one resolution of a contact under a prescribed force or on a spring.
 
-It begins with the contact moved at a given velocity, whose tractions are near: that of the spring's
-far end, or under a force one that is about as slow.  From there an accelerated search goes on.  A
-search takes as many periods with few steps as with many, so that many steps begin where few ended.
+The search starts from the periodic state of the contact at a prescribed velocity: the velocity of
+the far end of the spring, or an approximate velocity under the force.  The number of periods in a
+search does not depend on the number of steps, so a run with many steps starts from the result of a
+run with few steps.
 
-The state is one row of numbers: the tractions, and where the body remembers (models/pull.py) how
-far it is ahead of the path, x, and how fast that grows, x'.  In the mirror image of half a period
-later these two are what they were.
+The state is an array of one dimension: the tractions, and for bodies with a memory (models/pull.py)
+the position x of the body ahead of the path and its rate x'.  The mirror image half a period later
+leaves x and x' as they are.
 
-In one period a heavy body hardly notices that the forces on it do not balance, nor does a soft
-spring that the contact stays behind.  So the map moves the body on as if it were no heavier, and
-its spring no softer, than the contact is: by so many times what it moved.  What repeats itself is
-the same.  A contact that slides as a whole gives way far more than one that sticks: the stiffness
-that counts there is the rise of its mean force with the displacement.
+During one period unbalanced forces hardly move a heavy body, and a soft spring hardly changes its
+force.  So the map multiplies the change of x and x', as if the body were no heavier and the spring
+no softer than the contact.  Its fixed point is the same.  A contact in full slip is much more
+compliant than a sticking contact: its stiffness is the rise of its mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ from microslip.solver.simulate import run_of_searches, step_share
 from microslip.states.search import Inertia
 
 MARCHES = 2 * MOST_MARCHES
-"""Largest number of marches in a search: twice the default, since a body may swing."""
+"""Largest number of marches in a search: twice the default, since the body can oscillate."""
 LOOSEST_START = 1e-4
-"""Force over mu F_z to which the state of a contact that is moved is found at least."""
+"""Largest tolerance of the state at a prescribed velocity, a force over mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
-"""By how much steps are fewer where a search begins, and from how many steps on it does: fewer cost
-little, and are what tolerances of 1e-3 ask for."""
+"""Ratio of steps to the steps of the preparing run, and smallest number of steps that is prepared.
+Runs with fewer steps are cheap; a tolerance of 1e-3 needs fewer."""
 MOST_SCALED = 4.0
-"""By how much the tractions of a contact that is moved are scaled to the force at most."""
+"""Largest factor by which the tractions of the start are scaled to the prescribed force."""
 
 
 CAUTION = 0.3
@@ -53,15 +53,15 @@ CAUTION = 0.3
 
 
 class Accuracy(NamedTuple):
-    """How exactly the periodic state is to be found.
+    """Accuracy of the periodic state.
 
     Attributes
     ----------
     tolerance : float
-        Tolerance of the result: a force over mu F_z, or under a force the mean velocity.
+        Tolerance of the result: a force over mu F_z for a spring, else the mean velocity.
     slope : float
-        About how much friction rises with the velocity, over mu times the mean normal load: what
-        an unbalanced force does to the velocity.
+        Approximate rise of friction, over mu times the mean normal load, with the velocity.  It
+        converts an unbalanced force to an error of the velocity.
     """
 
     tolerance: float
@@ -77,33 +77,34 @@ def simulate_driven(
     *,
     guess: Run | None = None,
 ) -> Run:
-    """Run a model of a contact that is pulled to its periodic state.
+    """Run a model of a driven contact to its periodic state.
 
     Parameters
     ----------
     problem : problem.Problem
-        With a drive; its velocity is that of the spring's far end, or an initial guess.
+        The problem with a drive.  Its velocity is that of the far end of the spring, or under a
+        force an initial guess.
     model : str
-        Name in models.registry.MODELS, of a contact that may be pulled.
+        Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
         Resolution of the model.
     accuracy : Accuracy
         Accuracy of the periodic state.
     settings : run.Settings
-        How it is done; of the method the integrator counts.
+        Settings of the run; only the integrator of the method is used.
     guess : run.Run or None
         Run of the same point under the same drive; used if it has the same cells and angles.
 
     Returns
     -------
     run.Run
-        Under a force `velocity` is what was asked for, and distance and solver_residual are
-        velocities.  Never raises for want of convergence.
+        Under a force the result is `velocity`, and distance and solver_residual are velocities.
+        A failure to converge raises nothing.
 
     Raises
     ------
     budget.Spent
-        Where the budget is.
+        If the budget is exceeded.
     """
     search = _DrivenSearch(problem, model, resolution, settings)
     search.slope = accuracy.slope
@@ -114,14 +115,14 @@ def simulate_driven(
 
 
 class _DrivenSearch:
-    """The search for the periodic state of one run."""
+    """Search for the periodic state of one run of a driven contact."""
 
     def __init__(self, problem: Problem, model: str, resolution: Resolution, settings: Settings):
         drive = problem.drive
         assert drive is not None  # as simulate_driven demands
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
-        # or one that counts its marches
+        # or a contact that counts its marches
         self.contact = cast(SystemContact, settings.contact(problem, model, resolution))
         self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
@@ -134,11 +135,12 @@ class _DrivenSearch:
 
     @property
     def force_of_answer(self) -> float:
-        """Force over mu F_z that stands for a unit of the answer, to judge states by.
+        """Force over mu F_z that corresponds to a unit of the answer.
 
-        A state that is wrong by a force is wrong by that over the stiffness in its displacement,
-        and a march that began with it, in the velocity by this over the interval.  A force that is
-        not balanced is wrong by what friction would rise by in the velocity.
+        For a spring the answer is a force.  For a prescribed force it is a velocity: a force over
+        the stiffness is a displacement, which over the interval is a velocity.  The other estimate
+        divides an unbalanced force by the rise of friction with the velocity.  The smaller unit is
+        used.
         """
         if self.drive.force is None:
             return self.problem.mean_load
@@ -147,7 +149,7 @@ class _DrivenSearch:
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance: float, guess: Run | None = None) -> Run:
-        """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_driven."""
+        """The Run; tolerance: a force over mu F_z; guess: see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, searches = Goal(tolerance, step_tolerance, MARCHES), []
@@ -164,7 +166,7 @@ class _DrivenSearch:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
             drift_rate = DriftRate(static_force, full, rate * self.interval)
-            # 1 - mu falls at most as 1 / velocity^2, the law of large velocities
+            # 1 - mu falls at most in proportion to 1 / velocity^2, its law at large velocities
             slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
         mirror = self.problem.half_period_mirror
         return DrivenMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
@@ -175,8 +177,7 @@ class _DrivenSearch:
     def _starts(
         self, tolerance: float, guess: Run | None
     ) -> Iterator[tuple[np.ndarray, float, float]]:
-        """States to begin with, the nearest one first, each with the force of the static limit and
-        the friction near by."""
+        """Start states, the best one first, each with the force of the static limit and a friction."""
         if guess is not None and guess.state is not None and guess.converged:
             yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:
@@ -193,7 +194,7 @@ class _DrivenSearch:
         yield self._state(slipping, full), prescribed.static_force, prescribed.mu
 
     def _coarser(self, tolerance: float) -> Run:
-        """The Run with fewer steps."""
+        """The Run with COARSENING times fewer steps."""
         fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
         accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
         run = simulate_driven(self.problem, self.model, fewer, accuracy, self.settings)
@@ -201,12 +202,12 @@ class _DrivenSearch:
         return run
 
     def _at_prescribed_velocity(self, tolerance: float) -> Run:
-        """The Run at a velocity that is given."""
+        """The Run at the velocity of the problem, prescribed."""
         share = max(tolerance, LOOSEST_START) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
-        """State near tractions whose mean force in a period is about `mean`."""
+        """State from tractions whose mean force in a period is about `mean`."""
         if self.drive.force is not None:
             force = self.drive.force * self.problem.mean_load
             if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
@@ -230,7 +231,7 @@ class _DrivenSearch:
             static_force=static_force,
         )
         body = searches[-1].body
-        assert body is not None  # as of all driven contacts
+        assert body is not None  # all driven contacts have one
         drift_rate = float(body[-1, 0] - body[0, 0]) / self.interval
         return replace(
             run,
@@ -246,17 +247,17 @@ class DrivenMap(PeriodMap):
     Parameters
     ----------
     contact : SystemContact
-        What is marched.
+        The contact.
     path : path.Path
-        From which the body may stay behind or run ahead.
+        Path relative to which the body moves.
     body : pull.Body
-        What is pulled, and by what.
+        The body and its drive.
     drift_rate : period_map.DriftRate or None
-        Given where the motion may be slow and its velocity is known.
+        Drift rate of a possibly slow motion at a known velocity.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     slope : float
-        Largest rise of the mean forward force for a body that gains a unit of x in the interval.
+        Largest rise of the mean forward force when the body advances by a unit of x per interval.
     """
 
     contact: SystemContact
@@ -276,7 +277,7 @@ class DrivenMap(PeriodMap):
         self._points = int(np.prod(self._shape))
         spread = np.broadcast_to(contact.bound, self._shape[1:])
         load = float(np.sum(contact.weight * spread))
-        # a period that begins without contact has no tractions there to correct
+        # without contact at the start of a period there are no tractions to correct
         self._spread = spread / load if load > 0.0 else 0.0 * spread
         interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
         self._mass = min(body.mass, stiffness * interval**2)
@@ -290,12 +291,12 @@ class DrivenMap(PeriodMap):
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
     def state(self, tractions: np.ndarray, place_and_rate: np.ndarray) -> np.ndarray:
-        """The state of tractions and of (x, x'), one row."""
+        """The state array of tractions and of (x, x')."""
         flat = tractions.ravel()
         return np.append(flat, place_and_rate) if self.body.remembers else flat
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions of a state, and x and x' if they belong to it, else 0."""
+        """Tractions of a state, and (x, x'), 0 for a body without memory."""
         place_and_rate = state[self._points :] if self.body.remembers else np.zeros(2)
         return state[: self._points].reshape(self._shape), place_and_rate
 

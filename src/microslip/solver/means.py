@@ -15,7 +15,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     """Mean forces over a march, shape (3,); forces: at the phases of the path."""
     if problem.depth is None:
         return path.mean(forces)
-    # the mean of full slip is exact, and the trapezoidal rule has only the difference to integrate
+    # the trapezoidal rule integrates only the difference from full slip, whose mean is exact
     growing = cast(GrowingContact, contact)  # since its load oscillates
     bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]

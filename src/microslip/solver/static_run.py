@@ -1,4 +1,4 @@
-"""One run of the static limit at one resolution: nothing moves forward, but it is a Run too."""
+"""One run of the static limit at one resolution."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""How much more than the distance from the periodic state of the oscillation alone the limit may
-feel: three times were seen.  Where points slip, every step puts them on the bound, so that no
-shift is left to them however far the state is from periodic."""
+"""Error of the limit over the distance from the periodic state of the oscillation alone: at most 3 in
+tests.  Slipping points are on the bound after every step, and have no shift."""
 LOOP_STEP_SHARE = 1e-4
-"""Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
-its distance from the bound."""
+"""Tolerance of a step over that of the periodic state.  The shift of a point depends on the square
+root of its distance from the bound."""
 ENOUGH = 4.0
-"""Factor on the requested distance that is still accepted where rounding limits the search."""
+"""Largest accepted distance over the requested one, since rounding limits the search."""
 MOST_PASSES = 4
+"""Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
 """Largest number of edges of the stick zone; more edges count as scatter."""
 SLIVER = 1e-3
-"""Width, over the contact radius, of what is taken for scatter between two edges: where little
-slips, rings next to an edge have almost nothing left on either side of it."""
+"""Largest distance of two edges that counts as scatter, over the contact radius.  With little slip,
+the rings next to an edge have almost no shift on either side."""
 NOTHING_LEFT = 1e-2
-"""Share of the largest bound that a ring outside of the stick radius may seem to have left."""
+"""Largest shift of a ring outside the stick radius, over the largest bound."""
 
 
 def simulate_static(
@@ -45,10 +45,10 @@ def simulate_static(
     tolerance: float,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """The limit of vanishing velocity at one resolution: arguments and Run as simulate.simulate.
+    """Run the static limit at one resolution; arguments and result are those of simulate.simulate.
 
-    The velocity of the problem is 0.  The rigid contact keeps no residual traction: 0 where the
-    oscillation is on a line.
+    The velocity of the problem is 0.  For a rigid contact and an oscillation on a line the limit
+    is 0.
     """
     try:
         if at_turning_points(problem):
@@ -70,7 +70,7 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
         torque=0.0,
         distance=0.0,
         solver_residual=residual / problem.mean_load,
-        periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
+        periods=0.0,  # the limit takes a quarter of a period without a search
         effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
         reason=reason,
@@ -80,7 +80,7 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
 def _on_a_loop(
     problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
 ) -> Run:
-    if settings.focus is not None:  # the edges are known
+    if settings.focus is not None:  # the edges of the stick zone are known
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
     runs, _ = edges_on_a_loop(problem, model, resolution, tolerance, settings)
@@ -164,8 +164,10 @@ def _edges(
 
 
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
-    """Radii between rings of which more than half has something `left` and others, the outermost
-    alone where there are too many; none where these are not known."""
+    """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
+
+    Returns the outermost radius alone if there are more than MOST_EDGES, none if `sticks` is None.
+    """
     edges = contact.edges
     if sticks is None or edges is None:
         return ()
@@ -175,7 +177,7 @@ def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ..
 
 
 def _without_slivers(radii: list[float]) -> list[float]:
-    """Ascending radii without pairs that lie within a SLIVER of each other, the closest first."""
+    """Ascending radii without the pairs that are closer than SLIVER."""
     while len(radii) > 1:
         closest = int(np.argmin(np.diff(radii)))
         if radii[closest + 1] - radii[closest] > SLIVER:
@@ -187,7 +189,7 @@ def _without_slivers(radii: list[float]) -> list[float]:
 def _on_these_points(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """The Run on one contact, and which points have something left to resist with, if any has."""
+    """The Run on one contact, and a mask of the points that stick (None if the contact cannot)."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
@@ -196,7 +198,9 @@ def _on_these_points(
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
         sticks = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
-    near = periodic.converged or periodic.distance <= ENOUGH * distance  # and its error is told
+    near = (
+        periodic.converged or periodic.distance <= ENOUGH * distance
+    )  # the distance is part of the error
     periods = periods_of(periodic.marches, problem)
     reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:
@@ -210,7 +214,7 @@ def _on_these_points(
         effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
         converged=not reason,
         reason=reason,
-        # a constant traction does no work on a motion that returns
+        # a constant traction does no work over a closed loop
         power=oscillation_power(problem, path, periodic.forces),
     )
     return run, sticks

@@ -21,18 +21,18 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 
 SLOW_LINE = 0.01
-"""Drift in a radian, in u_lim, below which the stick zone of the static limit governs the state on
-a line; for loops see static_loop.SLOW_LOOP."""
+"""Drift in a radian of phase, in u_lim, below which rings are graded by the static limit on a line;
+for loops see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
-"""Resolution and tolerance at which its edge is found on a loop, and where the load oscillates:
-there the edge of the contact sweeps over the rings, which asks for more steps."""
+"""Resolutions and tolerance of the search on a loop.  Under an oscillating load the edge of the
+contact sweeps over the rings, which needs more steps."""
 LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
-"""And on a line, where nothing is marched, so more rings are cheap.  Edges that were found to half
-a thousandth of the radius leave 1e-4 in the limit of a translation until rings are as narrow."""
+"""Resolutions of the search on a line, which needs no march, so that many rings are cheap.  With
+edges accurate to 5e-4 of the radius, the limit of a translation is accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
-"""Tolerance on so many rings: at a larger one some that stick seem to have nothing left, and the
-search for the edge does not settle."""
+"""Tolerance at the fine resolution.  At a larger one some sticking rings seem to slip, and the search
+does not converge."""
 
 
 def edge_focus(
@@ -41,34 +41,33 @@ def edge_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Radii that the rings of a slow motion are graded towards: the edges of the stick zone in the
-    limit of vanishing velocity.
+    """Grading of the rings of a slow motion towards the edges of the stick zone of the static limit.
 
-    For a circular motion in the plane the edge lies further inside than for a motion of the same
-    amplitude along a line, since the slip never comes to rest.  A contact with a hole sticks on a
-    ring, which has two edges.  Under an oscillating load the edges are computed for the limit only.
+    The stick zone of a circular motion is smaller than that of a motion of the same amplitude along
+    a line, since the slip never stops.  A contact with a hole sticks on a ring with two edges.
+    Under an oscillating load the edges are computed for the static limit only.
 
     Parameters
     ----------
     problem : problem.Problem
-        Any.
+        The problem.
     model : str
         Name in models.registry.MODELS.
     budget : budget.Budget or None
-        What the runs of the search may take; None: as much as they do.
+        Budget of the runs of the search; None: unlimited.
     progress : callable or None
         Called with the Resolution of every run of the search before it starts.
 
     Returns
     -------
     mesh.Focus or None
-        None: the motion tells (Motion.focus) or is fast, the model has no rings, what sticks is not
-        round, or all of the contact slips.
+        None if Motion.focus gives the radius, the motion is fast, the model has no rings, the stick
+        zone is not round, or the whole contact slips.
 
     Raises
     ------
     budget.Spent
-        Where the budget is.
+        If the budget is exceeded.
     """
     motion, drift = problem.motion, problem.drift
     if model not in ("radial", "polar") or not motion.periodic:
