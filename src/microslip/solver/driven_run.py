@@ -12,7 +12,8 @@ leaves x and x' as they are.
 During one period unbalanced forces hardly move a heavy body, and a soft spring hardly changes its
 force.  So the map multiplies the change of x and x', as if the body were no heavier and the spring
 no softer than the contact.  Its fixed point is the same.  A contact in full slip is much more
-compliant than a sticking contact: its stiffness is the rise of its mean force with the displacement.
+compliant than a sticking contact.  Its stiffness is the rise of its mean force with the
+displacement.
 """
 
 from __future__ import annotations
@@ -177,7 +178,7 @@ class _DrivenSearch:
     def _starts(
         self, tolerance: float, guess: Run | None
     ) -> Iterator[tuple[np.ndarray, float, float]]:
-        """Start states, the best one first, each with the force of the static limit and a friction."""
+        """Start states, the best first, each with the force of the static limit and a friction."""
         if guess is not None and guess.state is not None and guess.converged:
             yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:

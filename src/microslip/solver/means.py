@@ -25,8 +25,8 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
 def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float:
     """Mean power of the oscillation: work of the forces per radian of phase.
 
-    The oscillation is the motion without its mean forward velocity.  An oscillating normal load does
-    no work over a period, since it is a function of the indentation.
+    The oscillation is the motion without its mean forward velocity.  An oscillating normal load
+    does no work over a period, since it is a function of the indentation.
 
     Parameters
     ----------

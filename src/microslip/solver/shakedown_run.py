@@ -31,8 +31,8 @@ LOOKS = 1.5, 4.0 / 3.0
 STEP_SHARE = 1e-4
 """Tolerance of a step, a force over mu F_z, divided by the tolerance of the displacement."""
 SLOWEST_RATIO = 0.9
-"""Largest ratio of the displacements in two successive doublings of the number of periods from which
-the remaining displacement is extrapolated."""
+"""Largest ratio of the displacements in two successive doublings of the number of periods for which
+the rest is extrapolated."""
 LONG, DRIFTING = 200, 1.8
 """After this number of (half) periods, a larger ratio means that the contact drifts on; a steady
 drift has the ratio 2.  On a coarse mesh the threshold can be below the force."""
@@ -209,7 +209,7 @@ class _Walk:
         return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
 
     def _last_two(self) -> tuple[float, float]:
-        """Displacements during the last but one and the last doubling of the number of intervals."""
+        """Displacements in the last two doublings of the number of intervals."""
         count = len(self.ways)
         before, last = sum(self.ways[count // 4 : count // 2]), sum(self.ways[count // 2 :])
         return max(before, 0.0), max(last, 0.0)

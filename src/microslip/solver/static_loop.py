@@ -30,7 +30,8 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02
-"""Drift in a radian of phase, in u_lim, below which rings are graded by the static limit on a loop."""
+"""Drift in a radian of phase, in u_lim, below which a loop has its rings graded by the static
+limit."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Largest number of marches in a search for the periodic state, and largest number of searches.  An
 accelerated search that stalls on rounding starts again."""
@@ -137,7 +138,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift fits the discs of all phases, and the bounds of the lateral shift."""
+        """Whether a forward shift fits the discs of all phases, and the lateral bounds."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

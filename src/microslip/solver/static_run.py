@@ -20,8 +20,8 @@ from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""Error of the limit over the distance from the periodic state of the oscillation alone: at most 3 in
-tests.  Slipping points are on the bound after every step, and have no shift."""
+"""Error of the limit over the distance from the periodic state of the oscillation alone.  Tests
+found at most 3.  Slipping points are on the bound after every step, and have no shift."""
 LOOP_STEP_SHARE = 1e-4
 """Tolerance of a step over that of the periodic state.  The shift of a point depends on the square
 root of its distance from the bound."""

@@ -21,8 +21,8 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 
 SLOW_LINE = 0.01
-"""Drift in a radian of phase, in u_lim, below which rings are graded by the static limit on a line;
-for loops see static_loop.SLOW_LOOP."""
+"""Drift in a radian of phase, in u_lim, below which a motion on a line has its rings graded by the
+static limit; for loops see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
 """Resolutions and tolerance of the search on a loop.  Under an oscillating load the edge of the
@@ -31,8 +31,8 @@ LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
 """Resolutions of the search on a line, which needs no march, so that many rings are cheap.  With
 edges accurate to 5e-4 of the radius, the limit of a translation is accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
-"""Tolerance at the fine resolution.  At a larger one some sticking rings seem to slip, and the search
-does not converge."""
+"""Tolerance at the fine resolution.  At a larger one some sticking rings seem to slip, and the
+search does not converge."""
 
 
 def edge_focus(
@@ -41,7 +41,7 @@ def edge_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Grading of the rings of a slow motion towards the edges of the stick zone of the static limit.
+    """Grading of the rings of a slow motion towards the stick zone of the static limit.
 
     The stick zone of a circular motion is smaller than that of a motion of the same amplitude along
     a line, since the slip never stops.  A contact with a hole sticks on a ring with two edges.
