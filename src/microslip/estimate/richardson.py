@@ -1,10 +1,10 @@
 """Richardson extrapolation of three levels, each twice as fine as the last, with its error.
 
-The methods are of second order, f(n) = f + C / n^2 + ..., so the difference D of the last
-two levels gives the correction D / 3.  The difference of the first two levels, divided by four, is another
-estimate of D.  The error estimate uses the larger one: two coarse levels can agree by chance, but
-then the third one differs.  This is the grid convergence index of Roache (J. Fluids Eng. 116, 1994)
-with both pairs of levels.
+The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
+levels gives the correction D / 3.  The difference of the first two levels, divided by four, is
+another estimate of D.  The error estimate uses the larger one: two coarse levels can agree by
+chance, but then the third one differs.  This is the grid convergence index of Roache (J. Fluids
+Eng. 116, 1994) with both pairs of levels.
 
 If the differences fall more slowly than at first order, the levels are too coarse.  Then D replaces
 D / 3, as for a method of first order.

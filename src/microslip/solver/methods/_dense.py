@@ -101,7 +101,7 @@ class DenseContact:
         tolerance: float,
         previous: Guess | None = None,
     ) -> March:
-        """March along a path, see Contact; raises StepFailure at the first step that is not solved."""
+        """March along a path, see Contact; raises StepFailure if a step is not solved."""
         q = state.reshape(2, -1).copy()
         at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
         found = np.empty((path.steps + 1, 3))

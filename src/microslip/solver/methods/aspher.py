@@ -8,8 +8,8 @@ The march starts without tractions and ends when the means of two periods agree,
 MOST_PERIODS.  In that time only fast forward motions become periodic.  Two settings differ from the
 defaults of the package:
 
-- The preconditioner is off.  It suits sticking points; when the slip changes its direction, it takes
-  about five times as many iterations for means that are no better.
+- The preconditioner is off.  It suits sticking points; when the slip changes its direction, it
+  takes about five times as many iterations for means that are no better.
 - A step that the package rejects counts as failed, and the march continues from its best tractions.
   By default the package returns to the tractions before the step, and the means become wrong.
 

@@ -1,8 +1,8 @@
 """The paper's own run: 32 x 32 squares, backward Euler, 8,000 steps from full slip, no search.
 
 R. Pohrt, Front. Mech. Eng. 6:566440 (2020): stresses to 0.1 %, and the mean of the last period.
-Here a period has 100 steps.  A step is solved when its residual is 0.1 % of the total friction.  The
-requested resolution is ignored.
+Here a period has 100 steps.  A step is solved when its residual is 0.1 % of the total friction.
+The requested resolution is ignored.
 """
 
 from __future__ import annotations

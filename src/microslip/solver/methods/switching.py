@@ -1,6 +1,6 @@
 """Fixed-point stick/slip switching: alternately the states of points and a linear solve.
 
-The traction of a slipping point is on the bound along its last slip; a sticking point does not slip.
+The traction of a slipping point is on the bound along its last slip; sticking points do not slip.
 After the solve, a point beyond the bound slips, and a point whose slip opposes its traction sticks.
 Nothing guarantees progress, so the states can cycle.
 """
