@@ -1,4 +1,4 @@
-"""What is run for a point: the model, the closed forms that spare a run, the resolutions."""
+"""Choice of the model and of closed forms in place of runs."""
 
 import math
 from dataclasses import fields
@@ -20,7 +20,7 @@ from microslip.theory import paper
 
 TURNING = {"rigid", "polar", "cartesian"}
 WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
-"""Models that have points off the axis to turn, and those that are refined for a translation."""
+"""Models that support rotations, and models with cells to refine for a translation."""
 
 EACH = [one() for one in MOTIONS.values() if not fields(one)]
 
@@ -95,7 +95,7 @@ def test_vanishing_velocity_is_computed_where_no_form_is_known():
     assert closed_form(Problem(Transverse(), 0.0, 0.5, 0.3), 1e-2) is None
     result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
-    # nu changes the tractions, but not what Mindlin's theory makes of them by much
+    # nu changes the friction only a little
     assert result.mu_macro == pytest.approx(paper.static_limit_transverse(0.5), abs=2e-2)
 
 
@@ -120,7 +120,7 @@ def test_pure_rotation_needs_no_run():
 
 
 def fast(motion, amplitude, tolerance):
-    """Velocity at which half the bracket of bounds.py is the tolerance."""
+    """Velocity at which half the width of the bracket of theory/bounds.py is the tolerance."""
     if motion == Transverse():
         return amplitude * math.sqrt(0.5 / tolerance - 0.5)
     return 1.0 + math.sqrt(0.1 / tolerance)
@@ -137,7 +137,7 @@ def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
         mu, torque, error = closed_form(faster, tolerance)
         assert torque is None and error == pytest.approx(tolerance, rel=1e-4)
         assert error <= tolerance
-        # the middle of the bracket whose upper end is full friction
+        # mu is the middle of the bracket; the upper end is full friction
         assert mu + error == pytest.approx(1.0, abs=1e-11)
 
 

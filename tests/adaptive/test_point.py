@@ -1,4 +1,4 @@
-"""The public answer: its certificate, its limits, its inputs and its fields."""
+"""`solve`: error estimate, limits, checks of the input, and fields of the result."""
 
 import math
 
@@ -15,12 +15,14 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
-# Certificates
+# Error estimate
 
 
 def reference(motion, velocity, amplitude, nu):
-    """(friction, allowance): a finer resolution than solve's base, refined once more along each
-    axis by itself, each periodic state ten times closer and searched for from scratch."""
+    """(friction, allowance) of a reference with a smaller tolerance of the periodic state.
+
+    A fine resolution is refined once more along each axis separately; the corrections are added.
+    """
     kind = motion_named(motion)
     model = "polar" if kind.rotates or nu > 0 else "radial"
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
@@ -32,7 +34,7 @@ def reference(motion, velocity, amplitude, nu):
         return run.mu
 
     base = mean(cells, angles, steps)
-    # second order in the rings: a third of the difference is left and goes on top
+    # second order in the rings: the correction is 4/3 of the difference
     corrections = [4 / 3 * (mean(2 * cells, angles, steps) - base)]
     corrections.append(mean(cells, angles, 3 * steps) - base)
     if angles > 1:
@@ -75,8 +77,11 @@ def test_certificate_covers_a_much_finer_reference(motion, velocity, amplitude, 
 
 @pytest.mark.long
 def test_certificate_sees_rings_and_angles_together():
-    """The centre of rotation moves through the contact, and few angles hide what rings are worth:
-    with the mixed difference taken next to the base this point missed by twice its certificate."""
+    """The centre of rotation moves through the contact, so rings and angles must be refined
+    together.
+
+    With separate corrections for both, the error of this point was twice its estimate.
+    """
     result = microslip.solve("bore", 0.289, 2.07)
     finer = microslip.solve("bore", 0.289, 2.07, tolerance=2e-4)
     assert result.converged and finer.converged
@@ -140,7 +145,8 @@ def test_the_rigid_model_has_the_friction_of_eqs_6_and_29(motion, velocity, ampl
 
 @pytest.mark.slow
 def test_large_amplitudes_tend_to_the_rigid_contact():
-    """Claims 1 and 5: Eq 6 overestimates the reduction a little, Eq 29 is good far out."""
+    """Claims 1 and 5: Eq 6 slightly overestimates the reduction, Eq 29 holds at large
+    amplitudes."""
     excess = [
         microslip.solve("transverse", 0.5 * a, a).mu_macro
         - paper.large_amplitude_transverse(0.5 * a, a)
@@ -159,7 +165,7 @@ def test_large_amplitudes_tend_to_the_rigid_contact():
     [("transverse", 0.4), ("transverse", 2.0), ("bore", 0.5), ("bore", 3.0)],
 )
 def test_friction_rises_with_velocity(motion, amplitude, nu):
-    """Claim 9, and the whole curve between the static limit and full friction."""
+    """Claim 9: friction rises from the static limit to full friction."""
     velocities = np.geomspace(1e-3, 10, 9)
     results = [
         microslip.solve(motion, v, amplitude, poisson=nu, tolerance=1e-2) for v in velocities
@@ -255,7 +261,7 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         motion, 0.3, 1.2, poisson=nu, model=model, cells=cells, steps=steps, tolerance=1e-2
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
-    if model != "polar":  # whose angles are still chosen, and corrected for
+    if model != "polar":  # the angles of this model are still refined
         problem, share = Problem(motion_named(motion), 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
@@ -306,7 +312,7 @@ def test_equal_inputs_give_equal_bits(motion, amplitude, nu):
         return without_time(result.to_dict())
 
     first = answer()
-    microslip.solve("bore", 0.05, 2.0, tolerance=1e-2)  # something else in between
+    microslip.solve("bore", 0.05, 2.0, tolerance=1e-2)  # another point in between
     assert answer() == first
 
 
@@ -323,7 +329,7 @@ def test_warm_up_leaves_a_working_solver():
     assert microslip.solve("transverse", 0.5, 0.5, tolerance=1e-2).converged
 
 
-# Converged: within the tolerance, always
+# Converged means within the tolerance
 
 
 @pytest.mark.parametrize(
@@ -364,7 +370,7 @@ def test_no_answer_is_converged_beyond_its_tolerance(motion, v, amplitude, cells
 
 
 def test_no_tolerance_is_asked_for_by_name():
-    """The same run, whose error is told; whether that is enough was not asked."""
+    """Without a tolerance the result is the same and converged, whatever its error."""
     given = {"cells": 16, "steps": 8}
     free = microslip.solve("transverse", 0.1, 1.0, tolerance=None, **given)
     judged = microslip.solve("transverse", 0.1, 1.0, **given)
@@ -400,7 +406,7 @@ def test_closed_forms_and_models_without_cells_need_no_more():
 
 
 def test_periods_are_full_ones_whatever_a_lap_is():
-    """Counted by hand: a lap of a motion whose second half mirrors the first is half a period."""
+    """A march is half a period if the second half mirrors the first, else a whole one."""
     for motion, steps, lap in (("transverse", 16, 0.5), ("elliptic:forward=0.5,phase=30", 32, 1.0)):
         problem = Problem(motion_named(motion), 0.3, 1.0, 0.0)
         run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
@@ -423,7 +429,7 @@ def test_what_has_no_periods_counts_none():
 
 
 def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
-    """Under a load that changes both of its runs are asked for the same."""
+    """Under an oscillating load both runs have the same tolerance over the mean load."""
     from dataclasses import replace
 
     from microslip.solver import simulate as module

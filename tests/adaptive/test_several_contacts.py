@@ -1,4 +1,4 @@
-"""Bodies on several contacts: what one contact knows, limits in closed form, and thresholds."""
+"""Bodies on several contacts: equal contacts, closed forms, thresholds and models."""
 
 import numpy as np
 import pytest
@@ -95,7 +95,7 @@ def test_an_endlessly_stiff_or_heavy_drive_has_the_friction_of_the_velocity(
 
 @pytest.mark.slow
 def test_a_contact_half_a_period_later_is_its_mirror_image_sideways():
-    """Forward it does the same: what counts is that the two are not a quarter of one apart."""
+    """Half a period later the forward motion is the same; a quarter of a period later it is not."""
     alone = microslip.solve("transverse", amplitude=1.5, force=0.3)
     against = microslip.solve("transverse", amplitude=1.5, force=0.3, contacts=AGAINST)
     across = microslip.solve("transverse", amplitude=1.5, force=0.3, contacts="phase=0;phase=90")
@@ -113,7 +113,7 @@ MOVED = {
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", MOVED)
 def test_at_a_velocity_each_contact_is_alone(motion):
-    """Spheres in SI units, each with its own u_lim: their forces add up, whatever their phases."""
+    """Spheres in SI units, each with its own u_lim; their mean forces add up at any phases."""
     loads = (1.0, 4.0)
     each = [microslip.predict(motion, load=f"{load} N", **REAL, **MOVED[motion]) for load in loads]
     mean = microslip.predict(motion, load=f"{np.mean(loads)} N", **REAL, **MOVED[motion])
@@ -122,7 +122,7 @@ def test_at_a_velocity_each_contact_is_alone(motion):
     found = microslip.solve(*place, contacts=contacts)
     force = sum(one.friction_force_N for one in each) / sum(loads) / 0.3
     assert found.converged
-    # so that it counts which is which
+    # the two contacts differ
     assert abs(each[0].mu_macro - each[1].mu_macro) > 0.03
     assert abs(found.mu_macro - force) <= found.mu_macro_error + 1e-3
     still = microslip.solve(motion, 0.0, mean.amplitude, contacts=contacts)
@@ -147,7 +147,7 @@ def test_more_sliders_that_work_against_each_other_in_pairs_do_as_well():
 
 
 def rigid_velocity(force, contacts, amplitude):
-    """Mean of v(t) with sum of share v / sqrt(v^2 + w^2) = force at every instant."""
+    """Mean of v(t), where sum of share v / sqrt(v^2 + w^2) = force at every instant."""
     phase = (np.arange(2000) + 0.5) * np.pi / 2000
     sideways = [amplitude * a * np.cos(phase + np.deg2rad(p)) for _, p, a in contacts]
     low, high = np.zeros_like(phase), np.full_like(phase, 100.0 * amplitude)
@@ -166,7 +166,7 @@ def rigid_velocity(force, contacts, amplitude):
 
 @pytest.mark.slow
 def test_large_amplitudes_are_those_of_rigid_contacts():
-    """What elasticity takes is some u_lim a period, whatever the amplitude."""
+    """Elasticity reduces the displacement per period by some u_lim at any amplitude."""
     contacts = "load=3;load=1,phase=90;load=2,phase=45,amplitude=2"
     shares = [(3 / 6, 0.0, 1.0), (1 / 6, 90.0, 1.0), (2 / 6, 45.0, 2.0)]
     lost = []
@@ -183,11 +183,11 @@ def test_large_amplitudes_are_those_of_rigid_contacts():
 
 UNEQUAL = "load=3;load=1,phase=45"
 ITS_LOADS = (1.5, 0.5)
-"""Over their mean."""
+"""Loads of the contacts over the mean load."""
 
 
 def unequal_limit(amplitude):
-    """Each is as far from its own u_lim, which grows with the indentation: the load^(2/3)."""
+    """Mean of the static limits; u_lim is proportional to the indentation, load^(2/3)."""
     alone = [float(paper.static_limit_transverse(amplitude / x ** (2 / 3))) for x in ITS_LOADS]
     return float(np.dot(ITS_LOADS, alone)) / 2.0
 
@@ -206,7 +206,7 @@ def test_the_threshold_of_a_body_is_the_mean_of_its_contacts():
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", ["transverse", "longitudinal"])
 def test_below_the_threshold_a_body_comes_to_rest(motion):
-    """Marched on its own: the way of a period dies away, and above the threshold it does not."""
+    """In a plain march the displacement per period vanishes below the threshold, not above it."""
     contacts, limit = (UNEQUAL, unequal_limit(0.4)) if motion == "transverse" else (AGAINST, None)
     limit = limit or (1.0 - 0.4) ** 1.5
     problem = Problem(motion_named(motion), 0.1, 0.4, contacts=contacts_of(contacts))
@@ -219,7 +219,7 @@ def test_below_the_threshold_a_body_comes_to_rest(motion):
             march = contact.pulled_march(path, state, 1e-10, body, np.zeros(2), march)
             mirrored = problem.half_period_mirror
             state = contact.mirrored(march.state) if mirrored else march.state
-        # ahead of a path that itself goes forward
+        # relative displacement plus that of the path
         ways[share] = march.body[-1, 0] - march.body[0, 0] + np.ptp(path.positions[:, 0])
     assert ways[1.2] > 1e-2
     assert abs(ways[0.8]) < 0.02 * ways[1.2]
@@ -259,7 +259,7 @@ def test_what_does_not_go_with_several_contacts_is_refused(name):
 
 
 def test_contacts_that_do_not_vibrate_hold_as_much_as_can_be():
-    """At a velocity a contact at rest resists with all of its share."""
+    """At a prescribed velocity a contact without oscillation has full friction."""
     found = microslip.solve("transverse", 0.1, 1.0, contacts="load=2;load=1,amplitude=0")
     alone = microslip.solve("transverse", 0.1 / (4 / 3) ** (2 / 3), 1.0 / (4 / 3) ** (2 / 3))
     assert found.mu_macro == pytest.approx((2.0 * alone.mu_macro + 1.0) / 3.0, abs=1e-12)
@@ -270,12 +270,11 @@ def test_contacts_that_do_not_vibrate_hold_as_much_as_can_be():
 
 @pytest.mark.slow
 def test_contacts_whose_loads_differ_in_time_are_weighted_with_them():
-    """At a velocity far above that of the oscillation friction is all there can be, and else that
-    of each under its own mean load."""
+    """The friction is the mean of the contacts, weighted by their mean loads."""
     motion, each = "normal:indentation=1,lateral=1", []
     for amplitude in (0.8, 0.4):
         found = microslip.solve(motion, 0.3, amplitude, tolerance=1e-2)
-        # the load goes with the power 3/2 of the indentation
+        # the load is proportional to the indentation to the power 3/2
         phase = (np.arange(4000) + 0.5) * 2.0 * np.pi / 4000
         each.append((found.mu_macro, np.mean((1.0 + amplitude * np.sin(phase)) ** 1.5)))
     both = microslip.solve(motion, 0.3, 0.8, contacts="phase=0;amplitude=0.5", tolerance=1e-2)
@@ -286,7 +285,7 @@ def test_contacts_whose_loads_differ_in_time_are_weighted_with_them():
 
 @pytest.mark.slow
 def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits():
-    """Of spheres: u_lim over the radius of the contact goes with the load^(1/3)."""
+    """For spheres u_lim over the contact radius is proportional to load^(1/3)."""
     loads = (1.5, 0.5)
     alone = [float(paper.static_limit_bore(0.8 / load ** (1 / 3))) for load in loads]
     limit = float(np.dot(loads, alone)) / 2.0
@@ -301,11 +300,13 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
 
 @pytest.mark.long
 def test_large_turns_are_those_of_rigid_contacts():
-    """At every instant Eq 21 of each, at the velocity over its own speed of rotation."""
+    """Eq 21 holds for each contact at every instant, at the velocity over its speed of rotation."""
     shares, leads, force = (0.75, 0.25), (0.0, np.deg2rad(60.0)), 0.4
-    radii = [(2.0 * share) ** (1 / 3) for share in shares]  # of the contacts, over the mean one's
+    radii = [
+        (2.0 * share) ** (1 / 3) for share in shares
+    ]  # contact radii over that of the mean load
     phase = (np.arange(400) + 0.5) * np.pi / 400
-    # the rotation of all is the same angle in time but for its phase
+    # all contacts rotate by the same angle, at different phases
     spins = [
         radius * np.abs(np.cos(phase + lead)) for radius, lead in zip(radii, leads, strict=True)
     ]
@@ -365,8 +366,8 @@ def test_angles_and_squares_agree_on_contacts_that_turn():
 
 @pytest.mark.slow
 def test_loads_in_antiphase_let_a_body_walk_that_two_in_phase_hold():
-    """While one is pressed less the other is pressed more: on both the load never falls, so that a
-    force slides off neither, and what is pressed drags it along."""
+    """Loads in antiphase keep the total load constant, so the body does not run away.  The contact
+    under load drags the body along."""
     motion, given = "normal:lateral=1", {"amplitude": 0.6, "force": 0.6, "tolerance": 1e-2}
     against = microslip.solve(motion, contacts=AGAINST, **given)
     assert against.converged and against.velocity > 10.0 * against.velocity_error

@@ -1,4 +1,4 @@
-"""Extrapolation of manufactured sequences, whose limits are known."""
+"""Extrapolation of manufactured sequences with known limits."""
 
 import math
 
@@ -43,7 +43,7 @@ def test_two_levels_that_agree_by_chance_are_judged_by_the_third():
     values = [EXACT + 0.16, EXACT + 0.03, EXACT + 0.03]
     limit = extrapolate(values)
     assert limit.order == math.inf and limit.value == values[-1]
-    # the last difference should be a quarter of the one before
+    # at second order the last difference is a quarter of the one before
     assert limit.error == pytest.approx(SAFETY * 0.13 / 4.0 / 3.0)
     assert abs(limit.value - EXACT) <= 2.0 * limit.error
 

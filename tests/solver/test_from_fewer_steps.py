@@ -1,5 +1,8 @@
-"""A search for the periodic state of a contact that is pulled begins where one with fewer steps
-ended: what it finds is the same, and it takes less."""
+"""A search for the periodic state of a driven contact starts from the state of a run with fewer
+steps.
+
+The result is the same at less effort.
+"""
 
 import pytest
 
@@ -40,7 +43,7 @@ def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
     assert ahead.converged and plain.converged
     answers = [run.mu if drive.force is None else run.velocity for run in runs]
     assert abs(answers[0] - answers[1]) <= 2.0 * accuracy.tolerance
-    # counted as are those of the run with fewer steps
+    # the effort includes the run with fewer steps
     assert ahead.effort.solves < 0.8 * plain.effort.solves
     assert ahead.effort.iterations < 0.8 * plain.effort.iterations
 

@@ -58,7 +58,7 @@ def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
     assert np.hypot(*found) == pytest.approx(field["bound"], rel=1e-12)
     expected = paper.steady_bore_traction(lateral, forward, velocity)
     direction = expected / hertz.friction_bound(np.hypot(lateral, forward))
-    # next to the centre of rotation directions settle last
+    # close to the centre of rotation the directions converge last
     away = np.hypot(lateral + velocity, forward) > 0.1
     assert away.sum() > 0.9 * away.size
     assert (found / field["bound"])[:, away] == pytest.approx(direction[:, away], abs=2e-3)
@@ -79,7 +79,7 @@ def test_steady_field_covers_the_disc():
     ids=["polar", "cartesian"],
 )
 def test_nothing_sticks_around_a_centre_of_rotation_inside(build):
-    """Claim 4, from the operator: tractions that stand still slip with the rigid velocity."""
+    """Claim 4: in the steady state every point slips with the rigid velocity."""
     contact = build()
     found = steady_state(contact, Problem(ContinuousBore(), 0.5, poisson=0.3), 1e-5, 1e-8)
     assert found.converged
