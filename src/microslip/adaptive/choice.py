@@ -68,14 +68,14 @@ def method_refusal(problem: Problem, model: str, method: Method) -> str:
         if not motion.periodic:
             return "nothing oscillates"
         if motion.loads:
-            return "it knows a constant normal load alone"
-        return "it knows translations alone" if motion.rotates and not method.turns else ""
+            return "it supports a constant normal load only"
+        return "it supports translations only" if motion.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
     if motion.loads and (method.dress is not None or method.integrator.end < 1.0):
-        return "its steps know one friction bound"
+        return "its steps support a constant friction bound only"
     if model in STEPLESS:
-        return "no step of the model has to be solved"
+        return "the model has no steps to solve"
     if not motion.periodic and method.dress is None:
         return "nothing oscillates"
     if model == "cartesian" and method.dress is not None:

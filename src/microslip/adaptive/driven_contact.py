@@ -72,7 +72,7 @@ def refuse_drive(problem: Problem, model: str) -> None:
         allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
         raise InputError("force", drive.force, allowed)
     if not MODELS[model].pulled:
-        raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
+        raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
     if drive.force is not None:
         if not motion.periodic:
             refuse_steady(problem)
@@ -182,7 +182,7 @@ def _under_force(request: Request) -> Result:
                 error = static.mu_macro_error
                 return _without_answer(
                     request,
-                    f"the error of the force threshold, {error:.1e}, does not tell whether the "
+                    f"the error of the force threshold, {error:.1e}, leaves open whether the "
                     "contact moves, and a larger force is too close to full friction",
                 )
     return _moving(request, max(force, least))

@@ -44,23 +44,23 @@ def solve(
     Parameters
     ----------
     motion : str, Motion or Problem
-        "transverse", "bore", "continuous-bore" or another, with the numbers of its class, as in
-        "elliptic:forward=0.5".  A Problem takes the place of all arguments of the problem, up to
-        `poisson`.
+        "transverse", "bore", "continuous-bore" or another motion, with its parameters, such as
+        "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
     velocity : float or None
-        The paper's dimensionless group, in units of u_lim of the pressure; 0: the limit v -> 0.
-        None under a prescribed force, where it is the answer.  Values below 0, a contact that is
-        pushed back, are allowed for self-propelled motions; otherwise the friction at -v is that at
-        v with the opposite sign.
+        The paper's dimensionless velocity, in units of u_lim of the pressure; 0: the static limit.
+        None under a prescribed force, which determines the velocity.  Negative velocities are
+        allowed for self-propelled motions; for other motions the friction at -v is the opposite of
+        that at v.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
     force : float or None
         Prescribed forward force divided by mu times the mean normal load.  Give either this or
         `velocity`.
     stiffness, mass, damping : float or None
-        Spring that pulls the body, its far end at the velocity, over mu F_z / u_lim; mass of the
-        body, over mu F_z / (u_lim omega^2); dashpot beside the spring, over mu F_z / (u_lim omega).
-        F_z is the normal load without oscillation.  A mass is allowed under a force, too.
+        Stiffness of a spring that pulls the body, over mu F_z / u_lim; its far end has the
+        velocity.  Mass of the body, over mu F_z / (u_lim omega^2), also under a force.  Damping of
+        a dashpot parallel to the spring, over mu F_z / (u_lim omega).  F_z is the normal load
+        without oscillation.
     contacts : str or None
         Contacts that the body rests on, such as "phase=0;phase=180".  Each has a load relative to
         the others (1), a phase in degrees (0) and a fraction of the amplitude (1).  Velocity and
@@ -73,10 +73,10 @@ def solve(
     model : str
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
-        Absolute, on mu_macro; under a force on the velocity, and relative where that is above 1.
-        None, with imposed cells and steps: any error is accepted.
+        Absolute tolerance of mu_macro, or under a force of the velocity (relative for a velocity
+        above 1).  None, with imposed cells and steps: any error is accepted.
     cells, steps : int or None
-        Impose a resolution instead of letting the tolerance choose; steps in a full period.
+        Imposed resolution, steps in a full period; None: chosen by the tolerance.
     method : str
         "shipped", or another one of solver.method_names.names(), for comparison.
     most_work : float or None

@@ -156,9 +156,9 @@ def propulsion(
         A motion that can propel the contact: "elliptic:..." or "normal:forward=1,..." without the
         symmetry that makes the mean force vanish.
     amplitude : float
-        As for `microslip.solve`, above 0.
+        Amplitude as in `microslip.solve`, above 0.
     pressure, poisson, model
-        As for `microslip.solve`.
+        See `microslip.solve`.
     tolerance : float
         Absolute, on every force.  For powers it is multiplied by the mean speed of the oscillation.
     points : int
@@ -168,7 +168,7 @@ def propulsion(
     time_limit : float or None
         Limit of the wall-clock time in seconds, checked between marches; None: no limit.
     progress : callable or None
-        As for `microslip.solve`.
+        See `microslip.solve`.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from microslip.solver.effort import Effort
 
 
 def solve_each(request: Request) -> Result:
-    """The Result of one contact, or the mean over the contacts of a body, each solved by itself."""
+    """The Result of one contact, or the mean over the contacts of a body, solved separately."""
     problem = request.problem
     if not problem.parts:
         return _solve(request)

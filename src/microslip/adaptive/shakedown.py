@@ -186,7 +186,7 @@ def _answer(request: Request, force: float) -> Shakedown:
         "threshold_error": error,
     }
     if not away and force >= threshold - error:
-        away = f"the error of the threshold, {error:.1e}, does not tell whether the force is below"
+        away = f"the error of the threshold, {error:.1e}, leaves open whether the force is below"
         if force > threshold + error:
             away = f"drifts on for ever: the force is above the threshold, {threshold:.4g}"
     if away:

@@ -106,12 +106,12 @@ def runs_away(problem: Problem) -> str:
     """Why the contact has no mean velocity, as one line; "" if it has one."""
     force = force_of(problem)
     if abs(force) >= 1.0:
-        return f"runs away: the force {force:g} is all that friction can hold, or more"
+        return f"runs away: the force {force:g} is at least full friction"
     least = least_load(problem)
     if drive_of(problem).mass == 0.0 and force >= least:
         return (
-            f"runs away: without mass it slides off where the normal load is least, {least:.3g} of "
-            "its mean, and friction holds no more than that"
+            f"runs away: without mass it slides off at the least normal load, {least:.3g} of the mean, "
+            "which limits the friction"
         )
     return ""
 
