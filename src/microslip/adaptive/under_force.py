@@ -110,8 +110,8 @@ def runs_away(problem: Problem) -> str:
     least = least_load(problem)
     if drive_of(problem).mass == 0.0 and force >= least:
         return (
-            f"runs away: without mass it slides off at the least normal load, {least:.3g} of the mean, "
-            "which limits the friction"
+            f"runs away: without mass it slides off at the least normal load, {least:.3g} of the "
+            "mean, which limits the friction"
         )
     return ""
 
