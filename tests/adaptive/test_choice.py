@@ -19,8 +19,7 @@ from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
 TURNING = {"rigid", "polar", "cartesian"}
-WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
-"""Models that support rotations, and models with cells to refine for a translation."""
+"""Models that support rotations."""
 
 EACH = [one() for one in MOTIONS.values() if not fields(one)]
 
