@@ -24,7 +24,7 @@ from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.stick_edge import edge_focus
 
 LOADED = "normal:lateral=0.9,phase=90"
 MOTIONS = ("transverse", "longitudinal", "elliptic", "zigzag", LOADED, "bore")
@@ -38,7 +38,7 @@ DISTANCE = 1e-7
 def differences(motion: str, place: tuple, poisson: float, pressure: str) -> list[float]:
     """Friction with ANGLES less that with MANY; place: velocity and amplitude."""
     problem = Problem(motion_named(motion), *place, poisson, pressure_named(pressure))
-    settings = Settings(focus=found_focus(problem, "polar"))
+    settings = Settings(focus=edge_focus(problem, "polar"))
     steps = round(STEPS * max(problem.stroke, 1.0) ** 0.5)
     found = [
         simulate(problem, "polar", Resolution(RINGS, angles, steps), DISTANCE, settings=settings).mu

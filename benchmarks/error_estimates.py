@@ -45,7 +45,7 @@ import tables
 from scipy.stats import beta
 
 import microslip
-from microslip.adaptive import moved, pulled
+from microslip.adaptive import driven_contact, friction
 from microslip.estimate import ladder, richardson
 from microslip.estimate import refine as refinement
 from microslip.motions.by_name import motion_named
@@ -71,7 +71,7 @@ AGAIN = 24
 EVERY = 500
 """Points between two summaries."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
-LADDER_FOR = moved.ladder_for
+LADDER_FOR = friction.ladder_for
 """Ladders as they are."""
 KEPT = "all_references"
 """Key of all references of a point in its line."""
@@ -126,7 +126,7 @@ def calibrate(
         given = LADDER_FOR(*arguments)
         return given if given.imposed else replace(given, start=start * given.start)
 
-    moved.ladder_for = pulled.ladder_for = scaled
+    friction.ladder_for = driven_contact.ladder_for = scaled
     richardson.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
 
 

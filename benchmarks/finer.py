@@ -25,7 +25,7 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_run import simulate_static
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.stick_edge import edge_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4
@@ -56,7 +56,7 @@ def reference(problem, tolerance, certified):
 
     # on a loop the limit finds the edges of what sticks by itself, at the resolution of the run
     by_itself = problem.velocity == 0.0 and not at_turning_points(problem)
-    settings = Settings(focus=None if by_itself else found_focus(problem, model))
+    settings = Settings(focus=None if by_itself else edge_focus(problem, model))
 
     @lru_cache
     def run(resolution):

@@ -1,8 +1,8 @@
 """Friction of a vibrated Hertz contact, resolved by boundary elements.
 
-``solve`` answers for one point, ``solve_stored`` keeps the answer, ``history`` and
-``traction_field`` show what happens inside.  The solver is imported when it is first asked for, so
-that importing the package costs next to nothing.
+``solve`` computes the friction at one point, ``solve_stored`` also stores the result.  ``history``
+and ``traction_field`` compute forces and tractions in detail.  Importing the package is fast, since
+each name imports its module at first use.
 """
 
 from importlib import import_module as _import_module
@@ -53,7 +53,7 @@ _WHERE = {
     "propulsion": "microslip.adaptive.propulsion",
     "shakedown": "microslip.adaptive.shakedown",
     "Shakedown": "microslip.adaptive.shakedown",
-    "PropulsionLine": "microslip.adaptive.propulsion_line",
+    "PropulsionLine": "microslip.adaptive.propulsion",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }
@@ -63,7 +63,7 @@ __version__ = "0.1.0"
 
 
 def __dir__() -> list[str]:
-    """Names for completion: those that are imported when they are first asked for, too."""
+    """Names for completion, including the names whose modules are not imported yet."""
     return sorted({*globals(), *_WHERE})
 
 

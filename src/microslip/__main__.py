@@ -1,7 +1,6 @@
 """The command ``microslip``, also as ``python -m microslip``.
 
-Takes care of Ctrl-C before anything else is imported, so that as little as can be is left to
-Python's own way, a traceback.
+SIGINT is handled before anything else is imported, so that Ctrl-C prints no traceback.
 """
 
 import gc
@@ -9,23 +8,23 @@ import signal
 import sys
 
 OBJECTS = 200_000
-"""New objects between two collections of garbage, more than imports make, all of which stay; with
-Python's own number of 700 collections take a tenth of the time of `microslip point`."""
+"""Number of new objects between two garbage collections: more than the imports create.  With
+Python's default of 700, collections take a tenth of the time of `microslip point`."""
 
 
 def main() -> int:
-    """Run this process as the command; returns the exit code, see microslip.app.cli.main."""
+    """Run the command in this process and return its exit code, see microslip.app.cli.main."""
     gc.set_threshold(OBJECTS)
-    stoppable = sys.argv[1:2] != ["sweep"]  # whose signals are for Snakemake
-    asked = signal.getsignal(signal.SIGINT)
-    if asked != signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until there is something better
+    stoppable = sys.argv[1:2] != ["sweep"]  # Snakemake handles the signals of a sweep
+    handler = signal.getsignal(signal.SIGINT)
+    if handler != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until the terminal installs its own handler
     from microslip.app import terminal
 
     if not stoppable:
-        signal.signal(signal.SIGINT, asked)
+        signal.signal(signal.SIGINT, handler)
     code = terminal.run(_command, stoppable=stoppable)
-    gc.freeze()  # a search of all modules for garbage at the end would take as long as their import
+    gc.freeze()  # else the last collection takes as long as the imports
     return code
 
 

@@ -1,12 +1,12 @@
-"""The static limit is where marches end up: friction at small velocities falls towards it.
+"""Friction at small velocities approaches the static limit.
 
-Nothing here is computed at velocity 0: every number is the mean force of a periodic state that was
-marched, extrapolated in the rings and with an error from coarser rings and steps.
+No number is computed at velocity 0.  Every number is the mean force of a periodic state,
+extrapolated in the rings, with an error from coarser rings and steps.
 
-How it falls: the slip of the oscillation alone grows like the 3/2 power of the distance from the
-stick radius, so that the drift matters in a layer as wide as velocity^(2/3), and with it the excess
-over the limit.  Measured: transverse, amplitudes 0.25, 0.5 and 0.75: exponents 0.63, 0.67 and 0.69
-below velocity 1e-3, rising slowly to 0.70, 0.70 and 0.72 above 1e-5; bore: 0.72 to 0.76.
+The slip of the oscillation alone grows with the power 3/2 of the distance from the stick radius.
+So the drift matters in a layer of width velocity^(2/3), and the excess over the limit has the same
+exponent.  Measured exponents of the transverse motion at the amplitudes 0.25, 0.5 and 0.75: 0.63,
+0.67 and 0.69 below velocity 1e-3, rising to 0.70, 0.70 and 0.72 above 1e-5.  Bore: 0.72 to 0.76.
 """
 
 from functools import cache
@@ -26,7 +26,7 @@ LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limi
 
 
 def ladder(motion, model, amplitude, velocities, resolution):
-    """Mean forces at falling velocities, each search started from the state before it."""
+    """Mean forces at decreasing velocities; each search starts from the state before."""
     means, guess = [], None
     for velocity in velocities:
         problem = Problem(motion_named(motion), velocity, amplitude, 0.0)
@@ -39,7 +39,7 @@ def ladder(motion, model, amplitude, velocities, resolution):
 
 @cache
 def marched(motion, amplitude, velocities):
-    """(mu, error) at each velocity, second order in the rings; marched once for all tests."""
+    """(mu, error) at each velocity, extrapolated in the rings; computed once for all tests."""
     model, rings, angles, steps = {
         "transverse": ("radial", 32, 1, 64),
         "bore": ("polar", 16, 8, 32),
@@ -57,7 +57,7 @@ def marched(motion, amplitude, velocities):
 
 
 def free_limit(means):
-    """Limit of the last three of a sequence whose differences fall geometrically."""
+    """Limit of a sequence with geometric differences, from its last three values."""
     first, second, third = means[-3:]
     return (first * third - second**2) / (first + third - 2.0 * second)
 
@@ -73,13 +73,13 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     exact = float(paper.static_limit_transverse(amplitude))
     assert error.max() < 1.5e-4
     excess = mu - exact
-    # the local exponent still drifts, which moves a limit that assumes a single one
+    # free_limit assumes a constant exponent
     assert abs(free_limit(mu) - exact) <= error.max() + 0.05 * excess[-1]
     assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
     found = exponents(SLOW, excess)
     assert found.min() > 0.6 and found.max() < 0.75
     assert np.all(np.diff(found) > 0.0)
-    # the paper's Eq 11 is not where they go
+    # the limit differs from Eq 11 of the paper
     assert abs(free_limit(mu) - float(paper.static_transverse(amplitude))) > 100 * error.max()
 
 
@@ -110,7 +110,8 @@ def test_bore_marches_fall_to_the_closed_form():
 def test_certified_points_fall_towards_the_closed_form(
     motion, model, amplitude, tolerance, velocities
 ):
-    """A decade takes the excess down by 10^0.5 to 10^0.85, where errors let it be seen."""
+    """Per decade of velocity the excess falls by a factor of 10^0.5 to 10^0.85, within the
+    errors."""
     results = [
         microslip.solve(motion, v, amplitude, model=model, tolerance=tolerance) for v in velocities
     ]

@@ -1,4 +1,4 @@
-"""What a point may take: work, the same everywhere, time, and the patience of who waits."""
+"""Limits of the work and of the time of a point, and interruption by Ctrl-C."""
 
 import os
 import signal
@@ -24,11 +24,11 @@ SLOW = ("transverse", 1e-9, 0.5)
 
 @pytest.mark.slow
 def test_a_point_that_would_take_hours_ends_as_not_converged():
-    """The bound is looked at inside a run: the first one alone would take ten times as much."""
+    """The limit is checked inside a run: the first run alone would take ten times the work."""
     found = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
     assert not found.converged and found.exhausted == "work"
     assert found.reason.startswith("the work that the point may take, 5e+05, is spent")
-    assert 5e5 < found.effort.work < 6e5  # one march beyond
+    assert 5e5 < found.effort.work < 6e5  # at most one march more
     again = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
     assert again.effort == found.effort
     assert np.array_equal(again.mu_macro, found.mu_macro, equal_nan=True)
@@ -36,7 +36,7 @@ def test_a_point_that_would_take_hours_ends_as_not_converged():
 
 @pytest.mark.slow
 def test_what_is_known_by_then_is_told():
-    """With an error that holds, by the certified answer of a point that needs more."""
+    """The value before the limit is within its error of the value without a limit."""
     whole = microslip.solve("transverse", 0.02, 0.95, tolerance=1e-4)
     part = microslip.solve(
         "transverse", 0.02, 0.95, tolerance=1e-4, most_work=0.9 * whole.effort.work
@@ -49,7 +49,7 @@ def test_what_is_known_by_then_is_told():
 
 @pytest.mark.parametrize("model", MODELS)
 def test_every_point_has_a_bound(monkeypatch, model):
-    """A finite one, far above what is needed here."""
+    """The default limit is finite and far above the work of this point."""
     seen = []
 
     def noted(most_work, time_limit):
@@ -64,7 +64,7 @@ def test_every_point_has_a_bound(monkeypatch, model):
 
 
 def test_every_march_counts():
-    """Those of searches, and those of the static limit."""
+    """Marches of searches, of the static limit and of steady motions count."""
     problem, resolution = Problem(motion_named("transverse"), 0.01, 0.5, 0.0), Resolution(8, 1, 16)
     budget = Budget()
     run = simulate(problem, "radial", resolution, 1e-6, settings=Settings(budget=budget))
@@ -111,7 +111,8 @@ MARCHES = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MARCHES)
 def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
-    """One call of a compiled function; the test would hang for its whole length without that."""
+    """The march is one call of a compiled function, which takes minutes if it is not
+    interrupted."""
     label, model, resolution = MARCHES[name]
     motion = Problem(motion_named(label), 0.01, 0.5, 0.0)
     contact = build_contact(motion, model, Resolution(4, 4, 2))
@@ -130,7 +131,7 @@ def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
 
 
 def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatch):
-    """A handler of its own that does not raise: the answer is what it would have been."""
+    """With a signal handler that does not raise, the result is the same as without a signal."""
     motion = Problem(motion_named("transverse"), 0.1, 0.5, 0.0)
     contact = build_contact(motion, "radial", Resolution(4, 1, 4))
     path, state = path_of(motion, contact, 4), forward_slip(contact)

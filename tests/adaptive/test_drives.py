@@ -1,4 +1,4 @@
-"""Points under a force, or pulled through a spring: limits, thresholds, models side by side."""
+"""Contacts under a force or on a spring: limits, thresholds, and comparison of models."""
 
 import math
 from dataclasses import replace
@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import microslip
-from microslip.adaptive import pulled as adaptive_pulled
+from microslip.adaptive import driven_contact
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder
 from microslip.estimate.refine import unknown
@@ -20,8 +20,8 @@ from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.solver.discretise import Resolution
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.method import Method
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.theory import indenters, paper
 
@@ -35,7 +35,7 @@ ENDLESS = {"stiff": {"stiffness": 1e6}, "heavy": {"stiffness": 0.1, "mass": 1e6}
 
 
 def apart(one, other):
-    """How far two certified frictions are apart, over what their errors allow."""
+    """Difference of two frictions over the sum of their errors."""
     return abs(one.mu_macro - other.mu_macro) / (one.mu_macro_error + other.mu_macro_error)
 
 
@@ -45,8 +45,7 @@ def apart(one, other):
     [{"stiffness": 6e-4}, {"stiffness": 1.0, "mass": 0.3}],
 )
 def test_a_fast_contact_on_a_spring_has_the_friction_of_the_energy_bound(body):
-    """At a large Poisson's ratio and a loose tolerance: rings at Poisson's ratio 0, for which the
-    bound is the same, march to a value within it."""
+    """The bound does not depend on Poisson's ratio, so that rings at ratio 0 can check it."""
     place = ("transverse", 9.24, 0.871)
     found = microslip.solve(*place, **body, poisson=0.3, tolerance=1e-2, time_limit=1.0)
     assert found.converged and found.model == "closed-form"
@@ -70,10 +69,9 @@ def test_what_does_not_give_way_has_the_friction_of_the_velocity(place, body):
 @pytest.mark.slow
 @pytest.mark.parametrize("place", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_the_softest_spring_is_a_force(place):
-    """A spring as soft as can be pulls with its mean force: that force has its velocity.
+    """A very soft spring exerts a constant force, under which the contact has the same velocity.
 
-    The velocity rises with the force, so that the errors of the force are those of the velocity at
-    both of its ends.
+    The velocity rises with the force, so the ends of the error interval of the force enclose it.
     """
     motion, velocity, amplitude = PLACES[place]
     soft = microslip.solve(motion, velocity, amplitude, stiffness=1e-5)
@@ -87,9 +85,9 @@ def test_the_softest_spring_is_a_force(place):
 
 @pytest.mark.slow
 def test_a_fast_contact_on_the_softest_spring_is_solved():
-    """Its friction hardly rises with the velocity, so that small forces move it far.
+    """The friction hardly rises with the velocity, so small forces cause large displacements.
 
-    The force in the middle of the spring's oscillation has the velocity of the far end.
+    Under the mean force of the spring the contact has the velocity of the far end.
     """
     velocity, amplitude, tolerance = 3.0, 0.2, 2e-4
     soft = microslip.solve(
@@ -130,7 +128,7 @@ def test_the_threshold_is_the_static_limit(name):
 
 @pytest.mark.parametrize("mass", [None, 1.0])
 def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
-    """Marched on its own, from a start that moves: what is answered without a march."""
+    """A run from a moving start confirms the result that solve gives without a run."""
     limit = paper.static_limit_transverse(0.5)
     problem = Problem(motion_named("transverse"), 0.01, 0.5, 0.0)
     rest = moving_at(problem, Force(limit - 0.03, mass=mass or 0.0))
@@ -141,7 +139,7 @@ def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
 
 def moving_at(problem, drive, cells=24, steps=64, method=None):
     settings = Settings() if method is None else Settings(method)
-    found = simulate_pulled(
+    found = simulate_driven(
         replace(problem, drive=drive),
         "radial",
         Resolution(cells, 1, steps),
@@ -153,8 +151,10 @@ def moving_at(problem, drive, cells=24, steps=64, method=None):
 
 
 def test_a_force_next_to_the_limit_is_told_from_it_by_a_finer_limit():
-    """At Poisson's ratio 0 the limit has a closed form, and it falls by less than a thousandth to
-    0.3 at so small an amplitude: a force of 0.9975 is below it, though not by the tolerance."""
+    """The limit at Poisson's ratio 0.3 is at most 1e-3 below the closed form at ratio 0.
+
+    So a force of 0.9975 is below it, by less than the tolerance.
+    """
     limit = microslip.solve("transverse", 0.0, 1e-3).mu_macro
     assert limit > 0.9995
     found = microslip.solve("transverse", amplitude=1e-3, force=0.9975, poisson=0.3, tolerance=1e-2)
@@ -162,8 +162,10 @@ def test_a_force_next_to_the_limit_is_told_from_it_by_a_finer_limit():
 
 
 def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
-    """The force is within the error of the limit, 1 for no oscillation to speak of, and no larger
-    force is marched: the answer is unknown, not a number."""
+    """The force is within the error of the limit, and no run at a larger force is possible.
+
+    Then the velocity is unknown.
+    """
     limit = microslip.solve("transverse", 0.0, 1e-3, poisson=0.3)
     assert abs(limit.mu_macro - 0.9998) < limit.mu_macro_error
     found = microslip.solve("transverse", amplitude=1e-3, force=0.9998, poisson=0.3, tolerance=1e-2)
@@ -173,18 +175,17 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
     def unsolved(asked, accuracy):
-        refined = unknown("a step was left unsolved")
-        refined = replace(refined, value=Estimate(5.4, {"solver": 1e9}))
-        return refined, Ladder(1, 0, 0)
+        refined = unknown("a step was left unsolved", Ladder(1, 0, 0))
+        return replace(refined, value=Estimate(5.4, {"solver": 1e9}))
 
-    monkeypatch.setattr(adaptive_pulled, "_refined", unsolved)
+    monkeypatch.setattr(driven_contact, "_refined", unsolved)
     found = microslip.solve("transverse", amplitude=1.0, force=0.8)
     assert math.isnan(found.velocity) and found.velocity_error == math.inf
     assert (found.converged, found.reason) == (False, "a step was left unsolved")
 
 
 def test_a_heavy_contact_that_oscillates_along_the_force_moves_from_its_static_limit_on():
-    """Without mass it goes along with the oscillation, and nothing below full friction moves it."""
+    """Without mass it follows the oscillation, and only full friction moves it."""
     limit = paper.static_limit_longitudinal(0.5)
     heavy = {"amplitude": 0.5, "mass": 1e5}
     below = microslip.solve("longitudinal", force=limit - 0.03, **heavy)
@@ -196,7 +197,7 @@ def test_a_heavy_contact_that_oscillates_along_the_force_moves_from_its_static_l
 
 
 def test_without_mass_only_what_is_across_the_force_counts():
-    """An ellipse with its forward part given way to is the transverse motion."""
+    """The body follows the forward part of the ellipse; the rest is the transverse motion."""
     loop = microslip.solve("elliptic:phase=37", amplitude=1.5, force=0.3)
     line = microslip.solve("transverse", amplitude=1.5, force=0.3)
     assert loop.velocity == pytest.approx(
@@ -209,7 +210,8 @@ RISING = [(0.5, 0.75, 0.0244), (1.5, 0.30, 0.138), (1.5, 0.60, 0.399), (3.0, 0.3
 
 @pytest.mark.parametrize("force", [0.3, 0.7])
 def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
-    """cos of the slip's direction is the force: v = P |w| / sqrt(1 - P^2), in the mean 2/pi A."""
+    """The force P is the cosine of the slip direction: v = P |w| / sqrt(1 - P^2), mean |w| = 2/pi
+    A."""
     rigid = 2.0 / np.pi * force / math.sqrt(1.0 - force**2)
     found = [microslip.solve("transverse", amplitude=a, force=force) for a in (50.0, 400.0)]
     left = [abs(one.velocity / one.amplitude - rigid) / rigid for one in found]
@@ -219,7 +221,7 @@ def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
 
 @pytest.mark.long
 def test_large_bore_amplitudes_are_those_of_a_rigid_contact():
-    """Eq 21 at every instant, its velocity over that of the rotation, whose mean is 2/pi."""
+    """Eq 21 holds at every instant for the ratio of velocity and rotation, whose mean is 2/pi."""
     steady = brentq(lambda v: paper.bore_forward(v) - 0.5, 0.1, 2.0)
     found = [microslip.solve("bore", amplitude=a, force=0.5) for a in (30.0, 200.0)]
     left = [abs(one.velocity - 2.0 / np.pi * steady) for one in found]
@@ -266,7 +268,7 @@ def test_half_a_disc_and_squares_agree_on_a_bore_under_a_force():
 def test_a_force_moves_the_contact_faster_than_the_friction_of_a_velocity_says(
     amplitude, force, velocity
 ):
-    """Values of an independent prototype on 20 to 24 rings, to the percent that it is good for."""
+    """Values of an independent prototype with 20 to 24 rings, accurate to one percent."""
     found = microslip.solve("transverse", amplitude=amplitude, force=force, tolerance=1e-4)
     assert found.velocity == pytest.approx(velocity, rel=0.01)
     moved = microslip.solve("transverse", found.velocity, amplitude)
@@ -285,7 +287,8 @@ SPRINGS = {
     (0.1, 10.0): 0.529,
     (0.1, 100.0): 0.527,
 }
-"""Friction by stiffness and mass, of the same prototype: backward Euler at 128 steps a period."""
+"""Friction by stiffness and mass, of an independent prototype: backward Euler, 128 steps a
+period."""
 
 
 @pytest.mark.parametrize("body", SPRINGS)
@@ -297,14 +300,14 @@ def test_friction_through_a_spring_is_that_of_the_prototype(body):
     assert found.mu == pytest.approx(SPRINGS[body], rel=0.003)
 
 
-# A period that begins without contact, and a body that does not remember
+# A period that begins without contact, and a body without memory
 
 
 def springs_on_a_spring(velocity, amplitude, stiffness, count, steps):
-    """Mean force over mean load, by independent springs that a soft spring pulls (nu = 0: exact).
+    """Mean force over mean load of independent springs on a soft spring (exact at nu = 0).
 
-    What a spring at x can hold is its overlap d - x^2 with a sphere whose load, d^(3/2), oscillates
-    and is 0 at the start, where the soft spring is relaxed.
+    The spring at x can carry the overlap d - x^2 with the sphere.  The load d^(3/2) oscillates; it
+    is 0 at the start, where the soft spring is relaxed.
     """
     widest = (1.0 + amplitude) ** (1.0 / 3.0)
     edges = np.linspace(0.0, widest, count + 1)
@@ -336,7 +339,7 @@ def test_a_soft_spring_pulls_a_contact_that_lifts_off():
 
 @pytest.mark.slow
 def test_a_soft_spring_pulls_a_contact_that_lifts_off_and_oscillates_sideways():
-    """A small dashpot makes the body remember where it is, and changes the force by that much."""
+    """With a small dashpot the state includes the body, and the force hardly changes."""
     place, dashpot = ("normal:lateral=0.9,phase=90", 0.15, 1.3), 1e-4
     free = microslip.solve(*place, stiffness=0.3)
     held = microslip.solve(*place, stiffness=0.3, damping=dashpot)
@@ -393,7 +396,7 @@ def test_the_softest_spring_allowed_has_the_friction_of_a_soft_one():
 
 
 def test_a_fast_contact_is_where_its_friction_is_the_force():
-    """Friction hardly rises there, and a small force that is not balanced is a large velocity."""
+    """Friction hardly rises there, so a small unbalanced force is a large error of the velocity."""
     place = {"amplitude": 15.0, "force": 0.93, "mass": 1.0}
     found, finer = (microslip.solve("elliptic", **place, tolerance=t) for t in (2e-3, 1e-4))
     assert found.converged and finer.converged
@@ -402,7 +405,7 @@ def test_a_fast_contact_is_where_its_friction_is_the_force():
 
 
 def test_a_small_mass_that_moves_far_slower_than_a_contact_without_mass_is_solved():
-    """The tolerance is relative to the velocity that is found, not to the one that is expected."""
+    """The tolerance is relative to the resulting velocity, not to the initial estimate."""
     place = {"amplitude": 4.189, "force": 0.2761, "mass": 0.04953, "poisson": 0.3}
     motion, pressure = "elliptic:forward=0.5,phase=0,forward_cycles=2", "power:exponent=8"
     found, finer = (
@@ -424,7 +427,7 @@ LIGHT = {
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
 @pytest.mark.parametrize(("place", "velocity"), LIGHT.values(), ids=LIGHT)
 def test_steps_resolve_the_natural_oscillation_of_a_light_mass(place, velocity, tolerance):
-    """The velocities are those of runs with 3072 imposed steps in a period."""
+    """The expected velocities come from runs with 3072 imposed steps in a period."""
     found = microslip.solve("zigzag", **place, tolerance=tolerance)
     assert found.converged
     assert found.velocity == pytest.approx(velocity, abs=found.velocity_error)
@@ -432,7 +435,7 @@ def test_steps_resolve_the_natural_oscillation_of_a_light_mass(place, velocity, 
 
 @pytest.mark.slow
 def test_steps_resolve_a_light_mass_on_a_spring():
-    """The friction is that of a run with 48 rings and 4056 imposed steps in a period."""
+    """The expected friction comes from a run with 48 rings and 4056 imposed steps in a period."""
     body = {"stiffness": 0.3379, "mass": 0.001225}
     found = microslip.solve("zigzag", 0.948, 1.93, **body, pressure="punch")
     assert found.converged
@@ -469,7 +472,8 @@ def test_a_mass_holds_on_where_the_load_is_least():
 
 
 def test_the_error_of_the_static_limit_is_part_of_the_answer():
-    """Where it is not known whether the contact moves, its velocity is told from 0 on."""
+    """If it is uncertain whether the contact moves, the error interval of the velocity includes
+    0."""
     limit = microslip.solve("transverse", 0.0, 0.5, model="radial")
     assert limit.mu_macro_error > 1e-6
     found = microslip.solve("transverse", amplitude=0.5, force=limit.mu_macro, model="radial")

@@ -1,4 +1,4 @@
-"""Strokes far beyond u_lim, where the contact slides but for a way of u_lim after each turn."""
+"""Strokes far longer than u_lim: the contact slides, except over about u_lim after each turn."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ PLACES = [(115.0, 50000.0), (23.0, 10000.0), (0.5, 1000.0), (300.0, 3000.0)]
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize(("velocity", "amplitude"), PLACES)
 def test_a_zigzag_is_that_of_a_rigid_contact(velocity, amplitude, tolerance):
-    """Its direction is constant between turns; a contact that is late by u_lim at each of them
-    gains what that way is of the stroke at most."""
+    """The direction is constant between turns.  An elastic contact lags by u_lim at each turn,
+    which raises the friction by at most u_lim over the stroke."""
     problem = Problem(motion_named("zigzag"), velocity, amplitude)
     rigid = 1.0 / np.hypot(1.0, 2.0 / np.pi * problem.stroke / problem.drift)
     found = microslip.solve("zigzag", velocity, amplitude, tolerance=tolerance)
@@ -34,7 +34,7 @@ def test_tolerances_agree(velocity, amplitude):
 
 
 def test_several_contacts_with_long_strokes_are_each_alone():
-    """At a prescribed velocity none acts on another."""
+    """At a prescribed velocity contacts do not interact."""
     place, tolerance = ("transverse", 115.0, 50000.0), {"tolerance": 1e-3}
     alone = microslip.solve(*place, **tolerance)
     found = microslip.solve(*place, contacts="phase=0;phase=90", **tolerance)

@@ -1,4 +1,4 @@
-"""Points next to full sliding, where few rings agree by chance."""
+"""Points close to full sliding, where coarse levels can agree by chance."""
 
 import pytest
 

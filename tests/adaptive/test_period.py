@@ -1,4 +1,4 @@
-"""A period seen from inside: tractions, slip and forces have to fit together."""
+"""Consistency of tractions, slip and forces over one period."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def test_the_mean_force_is_the_certified_one(given):
     assert found.converged
     mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
     assert mean == pytest.approx(answer.mu_macro, abs=2e-3)
-    # of a load that changes, mu_macro sees the rings join and leave the contact within steps
+    # under an oscillating load, mu_macro resolves the change of the contact area within steps
     assert mean == pytest.approx(found.mu_macro, abs=1e-3 if motion.startswith("normal") else 1e-5)
 
 
@@ -60,7 +60,7 @@ def test_tractions_keep_to_the_bound_and_oppose_no_more_than_slip(given):
     slip = np.hypot(found.slip_forward, found.slip_lateral)
     bound = np.broadcast_to(found.bound, slip.shape)
     held = (bound > 0.0) & (np.concatenate([bound[-2:-1], bound[:-1]]) > 0.0)
-    # beyond rounding and the turns of a step, and in contact through all of it
+    # large slip, in contact during the whole step
     sliding = found.slips & (slip > 0.2 * slip.max()) & held
     cosine = found.slip_forward * found.traction_forward
     cosine += found.slip_lateral * found.traction_lateral
@@ -78,7 +78,7 @@ def test_the_work_of_the_forces_is_dissipated(given):
     spent += TORQUE_FULL_SLIP * work(found.torque, found.angle)
     size = np.hypot(found.slip_forward, found.slip_lateral)
     bound = np.broadcast_to(found.bound, size.shape)
-    between = 0.5 * (bound[1:] + bound[:-1])  # it may change in a step
+    between = 0.5 * (bound[1:] + bound[:-1])  # the bound can change in a step
     lost = np.sum(found.area * between * size[1:])
     assert spent == pytest.approx(lost, rel=0.03), motion
 
@@ -89,7 +89,7 @@ def test_areas_fill_the_disc_and_carry_the_load(given):
     if motion.startswith("normal"):
         cycles = 2.0 if "normal_cycles=2" in motion else 1.0
         load = 1.0 + amplitude * np.sin(cycles * found.phase)
-    largest = load.max() ** (2.0 / 3.0)  # a goes like the cube root of the load
+    largest = load.max() ** (2.0 / 3.0)  # a is proportional to the cube root of the load
     assert found.area.sum() == pytest.approx(np.pi * largest, rel=1e-3)
     assert (found.bound * found.area).sum(axis=-1) == pytest.approx(load, rel=1e-9)
     assert np.sum(found.area * found.lateral_position) == pytest.approx(0.0, abs=1e-12)
@@ -100,7 +100,7 @@ def test_the_contact_never_slides_fully_near_the_static_limit():
     assert not found.slips.all(axis=1).any()
     inside = paper.bore_stick_radius(1.0) * 0.5
     core = np.hypot(found.forward_position, found.lateral_position) < inside
-    # the patches alternate: what slips on the right at one turn slips on the left at the other
+    # the slip patches alternate between right and left
     right = core & (found.lateral_position > 0.3 * inside)
     left = core & (found.lateral_position < -0.3 * inside)
     lead = found.slips[:, right].mean(axis=1) - found.slips[:, left].mean(axis=1)
@@ -130,7 +130,7 @@ def test_odd_counts_are_refused(name):
 
 @pytest.mark.parametrize("pressure", ["power:exponent=1", "ring"])
 def test_a_period_under_another_pressure(pressure):
-    """Its bound is that pressure's, its mean force that of the certified answer."""
+    """The bound is that of the pressure, and the mean force agrees with `solve`."""
     found = microslip.period("bore", 0.3, 1.0, pressure=pressure, cells=24, angles=16, steps=96)
     answer = microslip.solve("bore", 0.3, 1.0, pressure=pressure, tolerance=5e-3)
     assert found.converged

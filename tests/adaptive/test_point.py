@@ -1,4 +1,4 @@
-"""The public answer: its certificate, its limits, its inputs and its fields."""
+"""`solve`: error estimate, limits, checks of the input, and fields of the result."""
 
 import math
 
@@ -15,12 +15,14 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
-# Certificates
+# Error estimate
 
 
 def reference(motion, velocity, amplitude, nu):
-    """(friction, allowance): a finer resolution than solve's base, refined once more along each
-    axis by itself, each periodic state ten times closer and searched for from scratch."""
+    """(friction, allowance) of a reference with a smaller tolerance of the periodic state.
+
+    A fine resolution is refined once more along each axis separately; the corrections are added.
+    """
     kind = motion_named(motion)
     model = "polar" if kind.rotates or nu > 0 else "radial"
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
@@ -32,7 +34,7 @@ def reference(motion, velocity, amplitude, nu):
         return run.mu
 
     base = mean(cells, angles, steps)
-    # second order in the rings: a third of the difference is left and goes on top
+    # second order in the rings: the correction is 4/3 of the difference
     corrections = [4 / 3 * (mean(2 * cells, angles, steps) - base)]
     corrections.append(mean(cells, angles, 3 * steps) - base)
     if angles > 1:
@@ -75,23 +77,16 @@ def test_certificate_covers_a_much_finer_reference(motion, velocity, amplitude, 
 
 @pytest.mark.long
 def test_certificate_sees_rings_and_angles_together():
-    """The centre of rotation moves through the contact, and few angles hide what rings are worth:
-    with the mixed difference taken next to the base this point missed by twice its certificate."""
+    """The centre of rotation moves through the contact, so rings and angles must be refined
+    together.
+
+    With separate corrections for both, the error of this point was twice its estimate.
+    """
     result = microslip.solve("bore", 0.289, 2.07)
     finer = microslip.solve("bore", 0.289, 2.07, tolerance=2e-4)
     assert result.converged and finer.converged
     allowed = result.mu_macro_error + finer.mu_macro_error
     assert abs(result.mu_macro - finer.mu_macro) <= allowed
-
-
-@pytest.mark.parametrize(("velocity", "amplitude"), [(0.3, 0.8), (0.05, 2.0), (2.0, 4.0)])
-def test_tighter_tolerances_come_closer(velocity, amplitude):
-    problem = Problem(motion_named("transverse"), velocity, amplitude, 0.0)
-    expected = simulate(problem, "radial", Resolution(48, 1, 384), 1e-6).mu
-    for tolerance in (1e-2, 1e-3, 2e-4):
-        result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
-        assert result.converged and result.mu_macro_error <= tolerance
-        assert result.mu_macro == pytest.approx(expected, abs=tolerance + 2e-5)
 
 
 @pytest.mark.slow
@@ -105,6 +100,8 @@ def test_squares_confirm_the_automatic_model(motion, nu):
 
 
 # Limits
+
+RIGID = [(1e-2, 3.0), (0.1, 0.5), (2.0, 2.0)]
 
 
 @pytest.mark.parametrize("velocity", [0.0, 1e-3, 1.0])
@@ -124,48 +121,22 @@ def test_without_vibration_friction_is_exactly_one(motion, model, nu, velocity):
     assert result.mu_macro_error <= 1e-9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("motion", "amplitude", "limit"),
+    ("motion", "velocity", "amplitude", "exact"),
     [
-        ("transverse", 0.3, paper.static_limit_transverse),
-        ("transverse", 0.9, paper.static_limit_transverse),
-        ("bore", 0.5, paper.static_limit_bore),
-        ("bore", 1.0, paper.static_limit_bore),
+        *(("transverse", v, a, paper.large_amplitude_transverse(v, a)) for v, a in RIGID),
+        *(("bore", v, 1.0, paper.large_amplitude_bore(v)) for v in (1e-2, 0.3, 2.0)),
     ],
 )
-def test_slow_sliding_approaches_the_static_limit(motion, amplitude, limit):
-    exact = microslip.solve(motion, 0.0, amplitude)
-    assert exact.converged and exact.mu_macro == pytest.approx(limit(amplitude), abs=1e-9)
-    slow = [microslip.solve(motion, v, amplitude, tolerance=2e-3) for v in (1e-2, 1e-3, 1e-6)]
-    assert all(result.converged for result in slow)
-    assert slow[0].mu_macro > slow[1].mu_macro > slow[2].mu_macro
-    assert slow[1].mu_macro > exact.mu_macro
-    assert slow[2].mu_macro == pytest.approx(exact.mu_macro, abs=slow[2].mu_macro_error + 3e-4)
-
-
-def test_pure_rotation_has_no_forward_friction_and_its_whole_torque():
-    result = microslip.solve("continuous-bore", 0.0)
-    assert (result.mu_macro, result.mu_torque, result.converged) == (0.0, 1.0, True)
-
-
-@pytest.mark.parametrize(("velocity", "amplitude"), [(1e-2, 3.0), (0.1, 0.5), (2.0, 2.0)])
-def test_rigid_model_is_eq_6(velocity, amplitude):
-    result = microslip.solve("transverse", velocity, amplitude, model="rigid")
-    exact = paper.large_amplitude_transverse(velocity, amplitude)
-    assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
-
-
-@pytest.mark.parametrize("velocity", [1e-2, 0.3, 2.0])
-def test_rigid_model_is_eq_29(velocity):
-    result = microslip.solve("bore", velocity, 1.0, model="rigid")
-    exact = paper.large_amplitude_bore(velocity)
+def test_the_rigid_model_has_the_friction_of_eqs_6_and_29(motion, velocity, amplitude, exact):
+    result = microslip.solve(motion, velocity, amplitude, model="rigid")
     assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
 @pytest.mark.slow
 def test_large_amplitudes_tend_to_the_rigid_contact():
-    """Claims 1 and 5: Eq 6 overestimates the reduction a little, Eq 29 is good far out."""
+    """Claims 1 and 5: Eq 6 slightly overestimates the reduction, Eq 29 holds at large
+    amplitudes."""
     excess = [
         microslip.solve("transverse", 0.5 * a, a).mu_macro
         - paper.large_amplitude_transverse(0.5 * a, a)
@@ -184,7 +155,7 @@ def test_large_amplitudes_tend_to_the_rigid_contact():
     [("transverse", 0.4), ("transverse", 2.0), ("bore", 0.5), ("bore", 3.0)],
 )
 def test_friction_rises_with_velocity(motion, amplitude, nu):
-    """Claim 9, and the whole curve between the static limit and full friction."""
+    """Claim 9: friction rises from the static limit to full friction."""
     velocities = np.geomspace(1e-3, 10, 9)
     results = [
         microslip.solve(motion, v, amplitude, poisson=nu, tolerance=1e-2) for v in velocities
@@ -280,7 +251,7 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         motion, 0.3, 1.2, poisson=nu, model=model, cells=cells, steps=steps, tolerance=1e-2
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
-    if model != "polar":  # whose angles are still chosen, and corrected for
+    if model != "polar":  # the angles of this model are still refined
         problem, share = Problem(motion_named(motion), 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
@@ -294,18 +265,6 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         assert result.mu_macro == pytest.approx(fine, abs=slack)
         expected = max(abs(fine - middle), abs(middle - coarse) / 4.0)
         assert result.friction.by_source["resolution"] == pytest.approx(expected, abs=2 * slack)
-
-
-def test_imposing_one_number_leaves_the_other_to_the_tolerance():
-    result = microslip.solve("transverse", 0.3, 1.2, cells=32)
-    assert result.periodic and result.cells == 32
-    assert result.friction.by_source["resolution"] <= 1e-3
-    coarse = microslip.solve("transverse", 0.3, 1.2, cells=4)
-    assert (
-        coarse.cells == 4
-        and coarse.friction.by_source["resolution"] > 3 * result.friction.by_source["resolution"]
-    )
-    assert coarse.steps_per_period > 8 * coarse.cells
 
 
 # Fields
@@ -328,16 +287,6 @@ def test_fields_of_the_contract(velocity):
     assert fields["solve_time_s"] >= 0.0
 
 
-def test_model_that_answered_is_named():
-    names = {
-        microslip.solve("transverse", 0.7, 0.8, tolerance=1e-2).model: "radial",
-        microslip.solve("transverse", 0.7, 0.8, poisson=0.1, tolerance=1e-2).model: "polar",
-        microslip.solve("bore", 0.7, 0.8, tolerance=1e-2).model: "polar",
-        microslip.solve("transverse", 0.7, 0.8, model="slider", tolerance=1e-2).model: "slider",
-    }
-    assert all(found == expected for found, expected in names.items())
-
-
 @pytest.mark.parametrize(
     ("motion", "amplitude", "nu"),
     [
@@ -353,7 +302,7 @@ def test_equal_inputs_give_equal_bits(motion, amplitude, nu):
         return without_time(result.to_dict())
 
     first = answer()
-    microslip.solve("bore", 0.05, 2.0, tolerance=1e-2)  # something else in between
+    microslip.solve("bore", 0.05, 2.0, tolerance=1e-2)  # another point in between
     assert answer() == first
 
 
@@ -365,20 +314,12 @@ def test_progress_sees_every_run():
     assert 2 * max(r.steps for r in seen) == result.steps_per_period
 
 
-def test_unmet_tolerance_is_said():
-    """The finest level does not reach one part in a million."""
-    result = microslip.solve("continuous-bore", 0.5, model="rigid", tolerance=1e-6)
-    assert not result.converged and "the error is still" in result.reason
-    error = abs(result.mu_macro - paper.bore_forward(0.5))
-    assert error < result.mu_macro_error and 1e-6 < result.mu_macro_error < 1e-3
-
-
 def test_warm_up_leaves_a_working_solver():
     microslip.warm_up()
     assert microslip.solve("transverse", 0.5, 0.5, tolerance=1e-2).converged
 
 
-# Converged: within the tolerance, always
+# Converged means within the tolerance
 
 
 @pytest.mark.parametrize(
@@ -402,24 +343,8 @@ def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(motio
     assert result.periodic
 
 
-@pytest.mark.slow
-@settings(max_examples=12, deadline=None)
-@given(
-    st.sampled_from(["transverse", "longitudinal"]),
-    st.just(0.0) | st.floats(1e-4, 3.0),  # slower ones take seconds each
-    st.floats(0.0, 3.0),
-    st.sampled_from([None, 4, 16]),
-    st.sampled_from([None, 8, 64]),
-    st.sampled_from([0.1, 1e-2]),
-)
-def test_no_answer_is_converged_beyond_its_tolerance(motion, v, amplitude, cells, steps, tolerance):
-    result = microslip.solve(motion, v, amplitude, cells=cells, steps=steps, tolerance=tolerance)
-    assert not result.converged or result.mu_macro_error <= tolerance
-    assert result.converged == (result.reason == "")
-
-
 def test_no_tolerance_is_asked_for_by_name():
-    """The same run, whose error is told; whether that is enough was not asked."""
+    """Without a tolerance the result is the same and converged, whatever its error."""
     given = {"cells": 16, "steps": 8}
     free = microslip.solve("transverse", 0.1, 1.0, tolerance=None, **given)
     judged = microslip.solve("transverse", 0.1, 1.0, **given)
@@ -455,7 +380,7 @@ def test_closed_forms_and_models_without_cells_need_no_more():
 
 
 def test_periods_are_full_ones_whatever_a_lap_is():
-    """Counted by hand: a lap of a motion whose second half mirrors the first is half a period."""
+    """A march is half a period if the second half mirrors the first, else a whole one."""
     for motion, steps, lap in (("transverse", 16, 0.5), ("elliptic:forward=0.5,phase=30", 32, 1.0)):
         problem = Problem(motion_named(motion), 0.3, 1.0, 0.0)
         run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
@@ -478,7 +403,7 @@ def test_what_has_no_periods_counts_none():
 
 
 def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
-    """Under a load that changes both of its runs are asked for the same."""
+    """Under an oscillating load both runs have the same tolerance over the mean load."""
     from dataclasses import replace
 
     from microslip.solver import simulate as module

@@ -1,4 +1,4 @@
-"""Frictions are brought to where they can be."""
+"""Friction values are clipped to their physical range."""
 
 import math
 

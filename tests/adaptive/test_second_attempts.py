@@ -1,4 +1,4 @@
-"""Runs that find no periodic state at first are done again by safer steps."""
+"""Second attempts at runs that do not converge at first."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive import continuation, moved
+from microslip.adaptive import continuation, friction
 from microslip.solver import simulate
 from microslip.solver.effort import Effort
 
@@ -22,7 +22,8 @@ class FakeRun:
 
 
 class Stubborn:
-    """Converges at velocities from `easy` on, and from a guess at most `reach` times faster."""
+    """Runs that converge at velocities from `easy` on, or from a guess at most `reach` times
+    faster."""
 
     def __init__(self, easy, reach, careless=True):
         self.easy, self.reach, self.careless, self.asked = easy, reach, careless, []
@@ -63,7 +64,7 @@ def test_a_failure_is_told_as_the_first_attempt_tells_it():
         assert found.effort.updates == 5 * len(run_at.asked) < 5 * 100
 
 
-# Points that the first attempt fails at, each in a way of its own.
+# Points at which the first attempt fails
 HARD = [
     ("transverse", 0.5, 4.45e-6, 0.179, 1e-3),
     ("zigzag", 0.3, 5.36e-7, 0.381, 1e-3),
@@ -75,7 +76,7 @@ LONG = HARD[1:3]
 
 @cache
 def answered(motion, poisson, velocity, amplitude, tolerance):
-    """What ships says of such a point, once."""
+    """The Result of a point, computed once."""
     return microslip.solve(motion, velocity, amplitude, poisson=poisson, tolerance=tolerance)
 
 
@@ -87,7 +88,8 @@ def answered(motion, poisson, velocity, amplitude, tolerance):
 def test_slowest_motions_get_their_answer_in_a_second_attempt(
     motion, poisson, velocity, amplitude, tolerance
 ):
-    """So slow a motion feels next to nothing but the static limit, which is computed otherwise."""
+    """The friction of so slow a motion is close to the static limit, which is computed
+    differently."""
     settings = {"poisson": poisson, "tolerance": tolerance}
     answer = answered(motion, poisson, velocity, amplitude, tolerance)
     assert answer.converged
@@ -98,11 +100,11 @@ def test_slowest_motions_get_their_answer_in_a_second_attempt(
 
 @pytest.mark.long
 def test_these_points_need_it(monkeypatch):
-    """Without the second attempt they are not converged; with it they say that there was one."""
+    """The point does not converge without a second attempt; with it `retried` is above 0."""
     motion, poisson, velocity, amplitude, tolerance = HARD[3]
     settings = {"poisson": poisson, "tolerance": tolerance}
     assert answered(*HARD[3]).effort.retried > 0
-    monkeypatch.setattr(moved, "run_safely", lambda run_at, v, guess: run_at(v, guess))
+    monkeypatch.setattr(friction, "run_safely", lambda run_at, v, guess: run_at(v, guess))
     answer = microslip.solve(motion, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason

@@ -1,4 +1,4 @@
-"""How far a contact goes that comes to rest: against closed forms, finer runs and other models."""
+"""Displacement until rest, against closed forms, finer runs and other models."""
 
 import dataclasses
 import math
@@ -17,7 +17,7 @@ from microslip.solver.shakedown_run import run_to_rest
 
 
 def mindlin(force):
-    """Displacement in u_lim under a force that nothing vibrates (Cattaneo 1938, Mindlin 1949)."""
+    """Displacement in u_lim under a force without vibration (Cattaneo 1938, Mindlin 1949)."""
     return 1.0 - (1.0 - force) ** (2.0 / 3.0)
 
 
@@ -26,15 +26,15 @@ def mindlin(force):
 def test_without_vibration_it_is_mindlins(force, poisson):
     found = microslip.shakedown("transverse", 0.0, force, poisson=poisson)
     assert found.converged and found.displacement_error <= 1e-2
-    # For nu > 0 a sphere that is pushed slips a little to the side as well, which they leave out.
+    # the closed form neglects the small lateral slip at nu > 0
     assert abs(found.displacement - mindlin(force)) <= found.displacement_error
     assert found.pushed == pytest.approx(mindlin(force), abs=5e-3) and found.threshold == 1.0
 
 
 @pytest.mark.parametrize(("force", "amplitude"), [(0.3, 0.2), (0.5, 0.4), (0.2, 0.7)])
 def test_under_a_load_that_oscillates_it_is_mindlins_at_the_least_load(force, amplitude):
-    """At the least load the contact gives way as far as one that has never had another, and what
-    comes back into contact is not stretched: nothing slips any more."""
+    """At the least load the displacement is that of a contact under this constant load.  Points
+    that return into contact carry no traction, so that nothing slips any more."""
     found = microslip.shakedown("normal", amplitude, force)
     load = 1.0 - amplitude
     depth = load ** (2.0 / 3.0)
@@ -83,7 +83,7 @@ def test_rings_angles_and_squares_go_equally_far():
 
 
 def test_what_is_left_is_no_more_than_is_said():
-    """A run that looks ten times as closely marches on, and gains no more than was left open."""
+    """A run with a smaller tolerance agrees within the bound of the remaining displacement."""
     problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=16, angles=1, steps=16)
     for force in (0.3, 0.5, 0.56):
@@ -105,7 +105,7 @@ def test_above_the_threshold_there_is_no_end():
 
 
 def test_a_contact_that_would_march_for_ever_says_so():
-    """Above the threshold, which the run does not know of."""
+    """The force is above the threshold, which the run does not check."""
     problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=8, angles=1, steps=8)
     found = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())

@@ -1,4 +1,4 @@
-"""Slow loops, whose few rings and steps agree by chance, against many of both."""
+"""Slow loops, whose coarse levels agree by chance, against fine resolutions."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import microslip
 from microslip.states.search import largest_excess
 
 SHARP = "punch:flat=0.95"
-# motion, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
+# motion, pressure, velocity, amplitude, cells and steps of a reference
 OFF = [
     (
         "forward=0.97,phase=90,forward_cycles=2",
@@ -57,7 +57,7 @@ def test_errors_are_covered_where_few_rings_and_steps_agree_by_chance(
 
 
 def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
-    """Its force was 0.015 in place of 0.114, and a wide tolerance took what was left for little."""
+    """Under a wide tolerance the search once ended at a force of 0.015 instead of 0.114."""
     motion = "elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2"
     point = {
         "velocity": 0.00013964177566075554,

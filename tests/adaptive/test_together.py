@@ -1,4 +1,4 @@
-"""Runs that start from coarser ones, and a bore that converges slowly."""
+"""Runs that start from coarser runs, and a rotation that converges slowly."""
 
 import math
 
@@ -17,8 +17,8 @@ BORE = Problem(motion_named("bore"), 0.3, 1.0, 0.0)
 
 @pytest.mark.slow
 def test_few_rings_that_converge_slowly_are_refined():
-    """From 8 to 16 rings the error of this bore falls with the first power only.  Separate chains
-    from bases of 24 to 96 rings settle at 0.34733."""
+    """From 8 to 16 rings the error of this bore falls at first order only.  Separate refinements
+    from 24 to 96 rings give 0.34733."""
     result = microslip.solve("bore", 0.11150298626945476, 3.3085697949922066)
     assert result.converged
     assert result.mu_macro == pytest.approx(0.34733, abs=result.mu_macro_error)
@@ -43,7 +43,7 @@ def test_turning_slip_is_interpolated_between_angles():
     given, expected = (
         full_slip(one, one.lateral_position, -one.forward_position) for one in (coarse, fine)
     )
-    # chords of a circle miss it by an eighth of the square of their angle
+    # linear interpolation on a circle has an error of an eighth of the squared angle
     off = np.abs(fine.prolonged(given) - expected) / fine.bound
     assert 0.0 < off.max() <= (math.pi / 6) ** 2 / 8.0
 

@@ -55,7 +55,7 @@ NUMBERS = [
         "--contacts = 'phase=1'",
         "does not oscillate",
     ),
-    (f"{SHAKEN} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
+    (f"{SHAKEN} --force 0.1 --model rigid", "--model = 'rigid'", "supports no force"),
     (f"{SHAKEN} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
     (f"{TRANSVERSE} --stiffness 0", "--stiffness = '0'", "a finite number of at least 1e-09"),
     (f"{TRANSVERSE} --stiffness 1e7", "--stiffness = '1e7'", "at most 1e+06"),

@@ -56,7 +56,7 @@ BAD = [
     (SPRINGS | {"stiffness": [1, 1]}, "stiffness: 1 occurs twice"),
     (SPRINGS | {"mass": -1}, "mass: -1 is not allowed"),
     (SPRINGS | {"mass": "heavy"}, "mass: "),
-    (SPRINGS | {"model": "rigid"}, "model: 'rigid': does not know a stiffness"),
+    (SPRINGS | {"model": "rigid"}, "model: 'rigid': supports no stiffness"),
     (SPRINGS | {"group": "g"}, "group"),
     ({"motion": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: allowed is"),
     (

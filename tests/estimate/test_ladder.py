@@ -1,4 +1,4 @@
-"""Levels of resolution: what a problem begins with and what doubles."""
+"""Levels of resolution: the first level of a problem, and what a level doubles."""
 
 import math
 
@@ -85,7 +85,7 @@ def test_what_is_not_imposed_is_as_fine_as_the_tolerance_needs():
         assert few.resolution(few.start) == Resolution(4, 1, needed.steps)
         short = ladder_for(problem, "radial", tolerance, steps=16)
         assert short.resolution(short.start) == Resolution(needed.cells, 1, 8)
-    # and as the imposed number suggests
+    # an imposed number of cells sets the level of the steps
     many = ladder_for(problem, "radial", 1e-2, cells=64)
     assert many.resolution(many.start) == free.resolution(64)
 

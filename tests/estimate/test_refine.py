@@ -1,4 +1,4 @@
-"""Refinement of manufactured runs, whose limits are known."""
+"""Refinement of manufactured runs with known limits."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ LADDER = Ladder(start=8, angles=0.5, steps=2)
 
 
 class FakeRun:
-    """Runs whose mu is EXACT + coefficient / cells^power, of which a share is random."""
+    """Runs with mu = EXACT + coefficient / cells^power, and a random part of the second term."""
 
     def __init__(self, coefficient=0.0, power=2.0, scatter=0.0, seed=0, most=99):
         self.coefficient, self.power, self.most = coefficient, power, most
@@ -79,14 +79,14 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
     assert found.converged and found.value.error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
     assert len(set(cells)) == len(cells) and max(cells) > 64
-    # each starts from the run at half its level, where there is one
+    # each run starts from the run at half its level, if there is one
     by_cells = dict(zip(cells, fake.runs, strict=True))
     halves = [by_cells.get(n // 2) if n > 6 else None for n in cells]
     assert fake.guesses == [halves[k] if n > 6 else None for k, n in enumerate(cells)]
 
 
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
-    """The value is changed by each run in turn; its response is the weight of the run."""
+    """The weight of a run is the change of the value by a change of the run."""
     fake = FakeRun(0.3)
     found = refine(fake, LADDER, 1e-3)
     step = 1e-7
@@ -160,7 +160,7 @@ def test_the_error_of_an_imposed_resolution_is_covered(power):
     assert abs(found.value.value - EXACT) <= found.value.error
 
 
-# What ends it
+# End of the refinement
 
 
 @pytest.mark.parametrize("cells", [4, 8, 16])
@@ -238,7 +238,8 @@ def test_readings_that_are_too_far_apart_end_it():
 
 
 def test_a_coarse_run_that_does_not_converge_counts_in_full():
-    """It has no part in the value, but what it is off by may hide how far the levels are apart."""
+    """The value does not depend on this run, but its error can hide the difference of the
+    levels."""
     fake = FakeRun()
 
     def run(resolution, guess):

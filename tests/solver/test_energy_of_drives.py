@@ -1,8 +1,9 @@
-"""What goes into a contact and its drive in a period is what slip and the dashpot take.
+"""Energy balance over a period: the work of vibration and drive equals the dissipation.
 
-Elastic, kinetic and spring energy return with the state.  The vibration works on the contact, and
-what pulls works on the body: a force where the body is, a spring at its far end.  Slip takes its
-friction bound times its way, point by point, from tractions that are marched step by step.
+Elastic, kinetic and spring energy are periodic.  The vibration does work on the contact; the drive
+does work on the body, a force at the body, a spring at its far end.  Slip and a dashpot dissipate
+energy.  The slip dissipation at a point is the friction bound times the slip path, from tractions
+that are marched step by step.
 """
 
 from dataclasses import replace
@@ -18,7 +19,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.run import AS_SHIPPED
 
 DRIVES = {
@@ -42,16 +43,16 @@ PLACES = {
 
 
 def travel_of(contact, problem, phase):
-    """Displacement of all points of the sphere, without what the body is ahead."""
+    """Displacement of all points of the sphere on the path, without x of the body."""
     forward, lateral, angle = problem.displacement(phase)
     turn = np.stack([contact.lateral_position, -contact.forward_position])
     return np.array([forward, lateral])[:, None, None] + angle * turn
 
 
 def balance(problem, drive, model, resolution):
-    """Mean powers: of the vibration, of the drive, of slip and of the dashpot."""
+    """Mean powers of the vibration, the drive, the slip and the dashpot."""
     driven = replace(problem, drive=drive)
-    found = simulate_pulled(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    found = simulate_driven(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
     assert found.converged, found.reason
     contact = contact_of(problem, model, resolution)
     load = (drive.force or 0.0) - drive.damping * problem.drift
@@ -92,7 +93,7 @@ def test_what_goes_in_is_dissipated(place, drive):
     problem = Problem(motion_named(motion), velocity, amplitude, poisson)
     vibration, pulled, slipped, damped = balance(problem, DRIVES[drive], model, resolution)
     assert slipped + damped == pytest.approx(vibration + pulled, rel=5e-4)
-    # none of them could be left out
+    # each power matters
     least = 0.015 * slipped
     assert vibration > least and pulled > least
     assert damped > 0.0 if DRIVES[drive].damping else damped == 0.0

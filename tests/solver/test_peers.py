@@ -1,4 +1,4 @@
-"""Methods that need a package of their own: what they say without it, and what they do with it."""
+"""Methods that need another package: their messages without it, and their results with it."""
 
 import math
 import os
@@ -35,7 +35,7 @@ needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package i
 
 @pytest.fixture
 def without(monkeypatch):
-    """As if nothing but microslip and what it depends on were installed."""
+    """An environment without the package aspher."""
 
     def found(name):
         return None if name == "aspher" else find_spec(name)
@@ -46,7 +46,7 @@ def without(monkeypatch):
 
 @pytest.fixture
 def within(monkeypatch):
-    """As if the package were installed; nothing of it can be run."""
+    """An environment that seems to have the package, which cannot be imported."""
     monkeypatch.setattr(method_names, "find_spec", lambda name: object())
 
 
@@ -57,20 +57,11 @@ def test_no_other_method_needs_a_package(without):
     assert method_names.method_named("aspher").requires == "aspher"
 
 
-def test_the_name_stays_good_without_the_package(without):
-    """A configuration that works in one place works in all."""
-    assert method_names.refusal("aspher") == ""
+def test_without_the_package_its_name_is_good_and_its_runs_are_refused(without):
+    method_names.check("aspher")
     assert "aspher" in configured({"methods": ["shipped", "aspher"]}).accuracy.methods
-
-
-def test_solve_names_the_package(without):
     with pytest.raises(ValueError, match="needs the package aspher"):
         microslip.solve("transverse", 0.5, 3.0, model="cartesian", cells=8, method="aspher")
-
-
-def test_a_trial_names_the_package(without):
-    reason = trial.applies("transverse", 0.0, "cartesian", "aspher")
-    assert "the package aspher" in reason
     where = {"poisson": 0.0, "model": "cartesian", "cells": 8, "angles": 1}
     with pytest.raises(ValueError, match="the package aspher"):
         trial.run_trial("transverse", 0.5, 3.0, **where, method="aspher", steps=8, tolerance=1e-3)
@@ -101,7 +92,9 @@ def test_squares_are_asked_with_the_package(within):
 def test_it_applies_where_it_is_asked(motion, poisson, within):
     known = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
     assert ladders.models_for("aspher", motion, poisson) == known
-    assert bool(known) == ("slider" in MODELS_OF_MOTION[motion])  # which cannot turn either
+    assert bool(known) == (
+        "slider" in MODELS_OF_MOTION[motion]
+    )  # the slider has no rotations either
 
 
 def test_rotation_is_refused(within):
@@ -114,7 +107,7 @@ def test_rotation_is_refused(within):
 
 
 class Spring:
-    """One spring of stiffness 1.5 that yields at 1, forward and lateral; it can be told to fail."""
+    """A spring of stiffness 1.5 that slips at force 1; steps with a number in `bad` fail."""
 
     unknowns, loaded, grading = 2, True, None
 
@@ -195,7 +188,7 @@ def straight(distance, steps):
 @needs_it
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
 def test_its_half_space_is_ours(poisson):
-    """What its tractions displace, by its kernel and by ours."""
+    """Displacements of its tractions by its own kernel and by ours."""
     solver, contact = aspher.Solver(16, poisson), CartesianContact(16, poisson)
     solver.step(0.3, 0.1)
     q, moved = (  # with the first component along axis 1
@@ -208,7 +201,7 @@ def test_its_half_space_is_ours(poisson):
 
 @needs_it
 def test_one_direction_is_cattaneo_and_mindlin():
-    """F/(mu F_z) = 1 - (1 - u/u_lim)^(3/2), and what our squares give."""
+    """F/(mu F_z) = 1 - (1 - u/u_lim)^(3/2), and the force of our squares."""
     cells, path = 24, straight(1.2, 12)
     solver = aspher.Solver(cells, 0.0)
     assert solver.bound.sum() * solver.size**2 == pytest.approx(1.0, abs=1e-6)
@@ -230,11 +223,13 @@ def trial_at(method, velocity, amplitude, steps, tolerance):
 @needs_it
 @pytest.mark.parametrize(("velocity", "amplitude", "within"), [(0.05, 0.1, 1e-3), (0.1, 0.5, 1e-2)])
 def test_means_agree_with_ours_on_the_same_squares_and_steps(velocity, amplitude, within):
-    """Up to the normal contact, which it solves on the squares and which we integrate, and to what
-    its steps leave: next to nothing where the slip hardly turns."""
+    """The means differ by the discrete normal contact of the package and the residual of its steps.
+
+    The residual is very small if the direction of slip hardly changes.
+    """
     theirs = trial_at("aspher", velocity, amplitude, 24, 1e-3)
     ours = trial_at("euler", velocity, amplitude, 24, 1e-5)
-    assert within < 0.3 * (1.0 - ours["mu_macro"])  # less than what the vibration does
+    assert within < 0.3 * (1.0 - ours["mu_macro"])  # smaller than the effect of the vibration
     assert theirs["mu_macro"] == pytest.approx(ours["mu_macro"], abs=within)
     assert theirs["converged"] == (theirs["reason"] == "")
     assert theirs["unknowns"] == ours["unknowns"] == 2 * 12**2
@@ -243,7 +238,7 @@ def test_means_agree_with_ours_on_the_same_squares_and_steps(velocity, amplitude
 
 @needs_it
 def test_failed_steps_make_a_trial_fail(monkeypatch):
-    """With a limit that no step can meet, all of them have failed."""
+    """With a limit that no step can meet, every step has failed."""
     monkeypatch.setattr(aspher, "ACCEPTED", -1.0)
     found = trial_at("aspher", 0.5, 0.05, 8, 1e-2)
     assert not found["converged"]

@@ -1,4 +1,4 @@
-"""The accelerated search for the periodic state against marching until nothing changes."""
+"""The accelerated search for the periodic state against a plain march until nothing changes."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
 TOLERANCE = 1e-5
-STEP_TOLERANCE = 1e-3 * TOLERANCE  # what simulate asks of a step
+STEP_TOLERANCE = 1e-3 * TOLERANCE  # as in simulate
 STEPS = 12
 
 CASES = {
@@ -31,7 +31,7 @@ CASES = {
     "cartesian, translation": ("cartesian", Transverse(), 0.0, 6, 1),
     "cartesian, rotation": ("cartesian", Bore(), 0.3, 6, 1),
 }
-"""model, motion, nu, cells, angles"""
+"""Model, motion, nu, cells and angles of each case."""
 POINTS = {
     "slider": [(1.0, 2.0), (0.1, 0.5), (0.005, 0.8)],
     "radial": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.005, 0.5), (1e-3, 0.2)],
@@ -50,7 +50,7 @@ def contact_of(name, velocity, amplitude):
 
 
 def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
-    """Path over half a period, or over a whole one in the same steps."""
+    """Path over half a period, or over a whole period with the same steps."""
     _, motion, nu, _, _ = CASES[name]
     phase = half_period_phases(STEPS)
     if whole:
@@ -63,7 +63,7 @@ def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
 
 
 def plain_march(contact, path, state, change, most=20_000):
-    """(tractions, forces) of the half period after which the unaccelerated map stands still."""
+    """(tractions, forces) of the half period in which the plain map changes less than `change`."""
     for _ in range(most):
         march = contact.march(path, state, STEP_TOLERANCE)
         before, state = state, contact.mirrored(march.state)
@@ -78,7 +78,7 @@ def plain_march(contact, path, state, change, most=20_000):
     [(name, *point) for name, points in POINTS.items() for point in points],
 )
 def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
-    """... from another start: the stress-free contact."""
+    """The plain march starts from the stress-free contact."""
     model, label, nu, cells, angles = CASES[name]
     resolution = Resolution(cells, angles, STEPS)
     motion = Problem(label, velocity, amplitude, nu)
@@ -86,7 +86,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     assert run.converged and run.distance <= TOLERANCE
     contact = build_contact(motion, model, resolution)
     path = discretise.path_of(motion, contact, STEPS)
-    stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved no further
+    stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved less accurately
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
     assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
     assert energy_norm(contact, run.state - state) < 30 * TOLERANCE
@@ -95,7 +95,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 @pytest.mark.parametrize("name", CASES)
 def test_second_half_of_the_period_mirrors_the_first(name, integrator):
-    """A march over the whole period from the found state, which knows nothing of the symmetry."""
+    """A march over the whole period makes no use of the symmetry."""
     motion, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
     cycle = PeriodMap(contact, path)
@@ -106,7 +106,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     assert energy_norm(contact, march.state - found.start) < 3 * TOLERANCE
     first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
     assert second[:, 0] == pytest.approx(first[:, 0], abs=3 * TOLERANCE)
-    turning = 2 if motion.rotates else 1  # what the motion oscillates, and its sign with it
+    turning = 2 if motion.rotates else 1  # the force or torque along the oscillation
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
     assert whole.mean(march.forces)[0] == pytest.approx(path.mean(found.forces)[0], abs=TOLERANCE)
@@ -123,9 +123,9 @@ def test_verdict_is_that_of_the_plain_map(name):
     assert not few.converged
     assert few.marches < enough.marches
     for found in (enough, few):
-        # whatever the search did, what it hands back is one march of the plain map
+        # the result of the search is one march of the plain map
         march = contact.march(path, found.start, STEP_TOLERANCE)
-        loose = max(1e-6, found.solver_residual)  # far from the end steps are solved loosely
+        loose = max(1e-6, found.solver_residual)  # early steps have a larger tolerance
         assert march.forces == pytest.approx(found.forces, abs=loose)
         change = energy_norm(contact, contact.mirrored(march.state) - found.start)
         assert change == pytest.approx(found.residual, rel=0.02, abs=loose)
@@ -142,7 +142,7 @@ def test_run_reports_what_was_not_reached(monkeypatch):
 
 @pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.9, 1.5])
 def test_rings_converge_down_to_very_small_velocities(amplitude):
-    """Towards the static limit, from above, and a state that the plain map leaves alone."""
+    """The friction approaches the static limit from above."""
     means = []
     for velocity in (1e-3, 1e-4, 1e-5):
         problem = Problem(Transverse(), velocity, amplitude, 0.0)
@@ -155,7 +155,7 @@ def test_rings_converge_down_to_very_small_velocities(amplitude):
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 0.05), (3e-4, 0.5)])
 def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(velocity, amplitude):
-    """A state changes so little in a slow period that a small residual alone proves nothing."""
+    """In a slow period every state changes little, so a small residual alone proves nothing."""
     problem = Problem(Bore(), velocity, amplitude, 0.0)
     runs = [
         simulate(problem, "polar", Resolution(6, 4, 12), tolerance) for tolerance in (3e-5, 3e-7)
@@ -167,13 +167,13 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
 @pytest.mark.parametrize(
     ("velocity", "amplitude", "rings", "steps"),
     [
-        # undamped Newton corrections cycle, or throw the state far away
+        # undamped Newton corrections cycle or diverge
         (1.34e-6, 0.867, 35, 78),
         (1.45e-6, 0.903, 17, 78),
         (5.67e-6, 0.412, 52, 26),
         (7.12e-6, 0.739, 9, 77),
         (1.14e-5, 0.518, 58, 53),
-        # next to nothing slips; nothing but slip
+        # almost full stick; full slip
         (1e-6, 0.01, 32, 16),
         (1e-6, 1e3, 8, 32),
         (1e3, 0.01, 8, 12),
@@ -202,7 +202,7 @@ def test_run_in_other_steps_spares_marches():
     assert led.converged and led.periods < alone.periods
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)
     assert led.static_force == pytest.approx(alone.static_force, abs=1e-6)
-    other = radial_run(0.01, 0.5, 6, 16, guess=known)  # of no use on other rings
+    other = radial_run(0.01, 0.5, 6, 16, guess=known)  # a guess on other rings is not used
     assert other.mu == radial_run(0.01, 0.5, 6, 16).mu
 
 
@@ -215,17 +215,11 @@ def test_a_wild_guess_costs_effort_only():
 
 @pytest.mark.parametrize("steps", [16, 48])
 def test_all_effort_is_counted(steps):
-    """Two stages a step, two tractions a ring, two marches a period."""
+    """A step has two stages, a ring two tractions, and a period two marches."""
     run = radial_run(0.01, 0.5, 8, steps)
     assert run.effort.solves == 2 * run.periods * 2 * steps
     assert run.effort.work == 16 * run.effort.solves
     assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work
-
-
-def test_equal_runs_give_equal_bits():
-    one, other = (radial_run(0.01, 0.5, 8, 48) for _ in range(2))
-    assert one.mu == other.mu and one.distance == other.distance
-    assert np.array_equal(one.state, other.state)
 
 
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():

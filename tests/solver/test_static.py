@@ -1,4 +1,4 @@
-"""The static limit: closed forms, the pointwise form on every model, slow marches towards it."""
+"""The static limit: closed forms, pointwise solutions with every model, and slow marches."""
 
 import numpy as np
 import pytest

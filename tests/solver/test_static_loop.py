@@ -1,4 +1,4 @@
-"""The static limit of loops and of an oscillating load: closed forms, models, slow marches."""
+"""The static limit of loops and of oscillating loads: closed forms, models and slow marches."""
 
 import numpy as np
 import pytest
@@ -42,17 +42,17 @@ def test_the_largest_shift_is_that_of_a_fine_grid():
 
 
 def test_nothing_is_left_where_slip_goes_both_ways():
-    """On the bound in opposite directions no shift fits, however narrow the loop."""
+    """No shift fits if the tractions reach the bound in opposite directions."""
     tractions = np.array([[0.1, 1.0], [-0.1, -1.0]])[:, :, None] / np.hypot(0.1, 1.0)
     assert largest_shift(tractions, np.ones((2, 1)))[0] == pytest.approx(0.0, abs=1e-7)
-    # with the bound larger at one of them only, the disc of the other one touches still
+    # a shift fits if the bound is larger at one of the two
     assert largest_shift(tractions, np.array([[1.0], [2.0]]))[0] > 0.05
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.2, 0.5, pytest.param(0.8, marks=pytest.mark.long)])
 def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
-    """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
+    """The limit of so narrow a loop is within 2e-4 of the closed form for the line."""
     across = microslip.solve("elliptic:forward=0.001", 0.0, amplitude)
     within(across, float(paper.static_limit_transverse(amplitude)), 2e-4)
     along = microslip.solve("elliptic:lateral=0.001", 0.0, amplitude)
@@ -62,7 +62,9 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
 def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
     motion, resolution = motion_named("transverse"), Resolution(16, 1, 64)
     line = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    loop = motion_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
+    loop = motion_named(
+        "elliptic:forward=0,phase=0,forward_cycles=2"
+    )  # the motion does not declare itself a line
     assert not loop.straight
     found = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     assert found == pytest.approx(line, abs=2e-3)
@@ -70,7 +72,7 @@ def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.4, 0.7])
 def test_springs_on_a_circle_in_closed_form(amplitude):
-    """A spring that sticks goes round with the amplitude and has 1 - x^2 - amplitude left."""
+    """A sticking spring at x has the force `amplitude`; its shift is 1 - x^2 - amplitude."""
     found = microslip.solve("elliptic", 0.0, amplitude, model="mdr")
     within(found, (1.0 - amplitude) ** 1.5)
 
@@ -83,7 +85,7 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
     mean = quad(forward, 0.0, np.pi, points=[0.5 * np.pi])[0] / np.pi
     rigid = microslip.solve(EIGHT, 0.0, 0.5, model="rigid")
     within(rigid, mean)
-    # an elastic contact is late by a way of u_lim, the less the longer its path
+    # an elastic contact lags by a path of about u_lim, which matters less on a longer path
     late = [abs(microslip.solve(EIGHT, 0.0, a).mu_macro - mean) for a in (10.0, 40.0)]
     assert late[0] < 0.05
     assert late[1] < 0.5 * late[0]
@@ -101,7 +103,7 @@ def test_mirror_images_have_the_same_limit_or_the_opposite_one():
         microslip.solve(f"elliptic:forward=0.5,phase={p},forward_cycles=2", 0.0, 1.2)
         for p in (0, 180)
     )
-    within(drags, -drives.mu_macro, drives.mu_macro_error)  # all of it slides
+    within(drags, -drives.mu_macro, drives.mu_macro_error)  # the whole contact slides
 
 
 @pytest.mark.long
@@ -110,7 +112,7 @@ def test_other_models_find_the_same_limit():
     coarse = {"cells": 16, "steps": 64, "tolerance": 1e-2}
     modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", **coarse)
     within(modes, rings.mu_macro, rings.mu_macro_error)
-    # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
+    # the stick zone of an elliptic contact is an ellipse of the same shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
         problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0, pressure_named(pressure))
         squares = simulate_static(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
@@ -130,20 +132,22 @@ def test_other_models_find_the_same_limit():
     ],
 )
 def test_slow_marches_end_there(motion):
-    """Limit and marches are those of the same rings and steps, so that few of them tell."""
+    """Limit and marches use the same rings and steps, so a coarse resolution suffices."""
     kind, resolution = motion_named(motion), Resolution(32, 1, 128)
     limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
     slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
     assert limit.converged and slow[0].converged and slow[1].converged
     above = [run.mu - limit.mu for run in slow]
-    # what is left of it shrinks like v^(2/3), to a quarter, or faster
+    # the excess falls at least with v^(2/3), here to a quarter
     assert 0.0 < above[1] < 0.36 * above[0]
 
 
 @pytest.mark.parametrize("amplitude", [0.3, 0.8])
 def test_a_load_that_oscillates_leaves_its_least(amplitude):
-    """The closed form of the load alone, by the same problem over the whole period; rings join and
-    leave the contact, and what oscillates beside the load tends to nothing."""
+    """The closed form for an oscillating load alone, against solutions over the whole period.
+
+    The last case has a negligible lateral oscillation.
+    """
     exact = microslip.solve("normal", 0.0, amplitude).mu_macro
     assert exact == pytest.approx(1.0 - amplitude, abs=1e-12)
     for motion, model in (
@@ -159,7 +163,7 @@ def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
     across = microslip.solve("normal:lateral=1", 0.0, 1.2)
     within(across, 0.0)
     along = microslip.solve("normal:forward=1,phase=90", 0.0, 1.2)
-    assert along.converged and along.mu_macro < -0.4  # under load it only goes back
+    assert along.converged and along.mu_macro < -0.4  # under load it moves backward only
 
 
 @pytest.mark.long
@@ -170,7 +174,7 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
     turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, **imposed)
     assert turning.converged and turning.model == "cartesian"
     alone = microslip.solve("transverse", 0.0, 0.5).mu_macro
-    # the bore beside it takes some more
+    # the rotation reduces the friction further
     assert 0.0 < turning.mu_macro < alone - turning.mu_macro_error
 
 

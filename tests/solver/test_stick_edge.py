@@ -1,4 +1,4 @@
-"""Where rings gather for slow motions: edges of what never slips, and what that is worth."""
+"""Grading of the rings of slow motions towards the stick zone, and its effect on the error."""
 
 import numpy as np
 import pytest
@@ -15,17 +15,17 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import (
-    gathered_on_a_line,
-    gathered_on_a_loop,
+    edges_on_a_line,
+    edges_on_a_loop,
     simulate_static,
 )
 from microslip.solver.stick_edge import (
-    TELLING_FINER,
-    TELLING_LINE,
-    TELLING_SWEPT,
-    TOLD,
-    TOLD_FINER,
-    found_focus,
+    FINE_RESOLUTION,
+    FINE_TOLERANCE,
+    LINE_RESOLUTION,
+    SWEPT_RESOLUTION,
+    TOLERANCE,
+    edge_focus,
 )
 from microslip.theory import hertz, indenters
 
@@ -33,7 +33,7 @@ RING = "ring:inner=0.5"
 
 
 def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
-    return found_focus(
+    return edge_focus(
         Problem(motion_named(motion), velocity, amplitude, 0.0, pressure_named(pressure)), model
     )
 
@@ -41,19 +41,19 @@ def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
 # The edges
 
 OTHERS = [
-    ("transverse", "hertz", 1e-3, 0.5, "radial"),  # a line, whose stick radius is known
-    ("transverse", "power:exponent=1", 1e-3, 0.5, "radial"),  # by the profile
-    ("elliptic:forward=0.5,phase=0", "hertz", 1e-3, 0.5, "radial"),  # this is a line, too
+    ("transverse", "hertz", 1e-3, 0.5, "radial"),  # a line: the stick radius has a closed form
+    ("transverse", "power:exponent=1", 1e-3, 0.5, "radial"),  # a closed form of the indenter
+    ("elliptic:forward=0.5,phase=0", "hertz", 1e-3, 0.5, "radial"),  # a line as well
     ("bore", "hertz", 1e-3, 0.5, "polar"),
-    ("bore", "punch", 1e-3, 0.5, "cartesian"),  # has no rings
-    ("bore", "punch", 0.1, 0.5, "polar"),  # drift reaches everywhere
-    ("transverse-bore", "punch", 1e-3, 0.5, "polar"),  # what sticks is not round
-    ("transverse", RING, 0.0, 1.5, "radial"),  # nothing sticks
-    ("continuous-bore", "punch", 1e-3, None, "polar"),  # nothing oscillates
+    ("bore", "punch", 1e-3, 0.5, "cartesian"),  # the model has no rings
+    ("bore", "punch", 0.1, 0.5, "polar"),  # a fast motion
+    ("transverse-bore", "punch", 1e-3, 0.5, "polar"),  # the stick zone is not round
+    ("transverse", RING, 0.0, 1.5, "radial"),  # the whole contact slips
+    ("continuous-bore", "punch", 1e-3, None, "polar"),  # no oscillation
     ("elliptic", "hertz", 1e-3, 0.5, "polar"),
     ("elliptic", "hertz", 0.1, 0.5, "radial"),
     ("elliptic", "hertz", 1e-3, 1.5, "radial"),
-    ("normal:lateral=1", "hertz", 1e-3, 0.5, "radial"),  # the contact grows and shrinks
+    ("normal:lateral=1", "hertz", 1e-3, 0.5, "radial"),  # an oscillating load
 ]
 
 
@@ -91,9 +91,9 @@ def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model
 def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(amplitude):
     motion = motion_named("transverse")
     limit, exact = Problem(motion, 0.0, amplitude, 0.0), np.sqrt(1.0 - amplitude)
-    near = gathered_on_a_line(limit, "radial", TELLING_LINE, TOLD)
+    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
     assert near == pytest.approx([exact], abs=5e-3)
-    found = gathered_on_a_line(limit, "radial", TELLING_FINER, TOLD_FINER, near=near)
+    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
     assert found == pytest.approx([exact], abs=5e-4)
 
 
@@ -103,15 +103,15 @@ def test_a_ring_that_slips_little_sticks_between_two_edges_next_to_its_own(inner
     limit = Problem(
         motion_named("transverse"), 0.0, amplitude, 0.0, pressure_named(f"ring:inner={inner}")
     )
-    near = gathered_on_a_line(limit, "radial", TELLING_LINE, TOLD)
-    found = gathered_on_a_line(limit, "radial", TELLING_FINER, TOLD_FINER, near=near)
-    assert len(found) == 2  # slivers between the last rings that seem to stick are scatter
-    narrower = 1.0 - np.sqrt(1.0 - amplitude)  # by so much would the contact of a sphere stick less
+    near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
+    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
+    assert len(found) == 2  # narrow gaps between edges are scatter
+    narrower = 1.0 - np.sqrt(1.0 - amplitude)  # width of the slip annulus of a sphere
     assert inner < found[0] < inner + narrower and 1.0 - narrower < found[1] < 1.0
 
 
-# Claims of narrow rings that slip little, and of wide ones: 1e-4 was missed by up to 4.9 times
-# where 48 rings told the edges, or where the search for them did not settle.
+# Narrow rings with little slip, and wide ones.  With edges from 48 rings, or from a search that did
+# not converge, errors were up to 4.9 times the tolerance of 1e-4.
 ON_RINGS = [
     ("ring:inner=0.5", 0.0781),
     ("ring:inner=0.5", 0.105),
@@ -128,7 +128,7 @@ ON_RINGS = [
 def test_the_claim_of_a_static_limit_on_a_ring_holds_against_far_more_rings(pressure, amplitude):
     point = {"velocity": 0.0, "amplitude": amplitude, "pressure": pressure}
     given = microslip.solve("transverse", **point, tolerance=1e-4)
-    counts = (288, 320, 352, 384)  # not one of them alone: the edges scatter over the rings
+    counts = (288, 320, 352, 384)  # several counts, since the edges scatter over the rings
     finer = [
         microslip.solve("transverse", **point, tolerance=None, cells=count).mu_macro
         for count in counts
@@ -137,7 +137,7 @@ def test_the_claim_of_a_static_limit_on_a_ring_holds_against_far_more_rings(pres
     assert abs(given.mu_macro - np.mean(finer)) <= given.mu_macro_error
 
 
-# Rings that gather at several radii
+# Grading towards several radii
 
 
 @pytest.mark.parametrize("count", [4, 7, 12, 48])
@@ -175,7 +175,7 @@ def test_several_radii_of_which_one_is_an_edge_already_are_refused(pressure, rad
         make_rings(8, Focus(radii), pressure_named(pressure))
 
 
-# What it is worth
+# Effect on the error
 
 
 def slow_circle(cells, focus=None):
@@ -185,7 +185,7 @@ def slow_circle(cells, focus=None):
 
 @pytest.mark.long
 def test_a_slow_circle_needs_few_rings_where_they_gather_at_what_never_slips():
-    """Many rings that gather elsewhere come to the same, and few of those do not."""
+    """Many rings with another grading give the same value; few of them do not."""
     focus = focus_of("elliptic", 1e-3, 0.375, "radial")
     fine = slow_circle(96)
     few = [slow_circle(cells, focus) for cells in (12, 16, 24)]
@@ -200,7 +200,7 @@ def limit(cells, focus=None):
 
 
 def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges():
-    """Four times as many that gather nowhere lie on both sides of it, and further away."""
+    """Four times as many rings without the grading scatter on both sides of it."""
     focus = focus_of("transverse", 0.0, 0.55, "radial", RING)
     fine = limit(192, focus)
     few = np.abs(np.array([limit(cells, focus) for cells in (24, 48)]) - fine)
@@ -210,10 +210,10 @@ def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges
 
 @pytest.mark.parametrize(("motion", "amplitude"), [("elliptic", 0.4), ("normal:lateral=1", 0.2)])
 def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
-    """As many rings that look for it again and again come to the same."""
+    """A search at every resolution gives the same limit."""
     problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
-    focus, resolution = found_focus(problem, "radial"), Resolution(48, 1, 192)
-    by_itself, radii = gathered_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
+    focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
+    by_itself, radii = edges_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
     told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
     assert told.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
@@ -233,7 +233,7 @@ def test_limits_under_a_ring_are_those_of_squares():
 
 def slow_bores(name, rings, focused=True):
     problem = Problem(motion_named("bore"), 1e-3, 0.4, 0.0, pressure_named(name))
-    settings = Settings(focus=found_focus(problem, "polar") if focused else None)
+    settings = Settings(focus=edge_focus(problem, "polar") if focused else None)
     found = [
         simulate(problem, "polar", Resolution(cells, 4, 24), 1e-6, settings=settings).mu
         for cells in rings
@@ -256,17 +256,17 @@ def test_few_rings_do_under_a_cone_where_they_gather_inside_of_lubkins_radius():
     assert max(abs(slow_bores("power:exponent=1", few, focused=False) - fine)) > 5e-3
 
 
-# What the search may take
+# Budget of the search
 
 SWEPT = "normal:lateral=1,angle=1"
-"""A static limit whose edges are found before anything else runs."""
+"""A motion whose static limit starts with a search for the stick zone."""
 
 
 @pytest.mark.parametrize("bound", [{"most_work": 1.0}, {"time_limit": 1e-9}], ids=list)
 def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
     seen, spent = [], "work" if "most_work" in bound else "time"
     found = microslip.solve(SWEPT, 0.0, 0.4375, progress=seen.append, **bound)
-    assert seen == [TELLING_SWEPT]  # nothing else has begun
+    assert seen == [SWEPT_RESOLUTION]  # no other run has started
     assert not found.converged and np.isnan(found.mu_macro)
     assert found.exhausted == spent
     assert "no error is known yet" in found.reason
@@ -275,12 +275,12 @@ def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
 def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
     problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
     first, later, seen = Budget(), Budget(), []
-    focus = found_focus(problem, "radial", first, seen.append)
+    focus = edge_focus(problem, "radial", first, seen.append)
     assert len(seen) >= 1 and first.taken.work > 0
-    assert found_focus(problem, "radial", later, seen.append) == focus
+    assert edge_focus(problem, "radial", later, seen.append) == focus
     assert later.taken == first.taken
     with pytest.raises(Spent, match="the work that the point may take"):
-        found_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
+        edge_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
 
 
 @pytest.mark.slow

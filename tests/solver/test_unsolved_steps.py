@@ -1,4 +1,4 @@
-"""Steps not solved to their tolerance show in the error, in `converged`, or as a failure."""
+"""Unsolved steps increase the error, prevent convergence, or raise an error."""
 
 import numpy as np
 import pytest
@@ -17,14 +17,14 @@ from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
 LOOSE = 5e-2
-"""Residual that every step may leave here, a force over mu F_z."""
+"""Tolerance of every step in these tests, a force over mu F_z."""
 RINGS = 5e-4
-"""Error of the limit on 32 rings whose steps are solved."""
+"""Error of the limit on 32 rings with solved steps."""
 
 
 @pytest.fixture
 def loose_steps(monkeypatch):
-    """Contacts whose steps are solved to LOOSE alone."""
+    """Contacts that solve their steps to the tolerance LOOSE only."""
 
     def loosen(contact, name):
         march = getattr(contact, name)
@@ -59,7 +59,8 @@ def test_solved_steps_have_the_limit_of_the_closed_form():
 
 
 def test_the_static_limit_on_a_loop_does_not_converge(loose_steps, monkeypatch):
-    """The search is solved; the march that shows its tractions, from no guess, is not."""
+    """The steps of the search are solved, those of the march that computes the tractions are
+    not."""
 
     def without_guess(contact, path, state, tolerance, previous):
         return frames(contact, path, state, tolerance)
@@ -81,7 +82,7 @@ def test_a_traction_field_fails(loose_steps):
 
 
 def test_a_period_does_not_converge_where_only_its_last_march_is_unsolved(monkeypatch):
-    """The search is solved; the march that shows the tractions step by step is not."""
+    """The steps of the search are solved, those of the last march are not."""
 
     def loosely(contact, path, state, tolerance, frames=period.frames):
         return frames(contact, path, state, LOOSE)

@@ -1,8 +1,7 @@
-"""Checks of the arguments of a request; every error names the argument."""
+"""Checks of the arguments of a request.  Every error names the argument."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from microslip.foundation.arguments import (
@@ -25,7 +24,7 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 LARGEST_FORCE = 1e6
-"""Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
+"""Largest force over mu times the mean normal load; from 1 on the result is that it runs away."""
 
 
 def checked_problem(
@@ -41,15 +40,15 @@ def checked_problem(
     Parameters
     ----------
     motion : str, Motion or Problem
-        A Problem takes the place of all other arguments.
+        A Problem replaces all other arguments.
     velocity, amplitude, pressure, poisson
-        As for `microslip.solve`.
+        See `microslip.solve`.
 
     Raises
     ------
     InputError
-        If an argument is out of range, if there are others beside a Problem, or if the Problem has
-        a drive or several contacts.  It names the argument.
+        If an argument is out of range, if there are other arguments beside a Problem, or if the
+        Problem has a drive or several contacts.  It names the argument.
     """
     problem = _problem(motion, (velocity, amplitude, poisson), pressure)
     if problem.drive is not None:
@@ -76,15 +75,15 @@ def checked_driven_problem(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, contacts
-        As for `microslip.solve`.  The velocity may be below 0 for self-propelled motions.
+        See `microslip.solve`.  The velocity can be negative for self-propelled motions.
     **drive : float or None
-        force, stiffness, mass and damping, as for `microslip.solve`.
+        force, stiffness, mass and damping, see `microslip.solve`.
 
     Raises
     ------
     InputError
-        If an argument is out of range, or if there are others beside a Problem.  It names the
-        argument.
+        If an argument is out of range, or if there are other arguments beside a Problem.  It names
+        the argument.
     """
     place = (velocity, amplitude, poisson)
     if isinstance(motion, Problem):
@@ -109,7 +108,7 @@ def _problem(
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """The Problem of a motion at (velocity, amplitude, poisson); a Problem is checked as it is."""
+    """The Problem of a motion at `place` = (velocity, amplitude, poisson), or the given Problem."""
     if isinstance(motion, Problem):
         velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
@@ -123,7 +122,7 @@ def _problem(
 
 
 def _refuse_drive(problem: Problem) -> None:
-    """Raise InputError for a drive of a Problem outside the range of the solver."""
+    """Raise InputError if the drive of a Problem is outside the range of the solver."""
     drive = problem.drive
     assert drive is not None  # as the caller looks
     mass, damping = drive.mass or None, drive.damping or None
@@ -133,8 +132,8 @@ def _refuse_drive(problem: Problem) -> None:
         checked_drive(None, force=drive.force, mass=mass)
 
 
-def _refuse_beside_problem(**given: object) -> None:
-    for name, value in given.items():
+def _refuse_beside_problem(**arguments: object) -> None:
+    for name, value in arguments.items():
         if value is not None:
             raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
@@ -145,7 +144,7 @@ def _place(
     place: tuple[float | None, float | None, float],
     backward: bool,
 ) -> tuple[float, float | None, float]:
-    """Velocity, amplitude and Poisson's ratio, checked to be within the range of the solver."""
+    """Velocity, amplitude and Poisson's ratio; raises InputError outside the solver's range."""
     velocity, amplitude, poisson = place
     slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
     velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
@@ -189,7 +188,7 @@ def checked_drive(
     mass: float | None = None,
     damping: float | None = None,
 ) -> Drive | None:
-    """The drive, None for a prescribed velocity; raises InputError naming the argument."""
+    """The drive; None: prescribed velocity.  Raises InputError, which names the argument."""
     if velocity is None and force is None:
         raise InputError("velocity", None, "allowed is a number, or a force in its place")
     if velocity is not None and force is not None:
@@ -218,24 +217,18 @@ def checked_drive(
 def checked_request(
     tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple[float | None, int | None, int | None]:
-    """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
+    """Tolerance and imposed resolution; raises InputError, which names the argument."""
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
         tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, cells, steps
 
 
-def refuse_bounds(**given: float | None) -> None:
-    """Raise InputError for a bound, None or a number, that is not above 0."""
-    for name, value in given.items():
+def refuse_bounds(**arguments: float | None) -> None:
+    """Raise InputError for an argument that is neither None nor a number above 0."""
+    for name, value in arguments.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
-
-
-def refuse_progress(progress: Callable | None) -> None:
-    """Raise InputError where `progress` is neither None nor callable."""
-    if progress is not None and not callable(progress):
-        raise InputError("progress", progress, "allowed is a function of one argument")
 
 
 def _count(name: str, value: int | None, low: int) -> int | None:

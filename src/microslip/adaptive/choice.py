@@ -1,4 +1,4 @@
-"""The model to use and where a method has a part: the least that is right for the motion."""
+"""Choice of the contact model, and of the methods that apply to it."""
 
 from __future__ import annotations
 
@@ -9,23 +9,22 @@ from microslip.pressures.hertz import HERTZ
 from microslip.solver.method import SHIPPED, Method
 
 STEPLESS = ("rigid", "dahl")
-"""Models whose march is an evaluation: no step of theirs is solved."""
+"""Models that evaluate a formula at every step, without a step solver."""
 
 
 def choose_model(problem: Problem, model: str = "auto") -> str:
-    """The model to use: the cheapest that is exact for the motion, or the one asked for.
+    """The name of the model to use: the cheapest exact one for "auto", else the requested one.
 
-    Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
-    where the contact is round besides: squares are never cheaper then, but for the static limit of
-    a contact that no symmetry halves, where the edge of what sticks cuts rings, and nothing is
-    marched.  The slider and
-    the rigid contact are never chosen: what they leave out can only be bounded by running the
-    rings, which then are the answer.
+    Rings are chosen if the traction depends on the radius only (translation at nu = 0), angular
+    modes for other motions of a round contact, and squares otherwise.  Squares are also chosen for
+    the static limit of a contact without symmetry, whose stick zone is not round.  The slider and
+    the rigid contact are never chosen: their model error can only be bounded by a run of the rings,
+    which then is the answer.
 
     Parameters
     ----------
     problem : problem.Problem
-        At velocity 0, unless a drive sets the velocity, the static limit is meant.
+        At velocity 0 without a drive the result is the static limit.
     model : str
         "auto", or a name in models.registry.MODELS.
 
@@ -49,10 +48,10 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
             why = f"only {name} could resolve it, and {refusal}"
             if problem.pressure == HERTZ and problem.poisson == 0.0:
                 raise InputError("motion", motion.name, why)
-            given: tuple[str, object] = ("poisson", problem.poisson)
+            argument: tuple[str, object] = ("poisson", problem.poisson)
             if problem.pressure != HERTZ:
-                given = ("pressure", problem.pressure.name)
-            raise InputError(*given, f"does not go with {motion.name}: {why}")
+                argument = ("pressure", problem.pressure.name)
+            raise InputError(*argument, f"does not go with {motion.name}: {why}")
         return name
     refusal = MODELS[model].refuses(problem)
     if refusal:
@@ -61,8 +60,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 
 
 def method_refusal(problem: Problem, model: str, method: Method) -> str:
-    """Why a method has no part in how a model (by name) computes a motion, as one line; "" if it
-    has."""
+    """Why a method does not apply to a model (by name) and a motion, as one line; "" if it does."""
     motion = problem.motion
     if method.run is not None:
         if model != method.model:
@@ -70,14 +68,14 @@ def method_refusal(problem: Problem, model: str, method: Method) -> str:
         if not motion.periodic:
             return "nothing oscillates"
         if motion.loads:
-            return "it knows a constant normal load alone"
-        return "it knows translations alone" if motion.rotates and not method.turns else ""
+            return "it supports a constant normal load only"
+        return "it supports translations only" if motion.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
     if motion.loads and (method.dress is not None or method.integrator.end < 1.0):
-        return "its steps know one friction bound"
+        return "its steps support a constant friction bound only"
     if model in STEPLESS:
-        return "no step of the model has to be solved"
+        return "the model has no steps to solve"
     if not motion.periodic and method.dress is None:
         return "nothing oscillates"
     if model == "cartesian" and method.dress is not None:

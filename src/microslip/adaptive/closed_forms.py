@@ -1,4 +1,4 @@
-"""Points where nothing has to be computed: what is known of them in closed form."""
+"""Results in closed form, which need no run."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 CLOSED_FORM = "closed-form"
 """Name of the model in results that are not marched."""
 QUADRATURE = 1e-7
-"""Error of Eqs 17 and 18 for another pressure, which may have kinks."""
+"""Error of Eqs 17 and 18 by quadrature, for pressures other than Hertz, which may have kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Error of closed forms by quadrature: of a whole motion, and of what follows from the record of an
-indenter's pressure."""
+"""Errors of closed forms by quadrature: over the motion of a sphere, and over the tabulated
+pressure of another indenter."""
 ROUNDING = 1e-12
+"""Error of closed forms without quadrature."""
 
 
 def known_exactly(request: Request) -> Result | None:
-    """The Result where nothing has to be computed, else None."""
+    """The Result in closed form, or None if there is none."""
     exact = no_vibration(request.problem)
     if exact is None and request.chosen and request.method == SHIPPED:
         exact = unless_imposed(request.problem, request.tolerance, request.cells, request.steps)
@@ -43,7 +44,7 @@ def no_vibration(problem: Problem) -> tuple | None:
 def unless_imposed(
     problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple | None:
-    """The `closed_form`; None where a resolution is imposed and the motion is marched."""
+    """The `closed_form`, or None if a resolution is imposed and the motion has to be marched."""
     if problem.velocity > 0.0 and not (cells is None and steps is None):
         return None
     return closed_form(problem, tolerance or 0.0)
@@ -59,14 +60,14 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     Parameters
     ----------
     problem : problem.Problem
-        As checked by the caller.
+        The problem, already checked.
     tolerance : float
         Absolute, on the friction.
 
     Returns
     -------
     tuple or None
-        mu, torque (None where there is none to tell) and the error.
+        mu, torque (None for oscillating motions) and the error.
     """
     motion, velocity, amplitude = problem.motion, problem.velocity, problem.size
     if not motion.periodic:
@@ -78,10 +79,10 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
             return float(mu), None, error if problem.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
-        known = None if motion.closed_form is not None else STATIC_LIMITS.get(motion.name)
-        if known is None or (problem.poisson > 0.0 and not known.any_poisson):
+        limit = None if motion.closed_form is not None else STATIC_LIMITS.get(motion.name)
+        if limit is None or (problem.poisson > 0.0 and not limit.any_poisson):
             return None
-        return _static(problem, known.function)
+        return _static(problem, limit.function)
     largest_drop = LARGEST_DROPS.get(motion.name)
     if largest_drop is not None and not (motion.rotates and problem.pressure != HERTZ):
         drop = largest_drop(velocity, amplitude)
@@ -91,27 +92,27 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
 
 
 def _steady_bore(problem: Problem) -> tuple | None:
-    """Eqs 17 and 18; 21 and 22 for a sphere."""
+    """(mu, torque, error) of a steady bore by Eqs 17 and 18, for a sphere Eqs 21 and 22."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
         return float(forward), float(torque), ROUNDING
     if not problem.pressure.is_round:
         return None
-    from microslip.theory import axisymmetric  # only now: integration takes a while to load
+    from microslip.theory import axisymmetric  # imported here because it loads slowly
 
     forward, torque = axisymmetric.bore_of(problem.pressure.bound, velocity)
     return float(forward), float(torque), QUADRATURE
 
 
 def _static(problem: Problem, of_sphere: Callable) -> tuple | None:
-    """The limit of vanishing velocity, if it has a closed form under this pressure."""
+    """(mu, None, error) of the static limit, or None without a closed form for the pressure."""
     motion, pressure, amplitude = problem.motion, problem.pressure, problem.size
     if pressure == HERTZ or (pressure.hertzian and not motion.rotates):
         return float(of_sphere(amplitude)), None, ROUNDING
     if not pressure.is_indenter:
         return None
-    from microslip.theory import indenters as limits  # only now, as above
+    from microslip.theory import indenters as limits  # imported here because it loads slowly
 
     if motion.rotates:
         mu = limits.static_bore(

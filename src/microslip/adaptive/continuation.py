@@ -1,9 +1,9 @@
-"""A run that found no periodic state, done again by safer steps.
+"""Second attempt at a run that did not converge: continuation in the velocity.
 
-The slower the forward motion, the less a period forgets its start: the smaller are the errors of
-the steps that add up to a wrong state, and the nearer a search has to start to where it is to end.
-So steps are solved tighter, and the periodic state is followed in the velocity: at a higher one the
-same point is easier, and from there on the velocity is lowered from state to state.
+The slower the forward motion, the longer its transients.  Then smaller errors of the steps add up
+to a wrong state, and a search needs a better initial guess.  So the second attempt solves the steps
+to a tighter tolerance.  It first finds the periodic state at a higher velocity, where that is
+easier, and then lowers the velocity, each run starting from the state before.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
-"""From one velocity to the next: where a search fails the factor is replaced by its root, until it
-is less than the second one."""
+"""Ratio of successive velocities.  After a failure it is replaced by its square root, down to
+SMALLEST_FACTOR."""
 MOST_STEPS = 12
-"""Times that the velocity is raised at most."""
+"""Largest number of increases of the velocity."""
 
 
 def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
-    """The run at a velocity; where it does not converge, one by safer steps.
+    """The run at a velocity, with a second attempt if it does not converge.
 
     Parameters
     ----------
@@ -31,40 +31,40 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     velocity : float
         Dimensionless.
     guess : run.Run or None
-        One to start near.
+        Initial guess.
 
     Returns
     -------
     run.Run
-        It counts the effort of all that was tried; its `retried` is 1 if there was more than one.
+        Its effort is that of all attempts; effort.retried is 1 after a second attempt.
     """
     first = run_at(velocity, guess, False)
     if first.converged:
         return first
-    tried = [first]
+    attempts = [first]
 
     def run(velocity: float, guess: Run | None) -> Run:
-        tried.append(run_at(velocity, guess, True))
-        return tried[-1]
+        attempts.append(run_at(velocity, guess, True))
+        return attempts[-1]
 
-    found = _from_above(run, velocity)
-    # a failure is best explained by the first one
-    shown = first if found is None else found
-    return replace(shown, effort=sum((one.effort for one in tried), Effort(retried=1)))
+    result = _from_above(run, velocity)
+    # the reason of the first failure explains most
+    result = first if result is None else result
+    return replace(result, effort=sum((one.effort for one in attempts), Effort(retried=1)))
 
 
 def _from_above(run: Callable[[float, Run | None], Run], velocity: float) -> Run | None:
-    """The Run at a velocity, if need be by way of higher ones; None if it is not to be had."""
+    """The Run at a velocity by continuation from higher velocities; None if that fails."""
     higher = (velocity * FACTOR**step for step in range(MOST_STEPS + 1))
     above, at = next(
-        ((found, v) for v in higher if (found := run(v, None)).converged), (None, velocity)
+        ((result, v) for v in higher if (result := run(v, None)).converged), (None, velocity)
     )
     factor = FACTOR
     while at > velocity and factor > SMALLEST_FACTOR:
         lower = max(at / factor, velocity)
-        found = run(lower, above)
-        if found.converged:
-            above, at = found, lower
+        result = run(lower, above)
+        if result.converged:
+            above, at = result, lower
         else:
             factor = factor**0.5
     return above if at == velocity else None

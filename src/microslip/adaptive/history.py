@@ -1,4 +1,4 @@
-"""Force histories from a given start, and steady traction fields."""
+"""Force histories from an initial state, and traction fields of steady motions."""
 
 from __future__ import annotations
 
@@ -28,27 +28,27 @@ ANGLES = 16
 STEPS = 256
 STEP_TOLERANCE = 1e-7
 LONGEST_TRAVEL = 1e6
-"""u_lim of a steady motion; ten are enough to see it settle."""
+"""Largest travel of a steady motion, in u_lim; it settles within about ten."""
 LONGEST_PHASE = 1e12
-"""Angle that a steady motion turns by, u_lim / a; floats tell its steps apart."""
+"""Largest rotation of a steady motion, in u_lim / a, at which its steps are distinct floats."""
 MOST_STEPS = 10 * LARGEST["steps"]
-"""Largest number of steps of a history, over all of its periods."""
+"""Largest number of steps of a history, all periods together."""
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Forces along a path, arrays of shape (steps + 1,), dimensionless.
+    """Forces along a path; dimensionless arrays of shape (steps + 1,).
 
     Attributes
     ----------
     phase : np.ndarray
-        omega t (steady motions: turned angle in u_lim / a).
+        omega t; for steady motions the angle of rotation in u_lim / a.
     displacement_forward : np.ndarray
-        Travel in u_lim.
+        Forward displacement in u_lim.
     force_forward, force_lateral : np.ndarray
-        Over mu F_z, in the direction of the motion they resist.
+        Forces on the flat over mu F_z, positive in the direction of motion of the sphere.
     torque : np.ndarray
-        Over its full-slip value.
+        Torque over its full-slip value.
     """
 
     phase: np.ndarray
@@ -72,16 +72,16 @@ def history(
     periods: int = 3,
     travel: float = 5.0,
 ) -> History:
-    """Forces from an initial state on: over periods, or over the travel of a steady motion.
+    """Compute the forces from an initial state, over periods or over the travel of a steady motion.
 
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, model
-        As for `microslip.solve`; velocity above 0.
+        See `microslip.solve`; the velocity is above 0.
     cells : int or None
         Rings, or squares along a side, at least 2.
     steps : int or None
-        Per period (steady motions: over the whole travel).
+        Steps in a period; for steady motions over the whole travel.
     start : str
         "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
         (rotational slip everywhere).
@@ -93,14 +93,14 @@ def history(
     Returns
     -------
     History
-        From the start on.
+        The forces at every step, the initial state included.
 
     Raises
     ------
     InputError
         For bad input; it names the argument.
     microslip.models.contact.StepFailure
-        Where a step stays unsolved.
+        If a step is not solved.
     """
     problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     motion, velocity = problem.motion, problem.velocity
@@ -151,24 +151,24 @@ def traction_field(
     Parameters
     ----------
     motion, velocity, amplitude, poisson
-        As for `microslip.solve`; motion: "continuous-bore".
+        See `microslip.solve`; the motion is "continuous-bore".
     cells : int or None
         Rings.
 
     Returns
     -------
     dict
-        - lateral_position, forward_position: of the points, over a.
-        - traction_lateral, traction_forward, bound: there, over mu F_z / a^2; the tractions are
-          those on the indenter, which oppose its motion, as in Eq 15.
-        - centre_lateral: where the instantaneous centre of rotation lies (Eq 14), over a.
+        - lateral_position, forward_position: positions of the points, over a.
+        - traction_lateral, traction_forward, bound: tractions on the indenter and friction bound at
+          these points, over mu F_z / a^2.  The tractions oppose the motion, as in Eq 15.
+        - centre_lateral: lateral position of the instantaneous centre of rotation (Eq 14), over a.
 
     Raises
     ------
     InputError
         For bad input, or another motion.
     microslip.models.contact.StepFailure
-        Where the march does not settle, or a step stays unsolved.
+        If no steady state is reached, or a step is not solved.
     """
     problem = checked_problem(motion, velocity, amplitude, poisson=poisson)
     velocity = problem.velocity
@@ -180,13 +180,12 @@ def traction_field(
         count("cells", cells, 2, most=LARGEST["cells"])
     contact = _contact(problem, "polar", cells)
     assert isinstance(contact, PolarContact)
-    found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
-    if not found.converged:
-        failure = (
-            f"no steady state: {found.distance:.1e} left, residual {found.solver_residual:.1e}"
-        )
+    run = steady_state(contact, problem, 1e-6, STEP_TOLERANCE)
+    if not run.converged:
+        failure = f"{run.reason}, residual {run.solver_residual:.1e}"
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
-    (forward,), (lateral,) = whole_disc(contact, -found.state[None])
+    assert run.state is not None  # as of every steady state
+    (forward,), (lateral,) = whole_disc(contact, -run.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {
         "lateral_position": lateral_position,

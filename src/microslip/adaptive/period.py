@@ -1,4 +1,4 @@
-"""A period of the state that repeats itself: forces, tractions and slip everywhere."""
+"""One period of the periodic state: forces, tractions and slip at all points."""
 
 from __future__ import annotations
 
@@ -25,54 +25,54 @@ from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
-"""Default resolution: mean force within 2e-3 of `solve` (tests/adaptive/test_period.py)."""
+"""Default resolution: the mean force agrees with `solve` to 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
-"""Largest distance from the periodic state, a force over mu F_z: small beside those 2e-3."""
+"""Largest distance from the periodic state, a force over mu F_z, far below those 2e-3."""
 ON_BOUND = 1.0 - 1e-4
-"""Share of the friction bound from which on a traction along the slip counts as slipping."""
+"""Traction along the slip, over the friction bound, from which a point counts as slipping."""
 MOST_ANGLES = 1000
 MOST_VALUES = 1e8
-"""Largest size of a field of a period: points times steps."""
+"""Largest number of values in a field: points times steps."""
 MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
-"""Signs of the forces half a period later."""
+"""Signs by which forward force, lateral force and torque change after half a period."""
 
 
 class NoPeriodicState(SolverError, ValueError):
-    """There are no tractions to show: the march broke off, as the message says."""
+    """The march failed, so that there are no tractions; the message contains the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class Period:
-    """A period of the state that repeats itself, on the whole disc; dimensionless.
+    """One period of the periodic state on the whole disc; dimensionless.
 
-    Where the normal load changes, F_z and a are those of the reference state, and points fill the
-    contact at its largest.
+    If the normal load oscillates, F_z and a belong to the reference state, and the points cover the
+    largest contact area.
 
     Attributes
     ----------
     phase : np.ndarray, shape (steps + 1,)
-        omega t, from turning point to turning point and back.
+        omega t over one period, from a turning point.
     forward, lateral, angle : np.ndarray, shape (steps + 1,)
-        Rigid displacement in u_lim, and in u_lim / a.
+        Rigid displacements in u_lim, and rotation in u_lim / a.
     force_forward, force_lateral, torque : np.ndarray, shape (steps + 1,)
-        Over mu F_z, and over the full-slip value of the torque.
+        Forces over mu F_z, and torque over its full-slip value.
     forward_position, lateral_position : np.ndarray, shape (points,)
-        Over a.
+        Positions of the points, over a.
     bound : np.ndarray, shape (points,)
-        Over mu F_z / a^2; where the normal load changes one at each phase, shape (steps + 1,
-        points), 0 for a point out of contact.
+        Friction bound over mu F_z / a^2.  If the normal load oscillates, its shape is (steps + 1,
+        points), and it is 0 at points out of contact.
     area : np.ndarray, shape (points,)
-        Over a^2, pi in all.
+        Areas of the points, over a^2; their sum is pi.
     traction_forward, traction_lateral : np.ndarray, shape (steps + 1, points)
-        On the flat, in the direction of the motion that they resist, over mu F_z / a^2.
+        Tractions on the flat, positive in the direction of motion of the sphere, over mu F_z / a^2.
     slip_forward, slip_lateral : np.ndarray, shape (steps + 1, points)
-        In the step that ends at this phase (first row: in the last step), in u_lim.
+        Slip in the step that ends at this phase, in u_lim; the first row repeats the last step.
     slips : np.ndarray of bool, shape (steps + 1, points)
-        Whether a point slips when the step ends.
+        Whether a point slips at the end of the step.
     mu_macro : float
-        Mean of force_forward over that of the load.
+        Mean of force_forward over the mean normal load.
     converged : bool
-        Whether this is the periodic state of this resolution.
+        Whether the state is periodic and every step is solved, at this resolution.
     reason : str
         Why it is not, else empty.
     """
@@ -114,26 +114,26 @@ def period(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson
-        As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0, a
-        pressure that depends on the radius alone.
+        See `microslip.solve`.  The motion oscillates, velocity and amplitude are above 0, and the
+        pressure depends on the radius only.
     cells : int
-        Rings, an even number.
+        Number of rings, even.
     angles : int
-        Points on half a ring, an even number.
+        Number of points on half a ring, even.
     steps : int
-        In a period, an even number.
+        Number of steps in a period, even.
 
     Returns
     -------
     Period
-        On the whole disc.
+        The forces, and the fields on the whole disc.
 
     Raises
     ------
     InputError
         For bad input; it names the argument.
     microslip.adaptive.period.NoPeriodicState
-        Where the march broke off.
+        If the march failed.
     """
     problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     velocity, amplitude = problem.velocity, problem.size
@@ -172,14 +172,14 @@ def period(
     forward_position, lateral_position, _, area = points_of(contact)
     bound = bounds.reshape(len(bounds), -1)
     if not contact.whole:
-        bound = np.tile(bound, 2)  # the other half has the same
+        bound = np.tile(bound, 2)  # the other half of the disc has the same bounds
     along = forward * slip_forward + lateral * slip_lateral > 0.0
-    moved = [np.array(part) for part in problem.displacement(phase)]
+    displacement = [np.array(part) for part in problem.displacement(phase)]
     return Period(
         phase,
-        moved[0],
-        moved[1],
-        moved[2],
+        displacement[0],
+        displacement[1],
+        displacement[2],
         forces[:, FORWARD],
         forces[:, LATERAL],
         forces[:, TORQUE] / problem.pressure.torque,
@@ -199,7 +199,7 @@ def period(
 
 
 def _slip(contact: PolarContact, path: Path, tractions: np.ndarray) -> np.ndarray:
-    """Rigid motion in every step less what the material follows, (steps, 2, M, N)."""
+    """Slip in every step, shape (steps, 2, M, N): rigid minus elastic displacement."""
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
     forward, lateral, angle = np.diff(path.positions, axis=0).T[..., None, None]
     rigid = (

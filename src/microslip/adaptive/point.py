@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.checks import (
-    checked_driven_problem,
-    checked_request,
-    refuse_bounds,
-    refuse_progress,
-)
-from microslip.adaptive.choice import choose_model, method_refusal
-from microslip.adaptive.request import TOLERANCE, Request, budget_for
+from microslip.adaptive.checks import checked_driven_problem
+from microslip.adaptive.request import TOLERANCE, Request, request_for
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.foundation.errors import InputError
@@ -22,8 +15,7 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.method import Method
-from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
+from microslip.solver.method_names import SHIPPED
 
 
 def solve(
@@ -52,23 +44,23 @@ def solve(
     Parameters
     ----------
     motion : str, Motion or Problem
-        "transverse", "bore", "continuous-bore" or another, with the numbers of its class, as in
-        "elliptic:forward=0.5".  A Problem takes the place of all arguments of the problem, up to
-        `poisson`.
+        "transverse", "bore", "continuous-bore" or another motion, with its parameters, such as
+        "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
     velocity : float or None
-        The paper's dimensionless group, in units of u_lim of the pressure; 0: the limit v -> 0.
-        None under a prescribed force, where it is the answer.  Values below 0, a contact that is
-        pushed back, are allowed for self-propelled motions; otherwise the friction at -v is that at
-        v with the opposite sign.
+        The paper's dimensionless velocity, in units of u_lim of the pressure; 0: the static limit.
+        None under a prescribed force, which determines the velocity.  Negative velocities are
+        allowed for self-propelled motions; for other motions the friction at -v is the opposite of
+        that at v.
     amplitude : float or None
-        The paper's dimensionless group, in the same units; None for steady motions.
+        The paper's dimensionless amplitude; None for steady motions.
     force : float or None
         Prescribed forward force divided by mu times the mean normal load.  Give either this or
         `velocity`.
     stiffness, mass, damping : float or None
-        Spring that pulls the body, its far end at the velocity, over mu F_z / u_lim; mass of the
-        body, over mu F_z / (u_lim omega^2); dashpot beside the spring, over mu F_z / (u_lim omega).
-        F_z is the normal load without oscillation.  A mass is allowed under a force, too.
+        Stiffness of a spring that pulls the body, over mu F_z / u_lim; its far end has the
+        velocity.  Mass of the body, over mu F_z / (u_lim omega^2), also under a force.  Damping of
+        a dashpot parallel to the spring, over mu F_z / (u_lim omega).  F_z is the normal load
+        without oscillation.
     contacts : str or None
         Contacts that the body rests on, such as "phase=0;phase=180".  Each has a load relative to
         the others (1), a phase in degrees (0) and a fraction of the amplitude (1).  Velocity and
@@ -81,12 +73,12 @@ def solve(
     model : str
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
-        Absolute, on mu_macro; under a force on the velocity, and relative where that is above 1.
-        None, with imposed cells and steps: any error is accepted.
+        Absolute tolerance of mu_macro, or under a force of the velocity (relative for a velocity
+        above 1).  None, with imposed cells and steps: any error is accepted.
     cells, steps : int or None
-        Impose a resolution instead of letting the tolerance choose; steps in a full period.
+        Imposed resolution, steps in a full period; None: chosen by the tolerance.
     method : str
-        One of solver.method_names.names(), to be compared with what ships.
+        "shipped", or another one of solver.method_names.names(), for comparison.
     most_work : float or None
         Largest number of step solves times unknowns, over all runs; None: MOST_WORK.
     time_limit : float or None
@@ -118,24 +110,16 @@ def solve(
         mass=mass,
         damping=damping,
     )
-    tolerance, cells, steps = checked_request(tolerance, cells, steps)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
-    refuse_progress(progress)
-    name = choose_model(problem, model)
-    how = method_named(method)
-    _refuse_method(problem, name, method, how)
-    request = Request(
-        problem=problem,
-        model=name,
-        chosen=model == "auto",
-        method=method,
-        how=how,
-        tolerance=tolerance,
+    request = request_for(
+        problem,
+        model,
+        tolerance,
         cells=cells,
         steps=steps,
-        budget=budget_for(name, most_work, time_limit),
+        method=method,
+        most_work=most_work,
+        time_limit=time_limit,
         progress=progress,
-        started=time.perf_counter(),
     )
     return _answer(request) if problem.velocity >= 0.0 else _answer_backward(request)
 
@@ -143,29 +127,19 @@ def solve(
 def _answer(request: Request) -> Result:
     if request.problem.drive is None:
         return solve_each(request)
-    from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
+    # imported only here, since it loads compiled code
+    from microslip.adaptive.driven_contact import refuse_request, solve_driven
 
-    refuse_pull(request)
-    return solve_pulled(request)
+    refuse_request(request)
+    return solve_driven(request)
 
 
 def _answer_backward(request: Request) -> Result:
-    """The answer at a velocity below 0: that of the mirror image at the opposite one."""
+    """The Result at a negative velocity, from the mirror image at the opposite velocity."""
     problem = request.problem
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
     answer = _answer(replace(request, problem=behind))
     return replace(answer, mean_velocity=-answer.mean_velocity, friction=-answer.friction)
-
-
-def _refuse_method(problem: Problem, model: str, method: str, how: Method) -> None:
-    """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
-    refuse_missing(method)
-    refusal = method_refusal(problem, model, how)
-    if not refusal and how.run is not None:
-        refusal = "it is one run, which cannot be refined"
-    if refusal:
-        name = problem.motion.name
-        raise InputError("method", method, f"does not apply to {name}, model {model}: {refusal}")
 
 
 KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
@@ -177,25 +151,25 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
-"""Points that need what is compiled, by the name of the kernels."""
+"""Points whose solution compiles the kernels, by the name of the kernels."""
 
 
 def warm_up(*kernels: str) -> None:
-    """Compile kernels of the automatic models (and leave them in Numba's cache).
+    """Compile kernels of the automatic models; Numba caches them.
 
-    Takes a while the first time.  Processes that compile different ones may do so side by side.
-    Squares are compiled when they are first used.
+    The first time takes up to a minute.  Several processes can compile different kernels at the
+    same time.  Squares are compiled at their first use.
 
     Parameters
     ----------
     kernels : str
-        Which: "rings", "angles" (of motions that turn, and Poisson's ratios above 0) or "pulled"
-        (contacts that a force or a spring pulls).  Rings and angles, unless any is named.
+        Names of kernels: "rings", "angles" (for rotations and Poisson's ratios above 0), "pulled"
+        (for a force or a spring).  Default: "rings" and "angles".
 
     Raises
     ------
     InputError
-        There are no such kernels.
+        For an unknown name.
     """
     kernels = kernels or ("rings", "angles")
     for name in kernels:

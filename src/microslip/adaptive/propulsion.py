@@ -1,47 +1,45 @@
-"""A self-propelled motion: its pull from stall force to no-load velocity, and the power it takes.
+"""Self-propelled motions: force from stall to the no-load velocity, power and efficiency.
 
-Signs.  The sphere is what moves; its forward velocity v is held, as of a body so heavy that it does
-not feel a single period.  Friction mu(v) is the mean forward force that it takes to move it, so
-that the contact pulls its own body forward by the force -mu(v), against a load that pulls it back:
+The sphere moves forward at a prescribed velocity v, like a body so heavy that its velocity stays
+constant during a period.  Friction mu(v) is the mean forward force that moves the sphere.  So the
+contact exerts the force -mu(v) on its own body, against a load that pulls the body back:
 
     force(v) = -mu(v)             power out = force v, the work on the load
     stall force = force(v -> 0)   the load that stops it
-    no-load velocity: force = 0   as fast as it gets without a load
+    no-load velocity: force = 0   the highest velocity, without a load
 
-Power in is the mean work of the oscillation on the contact: of whatever moves the sphere to and fro
-relative to its body.  An oscillating normal load adds nothing to it over a period.  Elastic energy
-returns, and so
+Power in is the mean power of the oscillation on the contact, supplied by the actuator between the
+sphere and its body.  An oscillating normal load does no work over a period.  Elastic energy is
+recovered, so
 
     power in - power out = dissipation >= 0.
 
-Friction never falls with the velocity (theory/bounds.py), so that the line falls from stall to no
-load, and two velocities at which the sign of friction is certain enclose the no-load velocity.
-A motion may drive backward as well: then velocities and forces of the line are below 0.  Where
-friction keeps a body at rest against a small force in either direction, the motion propels nothing.
+Friction never falls with the velocity (theory/bounds.py).  So the force falls from stall to the
+no-load velocity, and two velocities with friction of known sign enclose the no-load velocity.
+A motion can also propel the body backward: then the velocities and forces are negative.  If
+friction holds the body at rest against small forces in both directions, the motion propels nothing.
 
-A body without mass under a constant load is another case: it goes along with a forward oscillation,
-and nothing drives (see under_force.without_forward_motion).
+A body without mass under a constant load is not propelled: it follows the forward oscillation (see
+under_force.without_forward_motion).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
-from microslip.adaptive.checks import (
-    checked_propulsion,
-)
-from microslip.adaptive.moved import Marched, marched
-from microslip.adaptive.no_load import NoLoad, no_load
-from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.checks import checked_propulsion
+from microslip.adaptive.friction import Plan, plan_for
 from microslip.adaptive.request import TOLERANCE, Request, request_for
-from microslip.adaptive.vibration_power import mean_speed, power_as_force
+from microslip.adaptive.vibration_power import Answer, mean_speed
 from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
+from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
@@ -51,8 +49,90 @@ from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
+FACTOR = 4.0
+"""Factor between the velocities that are tried until the friction is positive."""
+FASTEST = 1e6
+MOST_HALVINGS = 60
+WIDENING = 1.5
+"""First distance from the no-load velocity, over the distance in which friction rises by its
+error."""
+MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
-"""The reason of a motion that propels nothing, with the lowest and the highest of these forces."""
+"""Reason of a motion that propels nothing, with the lowest and the highest of these forces."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PropulsionLine:
+    """Load and velocity of a self-propelled motion, from stall to no load.
+
+    All values except the time are dimensionless.  Forces are divided by mu times the mean normal
+    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the unit of
+    the motion's own velocity.  Every error estimate belongs to the field before it.
+
+    Attributes
+    ----------
+    motion, pressure, model : str
+        Names of the motion, the pressure distribution and the contact model.
+    amplitude, poisson, tolerance : float
+        Arguments of the request.
+    stall_force, stall_force_error : float
+        Load that stops the motion; 0 if it propels nothing, negative if it propels backward.
+    no_load_velocity, no_load_velocity_error : float
+        Velocity without a load, with the sign of the stall force.
+    holding_force_low, holding_force_low_error : float or None
+        Lowest force against which friction holds the body at rest; it is negative (backward).  None
+        if the motion propels the body.
+    holding_force_high, holding_force_high_error : float or None
+        Highest force against which friction holds the body at rest.
+    velocity, force, force_error : np.ndarray, shape (points,)
+        Equidistant velocities from 0 to the no-load velocity, and the force at each.  Empty if the
+        motion propels nothing.
+    power_out, power_out_error : np.ndarray, shape (points,)
+        Mean power on the load: force times velocity.
+    power_in, power_in_error : np.ndarray, shape (points,)
+        Mean power of the oscillation.
+    efficiency, efficiency_error : np.ndarray, shape (points,)
+        Power out over power in.
+    converged : bool
+        Whether the errors of forces, and of powers over the mean speed of the oscillation, are
+        within the tolerance.
+    reason : str
+        Why it is not converged, or why the motion propels nothing; else empty.
+    solve_time_s : float
+        Wall-clock time in seconds.
+    """
+
+    motion: str
+    pressure: str
+    model: str
+    amplitude: float
+    poisson: float
+    tolerance: float
+    stall_force: float
+    stall_force_error: float
+    no_load_velocity: float
+    no_load_velocity_error: float
+    holding_force_low: float | None = None
+    holding_force_low_error: float | None = None
+    holding_force_high: float | None = None
+    holding_force_high_error: float | None = None
+    velocity: np.ndarray
+    force: np.ndarray
+    force_error: np.ndarray
+    power_out: np.ndarray
+    power_out_error: np.ndarray
+    power_in: np.ndarray
+    power_in_error: np.ndarray
+    efficiency: np.ndarray
+    efficiency_error: np.ndarray
+    converged: bool
+    reason: str
+    solve_time_s: float
+
+    def to_dict(self) -> dict:
+        """The fields as a dict, with arrays as lists."""
+        fields = dict(vars(self))
+        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
 
 def propulsion(
@@ -68,33 +148,32 @@ def propulsion(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> PropulsionLine:
-    """The line from stall force to no-load velocity of a self-propelled motion.
+    """Compute force, power and efficiency of a self-propelled motion, from stall to no load.
 
     Parameters
     ----------
     motion : str
-        A motion that may drive by itself: "elliptic:..." or "normal:forward=1,..." without the
-        symmetry that keeps it from that.
+        A motion that can propel the contact: "elliptic:..." or "normal:forward=1,..." without the
+        symmetry that makes the mean force vanish.
     amplitude : float
-        As for `microslip.solve`, above 0.
+        Amplitude as in `microslip.solve`, above 0.
     pressure, poisson, model
-        As for `microslip.solve`.
+        See `microslip.solve`.
     tolerance : float
-        Absolute, on every force; on powers times the mean speed of the oscillation.
+        Absolute, on every force.  For powers it is multiplied by the mean speed of the oscillation.
     points : int
-        On the line, its ends included.
+        Number of velocities, including both ends.
     most_work : float or None
-        As for `microslip.solve`, at every velocity that is looked at.
+        Limit of the work at each velocity, see `microslip.solve`.
     time_limit : float or None
-        Seconds by the wall clock after which the line is given up, looked at between marches; None:
-        never.
+        Limit of the wall-clock time in seconds, checked between marches; None: no limit.
     progress : callable or None
-        As for `microslip.solve`.
+        See `microslip.solve`.
 
     Returns
     -------
     PropulsionLine
-        For signs and units see there and the docstring of this module.
+        The line; the head of this module defines the signs.
 
     Raises
     ------
@@ -103,104 +182,94 @@ def propulsion(
     """
     problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
     points = count("points", points, 2, most=MOST_POINTS)
-    bounds = {"most_work": most_work, "time_limit": time_limit}
-    request = request_for(problem, model, tolerance, **bounds, progress=progress)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    request = request_for(
+        problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
+    )
     return _line(_Contact(request), points)
 
 
-class Known(NamedTuple):
-    """The value of a quantity at a velocity, with its error estimate.
-
-    Attributes
-    ----------
-    value, error : float
-        The value, and its estimated error.
-    reason : str
-        Why it is not within the tolerance, else empty.
-    """
-
-    value: float
-    error: float
-    reason: str
-
-
 class _Contact:
-    """Friction and power of a motion at any velocity of at least 0; no run is done twice."""
+    """Friction and power of a motion at velocities of at least 0; every run is done once."""
 
     def __init__(self, request: Request):
         self.request, self.sign = request, 1
-        self.done: dict[object, Any] = {}
+        self.cache: dict[object, Any] = {}
         self.speed = mean_speed(request.problem)
 
     @property
     def drift(self) -> float:
-        """Drift in a radian at the velocity 1."""
+        """Forward displacement in a radian of phase at the velocity 1, in u_lim."""
         problem = self.request.problem
         return problem.unit_drift
 
     @property
     def first(self) -> float:
-        """Velocity as fast as the oscillation, where a search may begin."""
+        """Velocity equal to the mean speed of the oscillation: the start of a search."""
         return self.speed / self.drift
 
     def reversed(self) -> _Contact:
-        """The mirror image, which moves forward where this one moves back."""
+        """The mirror image of the contact across the forward direction."""
         problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
         image = _Contact(replace(self.request, problem=behind))
         image.sign = -self.sign
         return image
 
-    def friction(self, velocity: float) -> Known:
+    def friction(self, velocity: float) -> Answer:
         return self._certified(velocity, "mu")
 
-    def power(self, velocity: float) -> Known:
-        """Mean work of the oscillation: its error is that of a force times the mean speed."""
-        found = self._certified(velocity, "power")
-        return Known(self.speed * found.value, self.speed * found.error, found.reason)
+    def power(self, velocity: float) -> Answer:
+        """Mean power of the oscillation; its error is that of a force times the mean speed."""
+        answer = self._certified(velocity, "power")
+        return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
 
-    def _certified(self, velocity: float, quantity: str) -> Known:
-        if (velocity, quantity) not in self.done:
-            run, ladder, readings = self._marched(velocity)
+    def _certified(self, velocity: float, quantity: str) -> Answer:
+        if (velocity, quantity) not in self.cache:
+            run, ladder, readings = self._plan(velocity)
+            read: Callable[[Run], float] = attrgetter("mu")
             if quantity == "power":
-                run = power_as_force(run, self.speed)
-                readings = [power_as_force(other, self.speed) for other in readings]
-            found = refine(run, ladder, self.request.accuracy, readings)
-            reason, estimate = found.reason, found.value
-            if found.converged and estimate.error > self.request.accuracy:
+                read = self._power_as_force
+            answer = refine(run, ladder, self.request.accuracy, readings, read)
+            reason, estimate = answer.reason, answer.value
+            if answer.converged and estimate.error > self.request.accuracy:
                 reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.done[velocity, quantity] = Known(estimate.value, estimate.error, reason)
-        return self.done[velocity, quantity]
+            self.cache[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
+        return self.cache[velocity, quantity]
 
-    def _marched(self, velocity: float) -> Marched:
-        if velocity not in self.done:
+    def _power_as_force(self, run: Run) -> float:
+        return run.power / self.speed
+
+    def _plan(self, velocity: float) -> Plan:
+        if velocity not in self.cache:
             there = replace(
                 self.request,
                 problem=replace(self.request.problem, velocity=velocity),
                 budget=self.request.budget.renewed(),
             )
-            plan = marched(there)
+            plan = plan_for(there)
             readings = [_remembered(run) for run in plan.readings]
-            self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
-        return self.done[velocity]
+            self.cache[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
+        return self.cache[velocity]
 
 
 def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """A cache of `run` by resolution, so that two quantities share their runs."""
-    done = {}
+    """`run` with a cache by resolution, so that two quantities share their runs."""
+    cache = {}
 
     def again(resolution: Resolution, guess: Run | None) -> Run:
-        if resolution not in done:
-            done[resolution] = run(resolution, guess)
-        return done[resolution]
+        if resolution not in cache:
+            cache[resolution] = run(resolution, guess)
+        return cache[resolution]
 
     return again
 
 
 def _line(contact: _Contact, points: int) -> PropulsionLine:
-    """The PropulsionLine of the motion, forward or back."""
+    """The PropulsionLine of a motion that propels forward, backward, or not at all."""
     ahead = contact.friction(0.0)
     if ahead.value < 0.0 or not math.isfinite(ahead.value):
         return _moving(contact, points)
@@ -222,39 +291,42 @@ def _line(contact: _Contact, points: int) -> PropulsionLine:
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
-    found = NoLoad(0.0, spread, "")
-    known = Known(0.0, stall_error, "")
-    line = _record(contact, known, found, np.zeros(0), (converged, reason))
+    stall, fastest = Answer(0.0, stall_error, ""), Answer(0.0, spread, "")
+    line = _record(contact, stall, fastest, np.zeros(0), (converged, reason))
     return replace(line, **holding)
 
 
 def _moving(contact: _Contact, points: int) -> PropulsionLine:
-    """The PropulsionLine of a motion that drives in its own forward direction."""
-    stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
+    """The PropulsionLine of a motion that propels forward."""
+    stall, fastest = contact.friction(0.0), Answer(math.nan, math.inf, "")
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
-        found = no_load(contact.friction, contact.first)
-    if math.isfinite(found.velocity):
-        velocity = np.linspace(0.0, found.velocity, points)
-    reason = stall.reason or found.reason
-    return _record(contact, stall, found, velocity, (not reason, reason))
+        fastest = no_load(contact.friction, contact.first)
+    if math.isfinite(fastest.value):
+        velocity = np.linspace(0.0, fastest.value, points)
+    reason = stall.reason or fastest.reason
+    return _record(contact, stall, fastest, velocity, (not reason, reason))
 
 
 def _record(
-    contact: _Contact, stall: Known, found: NoLoad, velocity: np.ndarray, verdict: tuple[bool, str]
+    contact: _Contact,
+    stall: Answer,
+    fastest: Answer,
+    velocity: np.ndarray,
+    verdict: tuple[bool, str],
 ) -> PropulsionLine:
     request, sign = contact.request, contact.sign
     problem, (converged, reason) = request.problem, verdict
     friction = [contact.friction(v) for v in velocity]
     power = [contact.power(v) for v in velocity]
-    force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
-    power_in, power_in_error = (np.array([known[k] for known in power]) for k in (0, 1))
+    force, error = (np.array([one[k] for one in friction]) for k in (0, 1))
+    power_in, power_in_error = (np.array([one[k] for one in power]) for k in (0, 1))
     force, power_out = -force, -force * velocity * contact.drift
     power_out_error = error * velocity * contact.drift
     efficiency = power_out / power_in
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
-    reason = reason or next((known.reason for known in friction + power if known.reason), "")
+    reason = reason or next((one.reason for one in friction + power if one.reason), "")
     return PropulsionLine(
         motion=problem.motion.name,
         pressure=problem.pressure.name,
@@ -264,8 +336,8 @@ def _record(
         tolerance=request.accuracy,
         stall_force=sign * -stall.value + 0.0,
         stall_force_error=stall.error,
-        no_load_velocity=sign * found.velocity,
-        no_load_velocity_error=found.error,
+        no_load_velocity=sign * fastest.value,
+        no_load_velocity_error=fastest.error,
         velocity=sign * velocity + 0.0,  # no zero has a sign
         force=sign * force,
         force_error=error,
@@ -279,3 +351,74 @@ def _record(
         reason=reason,
         solve_time_s=request.seconds,
     )
+
+
+def no_load(friction: Callable, first: float) -> Answer:
+    """The velocity at which friction vanishes; 0 if friction is not negative at velocity 0.
+
+    Parameters
+    ----------
+    friction : callable
+        friction(velocity) -> Answer, for velocities of at least 0; 0 means the static limit.
+    first : float
+        First velocity to try, above 0.
+    """
+    still = friction(0.0)
+    high = first
+    while not (resists := friction(high)).value > 0.0:
+        high *= FACTOR
+        if resists.reason or high > FASTEST:
+            return Answer(math.nan, math.inf, resists.reason or "drives at any velocity")
+    velocity, slope = 0.0, (resists.value - still.value) / high
+    if still.value < 0.0:
+        velocity, slope, reason = _root(friction, (0.0, still.value), (high, resists.value))
+        if reason:
+            return Answer(math.nan, math.inf, reason)
+    below = _certain(friction, velocity, -1.0, slope)
+    above = _certain(friction, velocity, 1.0, slope)
+    if above is None or below is None:
+        return Answer(velocity, math.inf, "no velocity is known at which it resists for certain")
+    return Answer(velocity, max(above - velocity, velocity - below), "")
+
+
+def _root(
+    friction: Callable, low: tuple[float, float], high: tuple[float, float]
+) -> tuple[float, float, str]:
+    """A velocity at which friction is 0 within its error, the slope, and a reason for failure.
+
+    low, high: velocity and friction on both sides.  Secant steps and bisections alternate.
+    """
+    for turn in range(MOST_HALVINGS):
+        width, rise = high[0] - low[0], high[1] - low[1]
+        slope = rise / width
+        middle = low[0] - low[1] / slope if turn % 2 == 0 else 0.5 * (low[0] + high[0])
+        answer = friction(middle)
+        if answer.reason:
+            return middle, slope, answer.reason
+        if abs(answer.value) <= answer.error:
+            # one more secant step
+            return max(middle - answer.value / slope, 0.5 * middle), slope, ""
+        if answer.value < 0.0:
+            low = middle, answer.value
+        else:
+            high = middle, answer.value
+    return middle, slope, ""
+
+
+def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
+    """A velocity below or above another one at which friction certainly has the given sign.
+
+    Returns 0 if there is none below, None if there is none above.
+    """
+    step = WIDENING * friction(velocity).error / slope
+    if not math.isfinite(step):
+        return 0.0 if sign < 0.0 else None
+    for _ in range(MOST_WIDENINGS):
+        place = velocity + sign * step
+        if place <= 0.0:
+            return 0.0
+        answer = friction(place)
+        if sign * answer.value > answer.error:
+            return place
+        step *= 2.0
+    return 0.0 if sign < 0.0 else None

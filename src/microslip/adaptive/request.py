@@ -1,4 +1,4 @@
-"""The request for an answer at a point: problem, model, method, accuracy and budget."""
+"""A request: problem, model, method, tolerance and budget."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from microslip.adaptive.checks import checked_request, refuse_bounds, refuse_progress
-from microslip.adaptive.choice import choose_model
+from microslip.adaptive.checks import checked_request, refuse_bounds
+from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_text
+from microslip.motions.drive import Drive
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
 from microslip.solver.budget import Budget
-from microslip.solver.method import SHIPPED, Method
+from microslip.solver.method import Method
 
-if TYPE_CHECKING:  # they load compiled code, which a closed form does without
-    from microslip.estimate.ladder import Ladder
+if TYPE_CHECKING:  # it loads compiled code, which a closed form does not need
     from microslip.estimate.refine import Refined
 
 TOLERANCE = 1e-3
-"""Default tolerance, also that of runs without a tolerance."""
+"""Default tolerance, and accuracy of runs if no tolerance is requested."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Default largest work by model: more than ten times the work of the slowest points of the paper's
-range at the tolerance 1e-4."""
+"""Default limit of the work by model, step solves times unknowns: over ten times the work of the
+slowest points of the paper's range at a tolerance of 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ class Request:
     how : method.Method
         The method.
     tolerance : float or None
-        Absolute; None: any error is accepted.
+        Absolute tolerance; None: any error is accepted.
     cells, steps : int or None
         Imposed resolution; steps in a full period.
     budget : budget.Budget
@@ -60,39 +60,43 @@ class Request:
 
     problem: Problem
     model: str
-    chosen: bool = False
-    method: str = method_names.SHIPPED
-    how: Method = SHIPPED
+    chosen: bool
+    method: str
+    how: Method
     tolerance: float | None
-    cells: int | None = None
-    steps: int | None = None
+    cells: int | None
+    steps: int | None
     budget: Budget
-    progress: Callable | None = None
+    progress: Callable | None
     started: float
 
     @property
     def accuracy(self) -> float:
-        """Tolerance of the runs."""
+        """Tolerance to which the runs are refined."""
         return TOLERANCE if self.tolerance is None else self.tolerance
 
     @property
     def point(self) -> dict:
-        """Fields of a result.Result that repeat the request."""
+        """Fields of a result.Result that are taken from the request."""
         problem = self.problem
         several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
-        return several | {
-            "motion": problem.motion.name,
-            "pressure": problem.pressure.name,
-            "mean_velocity": Estimate(problem.velocity),
-            "amplitude": problem.amplitude,
-            "poisson": problem.poisson,
-            "tolerance": self.tolerance,
-            "method": self.method,
-        }
+        return (
+            several
+            | driven_by(problem.drive)
+            | {
+                "motion": problem.motion.name,
+                "pressure": problem.pressure.name,
+                "mean_velocity": Estimate(problem.velocity),
+                "amplitude": problem.amplitude,
+                "poisson": problem.poisson,
+                "tolerance": self.tolerance,
+                "method": self.method,
+            }
+        )
 
     @property
     def seconds(self) -> float:
-        """Seconds by the wall clock since the request."""
+        """Wall-clock time since the request, in seconds."""
         return time.perf_counter() - self.started
 
 
@@ -101,42 +105,58 @@ def request_for(
     model: str,
     tolerance: float | None,
     *,
+    cells: int | None = None,
+    steps: int | None = None,
+    method: str = method_names.SHIPPED,
     most_work: float | None = None,
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Request:
-    """Build the Request for a problem and a tolerance; its time limit starts now.
+    """Build the Request for a problem; its time limit starts now.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        The problem, already checked.
+    model, tolerance, cells, steps, method, most_work, time_limit, progress
+        See `microslip.solve`.
 
     Raises
     ------
     InputError
-        For a model that does not apply, no tolerance and bounds out of range; it names the
+        For an argument out of range, or a model or a method that does not apply.  It names the
         argument.
     """
     started = time.perf_counter()
-    if tolerance is None:
-        raise InputError("tolerance", tolerance, "allowed is a number")
-    accuracy, _, _ = checked_request(tolerance, None, None)
+    tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
-    refuse_progress(progress)
-    name = choose_model(problem, model)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
+    name, how = choose_model(problem, model), method_names.method_named(method)
+    lack = method_names.missing(method)
+    if lack:
+        raise InputError("method", method, lack)
+    refusal = method_refusal(problem, name, how)
+    if not refusal and how.run is not None:
+        refusal = "it is one run, which cannot be refined"
+    if refusal:
+        motion = problem.motion.name
+        raise InputError("method", method, f"does not apply to {motion}, model {name}: {refusal}")
+    if most_work is None:
+        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     return Request(
         problem=problem,
         model=name,
-        tolerance=accuracy,
-        budget=budget_for(name, most_work, time_limit),
+        chosen=model == "auto",
+        method=method,
+        how=how,
+        tolerance=tolerance,
+        cells=cells,
+        steps=steps,
+        budget=Budget(most_work, math.inf if time_limit is None else time_limit),
         progress=progress,
         started=started,
     )
-
-
-def budget_for(
-    model: str, most_work: float | None = None, time_limit: float | None = None
-) -> Budget:
-    """The budget.Budget of a point under a model, by its name; None: MOST_WORK, no time limit."""
-    if most_work is None:
-        most_work = MOST_WORK.get(model, MOST_WORK_OF_OTHERS)
-    return Budget(most_work, math.inf if time_limit is None else time_limit)
 
 
 def within_friction(problem: Problem, friction: Estimate) -> Estimate:
@@ -154,16 +174,25 @@ def within_friction(problem: Problem, friction: Estimate) -> Estimate:
     return replace(friction, value=min(max(friction.value, least), 1.0))
 
 
-def verdict(request: Request, refined: Refined, ladder: Ladder, largest: float | None) -> dict:
-    """Fields of a result.Result that say how an answer was found, and whether it is good enough.
+def driven_by(drive: Drive | None) -> dict:
+    """Fields of a result.Result that a drive sets."""
+    if drive is None:
+        return {}
+    if drive.force is None:
+        return {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
+    return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
-    largest: error that is accepted, None: any.
+
+def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
+    """Fields of a result.Result that describe convergence, resolution and effort.
+
+    largest: largest accepted error; None: any.
     """
     if request.budget.exhausted:
         refined = replace(refined, effort=request.budget.taken)
     error, by_source = refined.value.error, refined.value.by_source
     within = largest is None or error <= largest
-    reason = refined.reason
+    reason, ladder = refined.reason, refined.ladder
     if refined.converged and not within:
         where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
         reason = f"{where} is {error:.1e}, above the tolerance of {largest:g}"

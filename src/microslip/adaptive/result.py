@@ -1,4 +1,4 @@
-"""The answer for one point: friction, or the velocity under a force, with its error estimate."""
+"""The result at one point: friction, or the velocity under a force, with its error estimate."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from microslip.estimate.estimate import SOURCES, Estimate
 from microslip.solver.effort import Effort
 
 QUANTITIES = {"friction": "mu_macro", "mean_velocity": "velocity", "torque": "mu_torque"}
-"""Estimates of a Result, and their names in JSON and datasets."""
+"""Names of the estimates of a Result in JSON and datasets."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
-"""Sources of the error of the answer, and their names there."""
+"""Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
-"""Fields of an Effort, and their names there."""
+"""Names of the fields of an Effort in JSON and datasets."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +28,7 @@ class Result:
     Attributes
     ----------
     motion, pressure : str
-        The motion and the pressure, with their numbers.
+        The motion and the pressure, with their parameters.
     mean_velocity : Estimate
         Forward velocity, dimensionless as in the paper.  Its error is 0 where the velocity is
         prescribed.  The velocity is NaN if the contact runs away.
@@ -37,19 +37,19 @@ class Result:
     poisson : float
         Poisson's ratio.
     force, stiffness, mass, damping : float or None
-        The drive, see motions.drive; None where it has no such part.
+        Parameters of the drive, see motions.drive; None: the drive has no such part.
     contacts : str or None
-        Contacts of the body, see motions.body_contacts; None: one.
+        Contacts of the body, see motions.body_contacts; None: one contact.
     model : str
         Contact model that was used, or "closed-form".
     tolerance : float or None
-        Largest accepted error of the answer; for a velocity above 1 relative to it.  None: any
-        error is accepted.
+        Largest accepted error of the answer; relative for a velocity above 1.  None: any error is
+        accepted.
     method : str
-        "shipped", or another method to be compared with that.
+        "shipped", or the name of another method.
     friction : Estimate
-        Mean forward friction force over mu F_z; 1: the vibration does nothing.  Its error is 0
-        where the force is prescribed.
+        Mean forward friction force over mu F_z; 1 is friction without vibration.  Its error is 0
+        if the force is prescribed.
     torque : Estimate or None
         Torque over its value at zero forward velocity; None for oscillating motions.
     converged : bool
@@ -58,7 +58,7 @@ class Result:
     periodic : bool
         Whether every run found its periodic state.
     reason : str
-        Why it is not converged, in a line; else empty.
+        Why it is not converged, as one line; else empty.
     cells : int
         Rings, or squares across the contact, of the finest run.
     angles : int
@@ -69,8 +69,8 @@ class Result:
         Observed order of convergence of the last three levels; None where it is not known.  2 is
         expected; far below 1 the runs are too coarse for the error estimate.
     periods : float
-        Full periods marched in search of the periodic state in the longest run; 2.5 are five half
-        ones.
+        Full periods marched in the longest run until the periodic state was found; 2.5 means five
+        half periods.
     effort : Effort
         Effort of all runs.
     exhausted : str
@@ -109,7 +109,7 @@ class Result:
 
     @property
     def answer(self) -> Estimate:
-        """The quantity asked for: the velocity under a force, else the friction."""
+        """The requested quantity: the velocity under a force, else the friction."""
         return self.friction if self.force is None else self.mean_velocity
 
     @property
@@ -153,16 +153,16 @@ class Result:
 
     @staticmethod
     def from_dict(flat: Mapping[str, Any]) -> Result:
-        """The Result of what `to_dict` returned; what is missing is NaN, 0 or empty."""
+        """The Result from the output of `to_dict`; missing fields become NaN, 0 or empty."""
         errors = {source: _number(flat.get(name)) for source, name in ERRORS.items()}
-        known: dict[str, Any] = {"converged": False, "periodic": False, "solve_time_s": 0.0}
-        known |= {"amplitude": None, "tolerance": None, "model": "", "method": ""}
+        values: dict[str, Any] = {"converged": False, "periodic": False, "solve_time_s": 0.0}
+        values |= {"amplitude": None, "tolerance": None, "model": "", "method": ""}
         names = {one.name for one in fields(Result)} - {*QUANTITIES, "effort"}
-        known |= {name: flat[name] for name in names if flat.get(name) is not None}
+        values |= {name: flat[name] for name in names if flat.get(name) is not None}
         torque, driven = flat.get("mu_torque"), flat.get("force") is not None
         torque_error = {"resolution": _number(flat.get("mu_torque_error"))}
         return Result(
-            **known,
+            **values,
             friction=Estimate(_number(flat.get("mu_macro")), {} if driven else errors),
             mean_velocity=Estimate(_number(flat.get("velocity")), errors if driven else {}),
             torque=None if torque is None else Estimate(torque, torque_error),
@@ -171,12 +171,12 @@ class Result:
 
 
 def _number(value: float | None) -> float:
-    """A number of a plain dict, in which None stands for NaN."""
+    """The number, or NaN for None."""
     return math.nan if value is None else value
 
 
 def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
-    """The Result of a point, a dict of its fields, where (mu, torque, error) are known."""
+    """The Result with the fields `point` and the values (mu, torque, error) of a closed form."""
     (mu, torque, error), tolerance = values, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(

@@ -1,4 +1,4 @@
-"""Several contacts on one body: at a prescribed velocity each is solved by itself."""
+"""Friction at a prescribed velocity, of one contact or of several contacts on one body."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.solver.effort import Effort
 
 
 def solve_each(request: Request) -> Result:
-    """The certified friction of a contact, or the mean over the contacts of a body."""
+    """The Result of one contact, or the mean over the contacts of a body, solved separately."""
     problem = request.problem
     if not problem.parts:
         return _solve(request)
@@ -29,10 +29,10 @@ def solve_each(request: Request) -> Result:
     def most(name: str) -> Any:
         return max(getattr(result, name) for result in results)
 
-    marched = [result for result in results if result.model != CLOSED_FORM]
+    by_runs = [result for result in results if result.model != CLOSED_FORM]
     return Result(
         **request.point,
-        model=marched[0].model if marched else results[0].model,
+        model=by_runs[0].model if by_runs else results[0].model,
         friction=sum(means, Estimate(0.0)),
         converged=all(result.converged for result in results),
         periodic=all(result.periodic for result in results),
@@ -45,10 +45,12 @@ def solve_each(request: Request) -> Result:
 
 
 def _solve(request: Request) -> Result:
-    """The certified friction of one contact."""
+    """The Result of one contact: a closed form, else runs of a model."""
     exact = known_exactly(request)
     if exact is not None:
         return exact
-    from microslip.adaptive.moved import solve_moved  # only now: it loads compiled code
+    from microslip.adaptive.friction import (
+        solve_friction,
+    )  # imported here because it loads compiled code
 
-    return solve_moved(request)
+    return solve_friction(request)

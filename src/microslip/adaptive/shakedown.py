@@ -1,9 +1,9 @@
-"""How far a contact goes under a force that does not keep it moving, before it stands for good.
+"""Displacement of a vibrated contact under a constant force until it comes to rest (shakedown).
 
-Below the static limit a vibrated contact under a constant force settles: its slip regions relax,
-period by period, and what they carried goes over to the rest, until nothing slips forward any more
-(shakedown).  How far it goes until then depends on how it begins: here the force comes first, on a
-contact that nothing has pulled before, and then the vibration, at its mean position.
+Below the static limit a vibrated contact under a constant force settles.  Period by period its slip
+zones relax and transfer their load to the stick zone, until no point slips forward any more.  The
+displacement depends on the history.  Here the force is applied first, to a contact without
+tangential load; then the vibration starts at its mean position.
 """
 
 from __future__ import annotations
@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
+from operator import attrgetter
 from typing import Any
 
-from microslip.adaptive.checks import (
-    checked_problem,
-)
-from microslip.adaptive.pulled import STATIC_TOLERANCE, refuse_drive
+from microslip.adaptive.checks import checked_problem
+from microslip.adaptive.driven_contact import STATIC_TOLERANCE, refuse_drive
 from microslip.adaptive.request import Request, request_for, verdict
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
@@ -26,8 +25,8 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
-from microslip.estimate.ladder import Ladder, ladder_for
-from microslip.estimate.refine import Refined, refine, run_tolerance, unknown
+from microslip.estimate.ladder import ladder_for
+from microslip.estimate.refine import refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -35,55 +34,53 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run, Settings
 from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
-from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
-"""Tolerance of a run divided by that of a periodic state.  The residuals of its steps add up over
-all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
+"""Tolerance of a shakedown run, over that of a periodic state.  The residuals of its steps add up
+over all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity for which the steps are planned: at the static limit there would be none."""
+"""Velocity at which the time steps are chosen: at velocity 0 the ladder would have none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shakedown:
-    """How far a contact goes that comes to rest; dimensionless.
+    """Displacement of a contact until it comes to rest; dimensionless.
 
     Attributes
     ----------
     motion, pressure, model : str
-        What moves, how the load is spread, and the contact model.
+        Names of the motion, the pressure distribution and the contact model.
     amplitude, poisson, force, tolerance : float
-        As asked for.
+        Arguments of the request.
     threshold, threshold_error : float
-        Force from which on the contact does not come to rest, the static limit, over mu times the
-        mean normal load.
+        Static limit over mu times the mean normal load: from this force on the contact does not
+        come to rest.
     displacement, displacement_error : float
-        Forward, in u_lim, from where nothing pulled the contact until it stands; infinite where it
-        does not.  The error is the largest one, by estimate.
+        Forward displacement in u_lim from the position without a force to the position at rest,
+        with its estimated error; infinite if the contact does not come to rest.
     pushed : float
-        Part of the displacement that the force makes before anything oscillates.
+        Part of the displacement caused by the force before the oscillation starts.
     most_after : float
-        Periods after which nine tenths of the rest is gone.
+        Number of periods in which the contact covers nine tenths of the remaining displacement.
     converged : bool
-        Whether the contact comes to rest for certain and the error is within the tolerance.
+        Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
-        Why not, else empty.
+        Why it is not converged, else empty.
     error_resolution, error_periodicity, error_solver : float
-        Parts of the error: what may be left of the way is the periodicity.
+        Parts of the error by source; the periodicity bounds the displacement after the last period.
     cells, angles, steps_per_period : int
-        The finest used.
+        Resolution of the finest run.
     periods : float
-        The most that were marched.
+        Number of periods of the longest run.
     work : int
-        Unknowns times steps, of all runs.
+        Step solves times unknowns, of all runs.
     solve_time_s : float
-        Seconds by the wall clock.
+        Wall-clock time in seconds.
     """
 
     motion: str
@@ -112,7 +109,7 @@ class Shakedown:
     solve_time_s: float = 0.0
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict."""
+        """The fields as a dict."""
         return asdict(self)
 
 
@@ -129,28 +126,29 @@ def shakedown(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Shakedown:
-    """How far a vibrated contact goes under a constant force below the static limit.
+    """Compute the displacement of a vibrated contact under a force below the static limit.
 
     Parameters
     ----------
     motion : str
         A motion that exerts no forward force by itself, such as "transverse" or "bore".
     amplitude, pressure, poisson, model, most_work, time_limit, progress
-        As for `microslip.solve`.
+        See `microslip.solve`.
     force : float
         0 to below the static limit, over mu times the mean normal load; the contact has no mass.
     tolerance : float
-        Absolute, of the displacement, in u_lim.
+        Absolute tolerance of the displacement, in u_lim.
 
     Returns
     -------
     Shakedown
-        With an infinite displacement and the reason where the contact does not come to rest.
+        The displacement is infinite, with a reason, if the contact does not come to rest.
 
     Raises
     ------
     InputError
-        For bad input, and for motions of which no force is known to be held: it names the argument.
+        For an argument out of range, or a motion that exerts a forward force by itself.  It names
+        the argument.
     """
     if isinstance(motion, Problem) and isinstance(motion.drive, Force):
         if force is not None:
@@ -160,9 +158,12 @@ def shakedown(
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
     problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
-    bounds = {"most_work": most_work, "time_limit": time_limit}
-    request = request_for(problem, model, tolerance, **bounds, progress=progress)
+    request = request_for(
+        problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
+    )
     refuse_drive(problem, request.model)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
@@ -173,7 +174,7 @@ def shakedown(
 def _answer(request: Request, force: float) -> Shakedown:
     """The Shakedown under a force."""
     threshold, error, away = _threshold(request, force)
-    known: dict[str, Any] = {
+    request_fields: dict[str, Any] = {
         "motion": request.problem.motion.name,
         "pressure": request.problem.pressure.name,
         "model": request.model,
@@ -185,18 +186,18 @@ def _answer(request: Request, force: float) -> Shakedown:
         "threshold_error": error,
     }
     if not away and force >= threshold - error:
-        away = f"the error of the threshold, {error:.1e}, does not tell whether the force is below"
+        away = f"the error of the threshold, {error:.1e}, leaves open whether the force is below"
         if force > threshold + error:
             away = f"drifts on for ever: the force is above the threshold, {threshold:.4g}"
     if away:
         endless: dict[str, Any] = {"displacement": math.inf, "displacement_error": math.inf}
         endless |= {"converged": False, "reason": away, "solve_time_s": request.seconds}
-        return Shakedown(**known, **endless)
-    return Shakedown(**known, **_certified(request, force))
+        return Shakedown(**request_fields, **endless)
+    return Shakedown(**request_fields, **_certified(request, force))
 
 
 def _threshold(request: Request, force: float) -> tuple[float, float, str]:
-    """The static limit, its error, and why the contact does not even come near it, or ""."""
+    """The static limit, its error, and why the contact runs away ("" if it does not)."""
     problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):
@@ -209,44 +210,34 @@ def _threshold(request: Request, force: float) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Fields of a Shakedown that comes of runs."""
+    """Fields of a Shakedown that follow from its runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
-    try:  # the plan depends on where slip starts, and finds it again by itself
-        found_focus(planned, request.model, request.budget, request.progress)
-    except Spent as spent:
-        return _fields(request, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
     ladder = ladder_for(planned, request.model, request.accuracy)
-    # the coarsest run, too, must hold the force
+    # the contact of the coarsest run, too, must come to rest
     ladder = replace(ladder, start=2 * ladder.start)
-    left = RUN_SHARE * run_tolerance(request.accuracy)
+    remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
-    finest: dict[Resolution, ShakedownRun] = {}
+    runs: dict[Resolution, ShakedownRun] = {}
 
     def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
         if request.progress is not None:
             request.progress(resolution)
-        finest[resolution] = run_to_rest(
-            request.problem, force, request.model, resolution, left, settings
+        runs[resolution] = run_to_rest(
+            request.problem, force, request.model, resolution, remaining, settings
         )
-        return finest[resolution]
+        return runs[resolution]
 
-    refined = refine(run, ladder, request.accuracy, (), "displacement")
-    last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
-    return _fields(request, refined, ladder, last)
-
-
-def _fields(
-    request: Request, refined: Refined, ladder: Ladder, last: ShakedownRun | None
-) -> dict[str, Any]:
-    """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
-    said = verdict(request, refined, ladder, request.tolerance)
-    taken = {field.name for field in fields(Shakedown)}
-    errors = {ERRORS[source]: error for source, error in refined.value.by_source.items()}
-    return {name: value for name, value in said.items() if name in taken} | {
-        **errors,
+    refined = refine(run, ladder, request.accuracy, read=attrgetter("displacement"))
+    answer = verdict(request, refined, request.tolerance)
+    names = {field.name for field in fields(Shakedown)}
+    result = {name: value for name, value in answer.items() if name in names}
+    result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
+    result |= {
         "work": refined.effort.work,
         "displacement": refined.value.value,
         "displacement_error": refined.value.error,
-        "pushed": math.nan if last is None else last.pushed,
-        "most_after": math.nan if last is None else last.most_after,
     }
+    if runs:
+        finest = runs[max(runs, key=lambda one: (one.cells, one.steps))]
+        result |= {"pushed": finest.pushed, "most_after": finest.most_after}
+    return result

@@ -1,6 +1,6 @@
-"""One run of any model by any method at one resolution, and what a step costs at any size.
+"""Single runs of a model and a method at one resolution, and the cost of a step.
 
-For comparing methods: a trial is not certified, its number is as good as its resolution.
+They serve to compare methods.  The result of a trial has no error estimate of the resolution.
 """
 
 from __future__ import annotations
@@ -26,12 +26,13 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
+"""Tolerance of a step whose cost is measured, a force over mu F_z."""
 
 
 def applies(
     motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
 ) -> str:
-    """Why a model or a method, by name, cannot be tried on a motion, as one line; "" if it can."""
+    """Why a model or a method (by name) does not apply to a motion, as one line; "" if it does."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
@@ -53,34 +54,34 @@ def run_trial(
     tolerance: float,
     pressure: str = HERTZ.name,
 ) -> dict:
-    """One run; nothing in it depends on the machine.
+    """Run a model with a method at one resolution.  The result does not depend on the machine.
 
     Parameters
     ----------
     motion, velocity, amplitude, poisson, model, method, pressure
-        As for `microslip.solve`.
+        See `microslip.solve`.
     cells : int
         Rings, or squares along a side.
     angles : int
-        On half the disc.
+        Number of angular points on half the disc.
     steps : int
-        In a full period.
+        Number of steps in a full period.
     tolerance : float
-        On the periodic state, a force over mu F_z.
+        Tolerance of the periodic state, a force over mu F_z.
 
     Returns
     -------
     dict
-        - mu_macro: NaN if there is none.
-        - converged, reason: whether the state is periodic, and why not.
-        - periods: full ones, of all searches together.
+        - mu_macro: mean friction; NaN if the run failed.
+        - converged, reason: whether the state is periodic, else why it is not.
+        - periods: number of full periods in all searches.
         - iterations, solves, unknowns: of the step solver.
-        - work, effort: solves x unknowns, and iterations x unknowns.
+        - work, effort: solves times unknowns, and iterations times unknowns.
 
     Raises
     ------
     ValueError
-        Where `applies` says why.
+        If the model or the method does not apply.
     """
     refusal = applies(motion, poisson, model, method, pressure)
     if refusal:
@@ -107,8 +108,8 @@ def run_trial(
 def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
     """Measure the cost of a backward Euler step.
 
-    The path is half a period from full slip, transverse for rings, else bore, each step solved to
-    1e-6 of mu F_z.  Times are the median of three marches, after one that compiles.
+    The path is half a period from full slip, of the transverse motion for rings, else of the bore.
+    Times are the median of three marches, after a first march that compiles.
 
     Parameters
     ----------
@@ -122,8 +123,8 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
     Returns
     -------
     dict
-        unknowns; iterations and seconds (CPU) a step; memory, the bytes that the arrays of the
-        contact take.
+        unknowns; iterations and seconds of CPU time per step; memory: size of the arrays of the
+        contact in bytes.
     """
     problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0, poisson)
     contact = build_contact(problem, model, Resolution(cells, angles, steps))
@@ -144,7 +145,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
 
 
 def held_bytes(thing: object) -> int:
-    """Bytes in the arrays that an object holds, whatever holds them, each counted once."""
+    """Size in bytes of all arrays that an object refers to, directly or not, each counted once."""
     sizes, stack = {}, [thing]
     while stack:
         one = stack.pop()

@@ -1,4 +1,4 @@
-"""Stick area over a period: shares of the contact area, right and left, and single moments."""
+"""Stick area over a period: fractions of the contact area, and tractions at single moments."""
 
 from __future__ import annotations
 
@@ -19,52 +19,53 @@ def patches(
     angles: int = 16,
     steps: int = 64,
 ) -> dict:
-    """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
+    """Compute stick and slip over one period of the periodic state, for figures and checks.
 
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, cells, angles, steps
-        As for `microslip.period`; a motion whose second half of a period mirrors the first.
+        See `microslip.period`; the second half of the period mirrors the first.
 
     Returns
     -------
     dict
-        - mu_macro, converged, reason: as for `microslip.solve`.
-        - phase, stick_right, stick_left: over the steps, the last two the shares of the contact's
-          area that stick at positive and at negative lateral positions.
-        - least_stick: of both together.
-        - forward_position, lateral_position, area: of the points, units a and a^2; the areas add up
-          to pi.
-        - moment_phase: phases of single moments: when least of the contact sticks in a stroke, the
-          middle of the stroke, and the same of the stroke back.
-        - moment_share, shape (moments, points): size of the traction over the bound there, 1 where
-          a point slips.
+        - mu_macro, converged, reason: see `microslip.solve`.
+        - phase, shape (steps + 1,).
+        - stick_right, stick_left, shape (steps + 1,): fractions of the contact area that stick at
+          positive and at negative lateral positions.
+        - least_stick: smallest sum of both over the period.
+        - forward_position, lateral_position, area: positions and areas of the points, in units of a
+          and a^2; the sum of the areas is pi.
+        - moment_phase: phases of four moments: the smallest stick area in a stroke, the middle of
+          the stroke, and both half a period later.
+        - moment_share, shape (moments, points): traction over the friction bound at these moments,
+          1 at points that slip.
 
     Raises
     ------
     InputError
-        As for `microslip.period`.
+        See `microslip.period`.
     """
     sizes = {"cells": cells, "angles": angles, "steps": steps}
-    found = period(motion, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
-    sticking = np.where(found.slips, 0.0, found.area / np.pi)
-    right = found.lateral_position > 0.0
+    cycle = period(motion, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
+    sticking = np.where(cycle.slips, 0.0, cycle.area / np.pi)
+    right = cycle.lateral_position > 0.0
     # the first row repeats the last one: a stroke is rows 1 to half
     half = steps // 2
     least = 1 + int(np.argmin(sticking[1 : half + 1].sum(axis=1)))
     moments = np.array([least, half // 2, least + half, half // 2 + half])
-    share = np.hypot(found.traction_forward, found.traction_lateral)[moments] / found.bound
+    share = np.hypot(cycle.traction_forward, cycle.traction_lateral)[moments] / cycle.bound
     return {
-        "mu_macro": found.mu_macro,
-        "converged": found.converged,
-        "reason": found.reason,
-        "phase": found.phase,
+        "mu_macro": cycle.mu_macro,
+        "converged": cycle.converged,
+        "reason": cycle.reason,
+        "phase": cycle.phase,
         "stick_right": sticking[:, right].sum(axis=1),
         "stick_left": sticking[:, ~right].sum(axis=1),
         "least_stick": sticking[1:].sum(axis=1).min(),
-        "forward_position": found.forward_position,
-        "lateral_position": found.lateral_position,
-        "area": found.area,
-        "moment_phase": found.phase[moments],
-        "moment_share": np.where(found.slips[moments], 1.0, np.minimum(share, 1.0)),
+        "forward_position": cycle.forward_position,
+        "lateral_position": cycle.lateral_position,
+        "area": cycle.area,
+        "moment_phase": cycle.phase[moments],
+        "moment_share": np.where(cycle.slips[moments], 1.0, np.minimum(share, 1.0)),
     }

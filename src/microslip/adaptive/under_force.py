@@ -1,8 +1,7 @@
-"""A contact that a force pulls: where it stays, where it runs away, and near which velocity it is.
+"""A contact under a constant force: whether it rests or runs away, and its approximate velocity.
 
-Friction never falls with the velocity (theory/bounds.py), whatever pulls.  So a constant force at
-which the contact could stay where it is, is one at which it comes to rest, and a force above one at
-which it moves, moves it faster.
+Friction never falls with the velocity (theory/bounds.py).  So the contact comes to rest under every
+force under which it could rest, and a larger force moves it faster.
 """
 
 from __future__ import annotations
@@ -21,22 +20,21 @@ from microslip.motions.problem import Problem
 from microslip.theory import paper
 
 RETURNED = 1e-12
-"""Share of the amplitude below which a forward oscillation is rounding."""
+"""Forward oscillation, over the amplitude, that counts as rounding."""
 
 CLOSEST_FORCE = 0.9999
-"""Force from which on up to 1 no run finds a velocity: tried with transverse oscillation, runs are
-solved up to 0.9998, where a period already takes the contact 200 amplitudes further."""
+"""Smallest force, up to 1, for which no velocity is computed.  With a transverse oscillation, runs
+converged up to 0.9998, where the contact already advances 200 amplitudes in a period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
-"""Largest force on a steady rotation: rounding of its friction, 1.1e-16, moves the velocity by
-1.1e-16 / (2 (1 - force)) of itself, which reaches the stated error (1e-9) here."""
+"""Largest force on a steady rotation.  The friction is rounded to 1.1e-16, which changes the
+velocity by the fraction 1.1e-16 / (2 (1 - force)): the stated error of 1e-9 at this force."""
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Drift in a radian at which the search for a velocity begins, what it is multiplied by from one
-run to the next, and where it ends."""
+"""Search for the velocity: first drift in a radian, factor between two runs, and the bounds."""
 FLATTEST = 1e-6
-"""Smallest slope of friction taken from a pair of runs, over the relative rise of the velocity."""
+"""Smallest accepted rise of friction between two runs, over the relative rise of velocity."""
 HALVINGS = 2
-"""Halvings of the last interval of velocities, on a logarithmic scale."""
+"""Bisections of the last interval of velocities, on a logarithmic scale."""
 
 
 def drive_of(problem: Problem) -> Drive:
@@ -53,16 +51,16 @@ def force_of(problem: Problem) -> float:
 
 
 def without_forward_motion(problem: Problem) -> Problem:
-    """The problem, its contact not oscillating along the direction of the force.
+    """The problem without the oscillation along the direction of the force.
 
-    A constant force on a contact without mass keeps the forward force of the contact constant: the
-    contact goes along with a forward oscillation, as if there were none.
+    Under a constant force the forward force of a contact without mass is constant.  Then the body
+    follows the forward oscillation, which has no effect.
     """
     return replace(problem, follows=True) if oscillates_forward(problem) else problem
 
 
 def oscillates_forward(problem: Problem) -> bool:
-    """Whether the oscillation alone moves the contact, or one of several, forward and back."""
+    """Whether the oscillation of the contact, or of one of several, has a forward component."""
     if problem.parts:
         return any(oscillates_forward(part.problem) for part in problem.parts)
     forward = problem.oscillation(LOOP)[0]
@@ -70,7 +68,7 @@ def oscillates_forward(problem: Problem) -> bool:
 
 
 def oscillates(problem: Problem) -> bool:
-    """Whether anything oscillates at all."""
+    """Whether the motion or the normal load of any contact oscillates."""
     if problem.parts:
         return any(oscillates(part.problem) for part in problem.parts)
     parts = problem.oscillation(LOOP)
@@ -81,9 +79,8 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    Then the contact does not tell a constant force from a velocity that vanishes, and moves from
-    the static limit on.  So do several contacts on a body, each of which exerts none, or has an
-    opposite that exerts the same force the other way.
+    Then the threshold of motion equals the static limit.  Several contacts are even if each of them
+    is, or if each has an opposite contact that exerts the opposite force.
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
@@ -106,27 +103,27 @@ def least_load(problem: Problem) -> float:
 
 
 def runs_away(problem: Problem) -> str:
-    """Why there is no mean velocity, as one line; "" if there is one."""
+    """Why the contact has no mean velocity, as one line; "" if it has one."""
     force = force_of(problem)
     if abs(force) >= 1.0:
-        return f"runs away: the force {force:g} is all that friction can hold, or more"
+        return f"runs away: the force {force:g} is at least full friction"
     least = least_load(problem)
     if drive_of(problem).mass == 0.0 and force >= least:
         return (
-            f"runs away: without mass it slides off where the normal load is least, {least:.3g} of "
-            "its mean, and friction holds no more than that"
+            f"runs away: without mass it slides off at the least normal load, {least:.3g} of the "
+            "mean, which limits the friction"
         )
     return ""
 
 
 def refuse_nearly_full(problem: Problem) -> None:
-    """Raise InputError for a force so close to full friction that no velocity can be computed."""
+    """Raise InputError if the force is too close to full friction for a velocity to be computed."""
     steady, force = not problem.motion.periodic, force_of(problem)
     closest = CLOSEST_STEADY_FORCE if steady else CLOSEST_FORCE
     if not closest <= abs(force) < 1.0 or runs_away(problem):
         return
-    held = problem if drive_of(problem).mass else without_forward_motion(problem)
-    if not steady and not oscillates(held):
+    at_rest = problem if drive_of(problem).mass else without_forward_motion(problem)
+    if not steady and not oscillates(at_rest):
         return
     allowed = (
         f"allowed is a force below {closest:.9g} (of mu times the mean normal load), or from 1 "
@@ -138,41 +135,43 @@ def refuse_nearly_full(problem: Problem) -> None:
 
 
 def refuse_steady(problem: Problem) -> None:
-    """Raise InputError where the velocity of a steady motion under a force has no closed form."""
+    """Raise InputError if the velocity of a steady motion under a force has no closed form."""
     if problem.motion.name != "continuous-bore" or not problem.pressure.is_round:
         force, place = force_of(problem), f"{problem.motion.name} under {problem.pressure.name}"
         raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
 
 
 def steady_velocity(problem: Problem) -> float:
-    """Velocity of a steady rotation under its force, 0 to below 1, from Eqs 17 and 21; it is for
-    the caller to `refuse_steady` before."""
-    from scipy.optimize import brentq  # only now: these take a while to load
+    """Velocity of a steady rotation under a force from 0 to below 1, by Eqs 17 and 21.
+
+    The caller checks the problem by `refuse_steady` first.
+    """
+    from scipy.optimize import brentq  # imported here because it loads slowly
 
     from microslip.theory import axisymmetric
 
     pressure, force = problem.pressure, force_of(problem)
 
-    def left(velocity: float) -> float:
+    def imbalance(velocity: float) -> float:
         if pressure.hertzian:
             return float(paper.bore_forward(velocity)) - force
         return float(axisymmetric.bore_of(pressure.bound, velocity)[0]) - force
 
     high = 1.0
-    while left(high) < 0.0 and high < FASTEST:
+    while imbalance(high) < 0.0 and high < FASTEST:
         high *= FACTOR
-    return float(brentq(left, 0.0, high, xtol=1e-14, rtol=1e-14)) if force > 0.0 else 0.0
+    return float(brentq(imbalance, 0.0, high, xtol=1e-14, rtol=1e-14)) if force > 0.0 else 0.0
 
 
 class Near(NamedTuple):
-    """A place on the curve of friction over velocity.
+    """An approximate point on the curve of friction over velocity.
 
     Attributes
     ----------
     velocity : float
         In the unit of the motion.
     slope : float
-        About how much friction rises there with the velocity.
+        Approximate derivative of the friction with respect to the velocity.
     """
 
     velocity: float
@@ -180,19 +179,18 @@ class Near(NamedTuple):
 
 
 def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
-    """Velocity at which a contact that is moved resists with a force, to a factor of about two.
+    """Velocity at which the friction equals a force, to within a factor of about two.
 
-    It is where the search for a contact that is pulled begins, and what its path is cut into steps
-    for: no answer depends on it but by its error.
+    The search for the velocity under the force starts from it, and it sets the time steps.
 
     Parameters
     ----------
     problem : problem.Problem
-        What is moved.
+        The problem at a prescribed velocity.
     force : float
         Over mu times the mean normal load.
     friction_at : callable
-        friction_at(velocity) -> mean forward force likewise, NaN where there is none.
+        friction_at(velocity) -> mean forward force in the same unit; NaN if a run failed.
     """
     unit = problem.unit_drift
 

@@ -1,4 +1,4 @@
-"""The whole disc from the half of it that the polar model resolves."""
+"""Points and fields on the whole disc, from the half disc of the polar model."""
 
 from __future__ import annotations
 
@@ -8,22 +8,24 @@ from microslip.models.polar.contact import PolarContact
 
 
 def points_of(contact: PolarContact) -> list[np.ndarray]:
-    """Forward and lateral positions, bounds and areas on the whole disc, (points,) each."""
+    """Forward and lateral positions, bounds and areas on the whole disc, shape (points,) each."""
     forward, lateral = contact.forward_position, contact.lateral_position
     if contact.whole:
         every = (np.broadcast_to(part, forward.shape) for part in (contact.bound, contact.weight))
         return [part.ravel() for part in (forward, lateral, *every)]
     other = lateral if contact.rotates else -lateral
     bound = np.broadcast_to(contact.bound, forward.shape)
-    # a point of the half that is resolved stands for its image, too
+    # the weight of a point of the half disc includes its image
     area = np.broadcast_to(0.5 * contact.weight, forward.shape)
     parts = (forward, -forward), (lateral, other), (bound, bound), (area, area)
     return [np.concatenate([half.ravel() for half in part]) for part in parts]
 
 
 def whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, (n, points) each: the
-    other half is the mirror image across the lateral axis, of a translation the same turned round.
+    """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, each (n, points).
+
+    For a rotation the other half is the mirror image across the lateral axis; for a translation it
+    is the first half rotated by 180 degrees.
     """
     flat = field.reshape(len(field), 2, -1)
     if contact.whole:

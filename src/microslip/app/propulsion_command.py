@@ -10,7 +10,7 @@ from microslip.foundation import spec
 from microslip.foundation.number_text import aligned, number_text
 
 if TYPE_CHECKING:
-    from microslip.adaptive.propulsion_line import PropulsionLine
+    from microslip.adaptive.propulsion import PropulsionLine
 
 OPTIONS = {
     "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),

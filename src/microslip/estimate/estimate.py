@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 SOURCES = ("resolution", "periodicity", "solver", "model")
-"""Sources of error, see refine.py."""
+"""Sources of the error of an estimate, see refine.py."""
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,10 @@ class Estimate:
     Attributes
     ----------
     value : float
-        The quantity, in a unit of its own.
+        The quantity.
     by_source : mapping of float
-        Its error estimate by source, one of SOURCES, in the same unit; a source that is left out
-        adds nothing.
+        Its error estimate by source, one of SOURCES, in the unit of the value.  A missing source
+        means no error.
     """
 
     value: float

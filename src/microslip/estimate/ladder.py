@@ -1,14 +1,13 @@
 """Levels of resolution of a problem: cells, angles and time steps refined together.
 
-One number, the level n, is the number of cells and sets angles and steps in proportion.  The error
-then has one leading term C / n^2, which three levels n/4, n/2 and n reveal.  LEVELS are two
-interleaved series of doublings, so that the next level costs little more and shares its coarser
-levels with the level after it.
+The level n is the number of cells; angles and steps are proportional to it.  So the error has one
+leading term C / n^2, which the three levels n/4, n/2 and n determine.  LEVELS are two interleaved
+series of doublings.  So the next level costs little more, and the level after it shares the coarser
+levels.
 
-The first level follows from the tolerance and from what moves.  Whatever else a point needs is in
-its mesh and its path: rings are graded towards the slip front by the stick radius and the width of
-the slip layer (discretise.focus_strength).  The number of time steps grows with the stroke and with
-the natural frequency of a mass, by the square root that a method of second order asks for.
+The first level depends on the tolerance and on the motion.  Mesh and path adapt to the rest: rings
+are graded towards the slip front (discretise.focus_strength), and the number of time steps
+grows with the square root of the stroke, and with the natural frequency of a mass.
 """
 
 from __future__ import annotations
@@ -36,29 +35,28 @@ tolerance: extrapolated errors fall with about the third power of the level."""
 LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
 LOOSEST = 1e-2
-"""Tolerance that Ladder.start is for: looser ones need no coarser levels."""
+"""Tolerance of Ladder.start; looser tolerances use the same level."""
 FEWEST = 4
 """Smallest number of angles, and of steps."""
 MOST_MASS_STEPS = 8192
-"""Steps in half a period that a mass may need: runs over 24 rings take a few seconds then."""
+"""Largest number of steps in half a period for a mass; runs over 24 rings then take seconds."""
 
 
 @dataclass(frozen=True)
 class Ladder:
-    """Resolutions of a problem, one a level.
+    """Resolution of a problem at each level.
 
     Attributes
     ----------
     start : int
         First level at the tolerance LOOSEST.
     angles, steps : float
-        Angles on half the disc and time steps in half a period, per level; 0 for a number that is
-        not refined.
+        Angles on half the disc, and time steps in half a period, divided by the level; 0: not
+        refined.
     cells : float
-        Rings, or squares across the contact, per level; 0 likewise.
+        Rings, or squares across the contact, divided by the level; 0: not refined.
     imposed : bool
-        Whether the user imposes a resolution: then it is that of the level `start`, and no other
-        level is the answer.
+        Whether the user imposes a resolution, which then belongs to the level `start`.
     """
 
     start: int
@@ -70,7 +68,9 @@ class Ladder:
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
-        fewest = 1 if self.imposed and self.steps else FEWEST  # halves of imposed steps must differ
+        fewest = (
+            1 if self.imposed and self.steps else FEWEST
+        )  # so that half of the imposed steps differ
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
             angles=max(angles, FEWEST) if self.angles else 1,
@@ -78,8 +78,10 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Levels to try one after the other at a tolerance, up to one level above the first of
-        SMALLEST_TOLERANCE."""
+        """Finest levels to try one after the other at a tolerance.
+
+        The last one is one level above the first level of SMALLEST_TOLERANCE.
+        """
         if self.imposed:
             return (self.start,)
         first, last = self._first(tolerance), self._first(SMALLEST_TOLERANCE)
@@ -94,15 +96,16 @@ class Ladder:
 
 
 class Kind(NamedTuple):
-    """How finely problems of a kind begin, calibrated by
-    `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
+    """First level and steps of a kind of problem.
+
+    Calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
 
     Attributes
     ----------
     start : int
         Ladder.start.
     steps : int
-        Time steps in half a period, per level, for a stroke of u_lim; 0: nothing is marched.
+        Time steps in half a period, divided by the level, for a stroke of u_lim; 0: no march.
     """
 
     start: int
@@ -110,24 +113,24 @@ class Kind(NamedTuple):
 
 
 TRANSLATION = Kind(start=12, steps=2)
-"""Next to full sliding, levels that start lower can agree by chance, see
+"""Translations.  Close to full sliding, coarser levels can agree by chance, see
 tests/adaptive/test_near_full_sliding.py."""
 LOOP = TRANSLATION._replace(start=16)
-"""Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
+"""Slow motions without half-period symmetry, whose two halves have different slip fronts."""
 ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
-"""Rotation together with a lateral motion, whose slip fronts differ likewise."""
+"""Rotations with a lateral motion, whose slip fronts differ between the halves of a period."""
 LOAD = Kind(start=24, steps=4)
-"""Oscillating normal load: the edge of the contact sweeps over the rings, one after the other."""
+"""Oscillating normal loads: the edge of the contact sweeps over the rings."""
 SQUARES = ROTATION._replace(start=LOAD.start)
 """Squares across the diameter, which are not graded towards the slip front."""
 STATIC = Kind(start=32, steps=0)
 """Static limit at turning points: slip fronts cut through the cells."""
 COUPLED = LOAD._replace(start=STATIC.start)
-"""Several contacts that work against each other: which one slides changes within a step."""
+"""Several interacting contacts: which of them slides can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
-"""Angles on half the disc, per level.  A rotation turns the slip about a centre within the contact.
-Under a translation tractions depend on the angle a little, and only at nu > 0.  Calibrated by
+"""Angles on half the disc, divided by the level.  A rotation has its centre in the contact.  In a
+translation tractions depend on the angle weakly, and only at nu > 0.  Calibrated by
 `benchmarks/angles.py`."""
 
 
@@ -138,17 +141,17 @@ def ladder_for(
     cells: int | None = None,
     steps: int | None = None,
 ) -> Ladder:
-    """Ladder of a problem.
+    """The Ladder of a problem.
 
     Parameters
     ----------
     problem : problem.Problem
-        As checked by the caller.
+        The problem, already checked.
     model : str
         Name in models.registry.MODELS.
     tolerance : float
-        Absolute, on the friction: it chooses the steps of imposed cells, and the cells of imposed
-        steps.
+        Absolute tolerance of the friction.  It sets the steps if only the cells are imposed, and
+        the cells if only the steps are.
     cells, steps : int or None
         Imposed resolution; steps in a full period.
     """
@@ -185,8 +188,10 @@ def _kind(problem: Problem, model: str) -> Kind:
 
 
 def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
-    """The ladder whose start is an imposed resolution; a number that is not imposed is as fine as
-    the tolerance or the imposed cells need."""
+    """The ladder with an imposed resolution at its start.
+
+    A number that is not imposed follows from the tolerance or the imposed cells.
+    """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:
         return ladder
@@ -201,56 +206,47 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 
 
 def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
-    """Raise InputError where a tolerance would have to choose the cells or the steps."""
+    """Raise InputError if the cells or the steps are refined and not imposed."""
     numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
-    free = " and ".join(name for name, refined, given in numbers if refined and given is None)
+    free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
     if free:
         allowed = f"allowed is a number, or none where {free} are imposed"
         raise InputError("tolerance", None, allowed)
 
 
-class WithMass(NamedTuple):
-    """Ladder whose steps suit a mass.
-
-    Attributes
-    ----------
-    ladder : Ladder
-        With shorter steps.
-    reason : str
-        Why its steps do not resolve the natural oscillation of the mass; "" if they do.
-    """
-
-    ladder: Ladder
-    reason: str
-
-
 def with_mass(
     ladder: Ladder, problem: Problem, contact: Contact, mass: float, tolerance: float
-) -> WithMass:
+) -> tuple[Ladder, str]:
     """Shorten the steps of a ladder until they resolve a mass that oscillates against the contact.
 
-    The natural frequency is sqrt(stiffness / mass), with the stiffness of the contact (1.5 for a
-    sphere at nu = 0), over that of the vibration.  Runs whose steps are longer than a radian of it
-    may agree with each other, but not with the solution; a radian does for the tolerance LOOSEST.
-    A spring that is s times stiffer than the contact raises the frequency by the square root of s,
-    and lowers the force of the oscillation on the contact by s.  An error of second order then asks
-    for the same steps.
+    The natural frequency over that of the vibration is sqrt(stiffness / mass), with the stiffness
+    of the contact (1.5 for a sphere at nu = 0).  Runs with steps longer than a radian of this
+    oscillation can agree with each other, but not with the solution.  A radian suffices for the
+    tolerance LOOSEST.  A spring s times stiffer than the contact raises the frequency by the square
+    root of s and lowers the force of this oscillation on the contact by s.  For a method of second
+    order the two effects cancel.
 
     Parameters
     ----------
     ladder : Ladder
-        As for a contact without mass.
+        Ladder for the contact without mass.
     problem : problem.Problem
-        Its path is cut into steps.
+        The problem.
     contact : contact.Contact
         A contact of the problem at any resolution.
     mass : float
-        Over mu F_z / (u_lim omega^2).
+        Mass over mu F_z / (u_lim omega^2).
     tolerance : float
-        Absolute, on the answer.
+        Absolute tolerance of the answer.
+
+    Returns
+    -------
+    tuple of Ladder and str
+        The ladder, and why its steps do not resolve the natural oscillation of the mass; "" if they
+        do.
     """
     if mass == 0.0 or not ladder.steps:
-        return WithMass(ladder, "")
+        return ladder, ""
     count = ladder.resolution(ladder.levels(tolerance)[0]).steps
     frequency = (contact.stiffness / mass) ** 0.5
     longest = float(np.diff(path_of(problem, contact, count).phase).max())
@@ -258,10 +254,9 @@ def with_mass(
     finer = max(longest * frequency / allowed, 1.0)
     if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
         most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)
-        return WithMass(
-            ladder,
+        return ladder, (
             f"mass too small for {most} steps in a period: it oscillates against the contact at"
             f" {frequency:.3g} times the frequency of the vibration, which takes"
-            f" {2 * int(np.ceil(finer * count))}",
+            f" {2 * int(np.ceil(finer * count))}"
         )
-    return WithMass(replace(ladder, steps=finer * ladder.steps), "")
+    return replace(ladder, steps=finer * ladder.steps), ""

@@ -3,10 +3,10 @@
 The error estimate has four sources:
 
 - resolution: Richardson extrapolation of the runs at n/4, n/2 and n, see richardson.py;
-- periodicity, solver: the value is a combination sum c_i f_i of runs, so that their distances d_i
-  from the periodic state and the residuals r_i of their steps add up to sum |c_i| (d_i + r_i);
-- model: a pressure that is known on a grid alone stands for several pressures; the finest run is
-  repeated under each of them, and the differences are an error that no refinement removes.
+- periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
+  periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
+- model: a pressure measured on a grid can be interpolated in several ways.  The finest run is
+  repeated for each of them; refinement does not reduce the differences.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 RUN_SHARE = 0.05
-"""Largest distance of a run from its periodic state over the tolerance: by the weights of the runs
-that takes up to a twelfth of the tolerance."""
+"""Largest distance of a run from its periodic state, over the tolerance.  Times the weights of the
+runs this contributes at most a twelfth of the tolerance."""
 READING_SAFETY = 2.5
-"""Safety factor on the differences between readings of a pressure: a peak or an edge between the
-points of a grid shows in none of them in full."""
+"""Safety factor on the differences between readings of a pressure.  No reading resolves a peak or
+an edge between the points of a grid."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate by resolution over the tolerance: three levels that agree by chance are
-off by up to this.  Calibrated by benchmarks/error_estimates.py."""
+"""Smallest error estimate by resolution over the tolerance, for three levels that agree by chance.
+Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
-"""Largest share of the tolerance in the other errors for which finer runs are worth their cost."""
+"""Largest sum of the other errors over the tolerance for which finer runs are worth their cost."""
 
 
 @dataclass(frozen=True)
@@ -49,19 +49,21 @@ class Refined:
     torque : Estimate
         The torque, extrapolated.
     order : float
-        Observed order of convergence, NaN where it is not known.
+        Observed order of convergence; NaN: unknown.
     finest : discretise.Resolution
         Resolution of the finest run.
     periods : float
-        Periods of the longest run.
+        Number of periods of the longest run.
     effort : Effort
-        Sum over all runs.
+        Effort of all runs.
     converged : bool
         Whether every run found its periodic state and nothing ended the refinement early.
     reason : str
         Why it is not converged, else empty.
     periodic : bool
         Whether every run found its periodic state.
+    ladder : ladder.Ladder
+        Ladder of the runs.
     """
 
     value: Estimate
@@ -73,16 +75,17 @@ class Refined:
     converged: bool
     reason: str
     periodic: bool
+    ladder: Ladder
 
 
 UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
-"""The estimate of a quantity of which nothing is known."""
+"""The estimate of an unknown quantity."""
 
 
-def unknown(reason: str) -> Refined:
+def unknown(reason: str, ladder: Ladder) -> Refined:
     """Result of a problem whose budget ended before the first estimate."""
     none = Resolution(0, 0, 0)
-    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False)
+    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False, ladder)
 
 
 def run_tolerance(tolerance: float) -> float:
@@ -95,7 +98,7 @@ def refine(
     ladder: Ladder,
     tolerance: float,
     readings: Sequence[Callable] = (),
-    quantity: str = "mu",
+    read: Callable[[Run], float] = attrgetter("mu"),
 ) -> Refined:
     """Refine until the estimated error is within the tolerance.
 
@@ -106,19 +109,19 @@ def refine(
     ladder : Ladder
         Resolutions of the problem.
     tolerance : float
-        Absolute, on the quantity.
+        Absolute tolerance of the quantity.
     readings : sequence of callable
-        Like `run`, under other pressures that the same numbers may stand for.
-    quantity : str
-        Attribute of a run.Run: "mu", or "velocity" under a prescribed force.
+        Like `run`, for other pressures that agree with the same measured values.
+    read : callable
+        read(run) -> the quantity.
 
     Returns
     -------
     Refined
-        Not converged, with the reason, where a run did not converge, the levels end, or a run
-        raised budget.Spent: then it is the estimate before that run, NaN if there was none.
+        Not converged if a run did not converge, the finest level is not enough, or a run raised
+        budget.Spent.  In the last case it is the estimate before that run, NaN without one.
     """
-    levels = _Levels(run, ladder, readings, quantity)
+    levels = _Levels(run, ladder, readings, read)
     goal, refined = tolerance, None
     try:
         for level in ladder.levels(tolerance):
@@ -134,31 +137,30 @@ def refine(
             goal = tolerance - rest
     except Spent as spent:
         if refined is None:
-            return unknown(f"{spent}: no error is known yet")
+            return unknown(f"{spent}: no error is known yet", ladder)
         reason = f"{spent}: the error is still {refined.value.error:.1e}"
         return replace(refined, converged=False, reason=reason)
-    assert refined is not None  # as no ladder is without levels
+    assert refined is not None  # every ladder has a level
     reason = f"the error is still {refined.value.error:.1e} with {refined.finest.cells} cells"
     return replace(refined, converged=False, reason=reason)
 
 
 class _Levels:
-    """Runs by level, each done once."""
+    """The runs at each level, each done once."""
 
     def __init__(
         self,
         run: Callable[[Resolution, Run | None], Run],
         ladder: Ladder,
         readings: Sequence[Callable],
-        quantity: str,
+        read: Callable[[Run], float],
     ):
-        self.run, self.ladder, self.readings = run, ladder, readings
-        self.read = attrgetter(quantity)
+        self.run, self.ladder, self.readings, self.read = run, ladder, readings, read
         self.runs: dict[int, Run] = {}
         self.other_runs: dict[tuple[int, int], Run] = {}
 
     def at(self, level: int) -> Run:
-        """Run at a level, started from the one at half the level."""
+        """Run at a level; its initial guess is the run at half the level."""
         if level not in self.runs:
             guess = self.runs.get(level // 2)
             self.runs[level] = self.run(self.ladder.resolution(level), guess)
@@ -173,30 +175,31 @@ class _Levels:
         return [self.other_runs[number, level] for number in range(len(self.readings))]
 
     def estimate(self, level: int, goal: float) -> Refined:
-        """The Refined with the given finest level, for a resolution error up to the goal."""
+        """The Refined with a finest level; goal: the largest accepted error by resolution."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
         value, errors, order = self._of(self.read, goal, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), goal, three, others)
         base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
-        # a run that did not converge has a weight of at least 1: the levels may agree by chance
+        # a run that did not converge has a weight of at least 1, since levels can agree by chance
         weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
         common = {
             "periodicity": _weighted(weights, [one.distance for one in three]),
             "solver": _weighted(weights, [one.solver_residual for one in three]),
         }
-        done = [*self.runs.values(), *self.other_runs.values()]
-        reason = next((one.reason for one in done if not one.converged), "")
+        runs = [*self.runs.values(), *self.other_runs.values()]
+        reason = next((one.reason for one in runs if not one.converged), "")
         return Refined(
             value=Estimate(value, errors | common),
             torque=Estimate(torque, torque_errors | common),
             order=order,
             finest=self.ladder.resolution(level),
-            periods=max(one.periods for one in done),
-            effort=sum((one.effort for one in done), Effort()),
+            periods=max(one.periods for one in runs),
+            effort=sum((one.effort for one in runs), Effort()),
             converged=not reason,
             reason=reason,
             periodic=not reason,
+            ladder=self.ladder,
         )
 
     def _of(
@@ -217,6 +220,5 @@ class _Levels:
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Sum of errors times weights; a run without weight does not count, even if its error is
-    infinite."""
+    """Sum of errors times weights, without the terms of weight 0, whose error can be infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

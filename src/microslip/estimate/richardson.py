@@ -1,13 +1,13 @@
-"""Richardson extrapolation of three levels, each twice as fine as the one before, and its error.
+"""Richardson extrapolation of three levels, each twice as fine as the last, with its error.
 
-The methods are of second order, f(n) = f + C / n^2 + ..., so that the last difference D of two
-levels leaves a correction of D / 3.  The difference before it predicts a quarter of its own value
-for the last one.  The larger of both is used in the error estimate: two coarse levels may agree by
+The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
+levels gives the correction D / 3.  The difference of the first two levels, divided by four, is
+another estimate of D.  The error estimate uses the larger one: two coarse levels can agree by
 chance, but then the third one differs.  This is the grid convergence index of Roache (J. Fluids
-Eng. 116, 1994), with the difference of both pairs of levels.
+Eng. 116, 1994) with both pairs of levels.
 
-Where the differences fall more slowly than at first order, the levels are too coarse for an order
-to show.  Then D replaces D / 3, as for a method of first order.
+If the differences fall more slowly than at first order, the levels are too coarse.  Then D replaces
+D / 3, as for a method of first order.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 ORDER = 2
 """Order of convergence of rings, angles and time steps."""
 SAFETY = 1.5
-"""Safety factor on the correction.  2 covers convergence of first order; calibrated by
+"""Safety factor on the correction.  A factor of 2 would cover first order.  Calibrated by
 `benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 
 
@@ -38,10 +38,10 @@ class Extrapolation(NamedTuple):
     error : float
         Its estimated error.
     difference : float
-        Difference of the last two levels, or a quarter of the one before if that is larger: covers
-        the error of the last level at first order.
+        Difference of the last two levels, or a quarter of the difference before if that is larger.
+        It covers the error of the last level at first order.
     order : float
-        Observed order of convergence: infinite where the last two levels agree, NaN where all do.
+        Observed order of convergence; infinite if the last two levels agree, NaN if all do.
     """
 
     value: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from microslip.adaptive.point import Result
-from microslip.adaptive.vibration_power import VibrationPower, vibration_power
+from microslip.adaptive.vibration_power import Answer, vibration_power
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
@@ -41,7 +41,7 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
     return fields | {"power": Power(power, power_error, reason, total, total_error, *energy)}
 
 
-def _vibration_power(request: Request, answer: Result) -> VibrationPower:
+def _vibration_power(request: Request, answer: Result) -> Answer:
     """The dimensionless power of an oscillation."""
     if answer.force is not None or answer.stiffness is not None:
         raise InputError("power", True, "allowed where a speed alone pulls")

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from microslip.adaptive.checks import checked_propulsion
-from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, propulsion
-from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, PropulsionLine, propulsion
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
@@ -62,7 +61,7 @@ class RealPropulsionLine:
     efficiency, efficiency_error : np.ndarray, shape (points,)
         Power out over power in, dimensionless.
     converged, reason : bool, str
-        As in propulsion_line.PropulsionLine.
+        As in propulsion.PropulsionLine.
     warnings, not_checked : tuple of str
         Where an assumption of the theory breaks, and what was not looked at.
     """

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from microslip.adaptive.checks import LARGEST_FORCE
+from microslip.adaptive.driven_contact import GAP_MARGIN
 from microslip.adaptive.point import Result
-from microslip.adaptive.pulled import GAP_MARGIN
 from microslip.estimate.estimate import Estimate
 from microslip.foundation.arguments import LARGEST_BODY, SMALLEST_STIFFNESS, SMALLEST_TOLERANCE
 from microslip.si.request import Request

@@ -1,4 +1,4 @@
-"""The contacts of a body that is moved at a given velocity, one by one: none feels the others."""
+"""One run of a body on several contacts at a prescribed velocity; contacts do not interact."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from microslip.solver.run import AS_SHIPPED, Run, Settings
 from microslip.solver.simulate import simulate
 
 LEAD_STEPS = 8
-"""Steps in which a contact is marched to the phase at which the others begin."""
+"""Number of steps in the march of a contact to the start of the path of the body."""
 LEAD_TOLERANCE = 1e-6
 """Tolerance of each of the LEAD_STEPS, a force over mu F_z."""
 
@@ -29,8 +29,8 @@ def simulate_each(
     """Run a model at one resolution, for one contact or for a body on several contacts.
 
     The arguments are those of simulate.simulate.  The forces of a body are the means of the forces
-    of its contacts, weighted with their loads.  Its state has the tractions of all contacts side by
-    side, at the start of the body's path.  The state is None if one contact has none.
+    of its contacts, weighted by their loads.  Its state holds the tractions of all contacts side by
+    side at the start of the path of the body, or None if a contact has no state.
     """
     if not problem.parts:
         return simulate(problem, model, resolution, tolerance, settings=settings)
@@ -44,7 +44,7 @@ def simulate_each(
     state = None
     if all(run.state is not None for run in runs):
         states = [
-            _led(problem, part, model, resolution, (alone[part.problem], settings))
+            _tractions_at_start(problem, part, model, resolution, (alone[part.problem], settings))
             for part in problem.parts
         ]
         state = np.concatenate(states, axis=-1)
@@ -67,21 +67,28 @@ def simulate_each(
     )
 
 
-def _led(
-    problem: Problem, part: Part, model: str, resolution: Resolution, found: tuple[Run, Settings]
+def _tractions_at_start(
+    problem: Problem,
+    part: Part,
+    model: str,
+    resolution: Resolution,
+    result: tuple[Run, Settings],
 ) -> np.ndarray:
-    """Tractions of a contact where the path of the body begins, from its own periodic state."""
-    run, settings = found
+    """Tractions of a contact at the start of the path of the body.
+
+    result: its own run, which gives its periodic state, and the settings.
+    """
+    run, settings = result
     alone = part.problem
     contact = settings.contact(alone, model, resolution)
     first = alone.start
     ahead = problem.start + part.lead - first
     interval = np.pi if alone.half_period_mirror else 2.0 * np.pi
-    times, left = divmod(ahead, interval)
+    times, remainder = divmod(ahead, interval)
     state = run.state
     assert state is not None  # as simulate_each looks first
-    if left > 0.0:
-        phases = first + np.linspace(0.0, left, LEAD_STEPS + 1)
+    if remainder > 0.0:
+        phases = first + np.linspace(0.0, remainder, LEAD_STEPS + 1)
         path = make_path(alone.displacement, phases, depth=alone.depth)
         state = contact.march(path, state, LEAD_TOLERANCE).state
     mirrored = alone.half_period_mirror and int(times) % 2 == 1

@@ -1,8 +1,8 @@
-"""Budget of a point: a bound on its work, the same on every machine, and one on its time.
+"""Budget of a point: limits of its work and of its wall-clock time.
 
-Both are looked at after every march, wherever it belongs to, so that no search, however long, goes
-on beyond them.  What the work allows follows from the request alone; what the time allows depends
-on the machine, and no such answer may be kept as that of the request.
+Both limits are checked after every march, so that they also end long searches.  The limit of the
+work gives the same result on every machine.  The time limit does not, so a result that reached it
+is not stored.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from microslip.solver.effort import Effort
 
 
 class Spent(SolverError):
-    """A point has taken what it may.  The message says of what, for the reason of its result."""
+    """The budget of a point is exceeded.  The message names the limit and becomes the reason."""
 
 
 class Budget:
-    """Counts what the marches of a point take.
+    """Counter of the effort of a point, with limits.
 
     Parameters
     ----------
     most_work : float
-        Step solves times unknowns, of all marches together.
+        Largest number of step solves times unknowns, over all marches.
     time_limit : float
-        Seconds by the wall clock, from now on.
+        Largest wall-clock time in seconds, from the construction on.
 
     Attributes
     ----------
     taken : Effort
         Effort so far.
     exhausted : str
-        The bound that was crossed: "work" or "time", empty as long as none is.
+        Name of the exceeded limit, "work" or "time", or empty.
     """
 
     def __init__(self, most_work: float = math.inf, time_limit: float = math.inf):
@@ -45,17 +45,17 @@ class Budget:
         self._began = time.monotonic()
 
     def renewed(self) -> Budget:
-        """Another one that may take as much work; the time goes on from where this one began."""
+        """A new Budget with the same limit of work; its time started with this one."""
         other = Budget(self.most_work, self.time_limit)
         other._began = self._began
         return other
 
     def metered(self, contact: Contact) -> Contact:
-        """The contact, whose marches count from now on."""
+        """The contact with marches that are counted."""
         return _Metered(contact, self)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count a march; raises Spent where that was too much.
+        """Count a march; raises Spent if a limit is exceeded.
 
         Parameters
         ----------
@@ -77,29 +77,29 @@ class _Metered:
     """A contact (see models.contact.Contact) that counts its marches."""
 
     def __init__(self, contact: Contact, budget: Budget):
-        self._contact: Any = contact  # which may have methods that not all have
+        self._contact: Any = contact  # not every contact has every method
         self._budget = budget
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._contact, name)
 
     def march(self, *path: Any, **settings: Any) -> March:
-        return self._taken(self._contact.march(*path, **settings))
+        return self._counted(self._contact.march(*path, **settings))
 
     def pulled_march(self, *path: Any, **settings: Any) -> March:
-        return self._taken(self._contact.pulled_march(*path, **settings))
+        return self._counted(self._contact.pulled_march(*path, **settings))
 
     def affordable(self, work: float) -> float:
-        """Marches of so much work until the budget has to be looked at."""
+        """Number of marches, of `work` each, until the budget has to be checked."""
         budget = self._budget
         if budget.time_limit < math.inf:
             return 1
         return max((budget.most_work - budget.taken.work) // work + 1, 1)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count marches that compiled code has done."""
+        """Count marches of compiled code."""
         self._budget.take(solves, iterations, unknowns)
 
-    def _taken(self, march: March) -> March:
+    def _counted(self, march: March) -> March:
         self._budget.take(march.solves, march.iterations, march.state.size)
         return march

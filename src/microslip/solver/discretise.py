@@ -1,4 +1,4 @@
-"""Discretisation of a problem: its contact at a resolution, and its path in time."""
+"""Discretisation of a problem: the contact at a resolution, and the path in time."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Part, Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Bounds of mesh.Focus.strength, and its value for the static limit."""
+"""Smallest and largest mesh.Focus.strength, and its value for the static limit."""
 NEAREST_TURNS = 1e-6
-"""Radians between two turning points, below which they are one."""
+"""Phase difference in radians below which two turning points count as one."""
 
 
 @dataclass(frozen=True, order=True)
 class Resolution:
-    """How finely a problem is resolved.
+    """Resolution of a problem.
 
     Attributes
     ----------
     cells : int
-        Rings, or squares along a side.
+        Number of rings, or of squares along a side.
     angles : int
-        Angular points on half the disc.
+        Number of angular points on half the disc.
     steps : int
-        In half a period (steady motion: not used).
+        Number of time steps in half a period; not used for steady motions.
     """
 
     cells: int
@@ -52,12 +52,13 @@ class Resolution:
 
 
 def focus_strength(drift: float) -> float:
-    """Strength of the grading of rings towards the stick radius; drift: in a radian, in u_lim, 0
-    in the static limit.
+    """Strength of the grading of rings towards the stick radius.
 
-    Slip that is as small as the drift fills a layer whose width goes like drift^(2/3).  With ring
-    widths that grow quadratically from it, the square root of that is the right share of the mean
-    width; in powers of two, so that points share grids.
+    drift: forward displacement in a radian of phase, in u_lim; 0 for the static limit.
+
+    At the stick radius, slip as small as the drift fills a layer of width drift^(2/3).  Ring widths
+    grow quadratically from there, so the smallest width over the mean width should be the square
+    root of this.  It is rounded to a power of two, so that points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS
@@ -68,12 +69,12 @@ def focus_strength(drift: float) -> float:
 def contact_of(
     problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
 ) -> Contact:
-    """The contact of a problem, or all of its contacts side by side; see build_contact."""
+    """The contact of a problem, or all its contacts side by side; see build_contact."""
     if not problem.contacts:
         return build_contact(problem, model, resolution, focus)
     parts, start = problem.parts, problem.start
     beside = MODELS[model].side_by_side
-    assert beside is not None  # else the drive of several contacts is refused
+    assert beside is not None  # the drive of other models is refused
     return beside(
         [
             build_contact(part.problem, model, resolution, focus, start + part.lead)
@@ -85,7 +86,7 @@ def contact_of(
 
 
 def _focus(problem: Problem) -> Focus | float | None:
-    """Radius where the slip starts, with the grading towards it."""
+    """Radius at which slip starts, with the grading of the rings towards it."""
     radius = problem.focus
     if radius is None or not problem.motion.periodic:
         return radius
@@ -99,18 +100,18 @@ def build_contact(
     focus: Focus | None = None,
     start: float | None = None,
 ) -> Contact:
-    """The contact of a problem on one contact.
+    """Build the contact of a problem with a single contact.
 
     Parameters
     ----------
     problem : Problem
-        If the normal load oscillates, the contact is that of the start of a period.
+        If the normal load oscillates, the contact has the load at the start of a period.
     model : str
         Name in models.registry.MODELS.
     resolution : Resolution
         Resolution of the model.
     focus : mesh.Focus or None
-        Grading of the rings; None: towards the radius where the slip starts.
+        Grading of the rings; None: towards the radius at which slip starts.
     start : float or None
         Phase at which a period starts; None: the first turning point.
     """
@@ -123,7 +124,7 @@ def build_contact(
 
 
 class Graded(Protocol):
-    """An object with a `grading` of the steps: a contact, or a substitute for one."""
+    """A contact, or another object with a `grading` of the time steps."""
 
     @property
     def grading(self) -> float | None:
@@ -131,21 +132,21 @@ class Graded(Protocol):
 
 
 def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrator = SDIRK2) -> Path:
-    """The path of a problem from turning point to turning point.
+    """Build the path of a problem, which starts at a turning point.
 
-    It is half a period if the second half is the mirror image of the first, else a whole one.  Of
-    several contacts it is a BodyPath, with steps graded towards the turning points of each.
+    The path is half a period if the second half is its mirror image, else a whole period.  For
+    several contacts it is a BodyPath, with steps graded towards the turning points of each contact.
 
     Parameters
     ----------
     problem : Problem
         The motion.
     contact : Contact
-        Its `grading` replaces that of the problem, if it has one.
+        Its `grading`, if not None, replaces the grading of the problem.
     steps : int
-        In half a period, about.
+        Approximate number of steps in half a period.
     integrator : path.Integrator
-        Places of the stages.
+        Integrator, which places the stages.
     """
     grading = turning_point_grading(problem.drift, problem.stroke)
     if contact.grading is not None:
@@ -155,7 +156,7 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
 
 @lru_cache(maxsize=32)
 def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
-    # on a loop the slip may reverse at any phase
+    # on a loop the slip can reverse at any phase
     on_a_line = problem.straight and problem.motion.periodic
     width = turning_point_width(problem.drift, problem.stroke) if on_a_line else math.inf
     if not problem.contacts:
@@ -174,7 +175,7 @@ def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) 
 
 
 def _beside(problem: Problem, part: Part) -> Callable:
-    """Displacement of a contact beyond that of the body."""
+    """Displacement of a contact relative to the body, a function of the phase."""
 
     def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         forward, lateral, angle = part.oscillation(phase)
@@ -193,14 +194,16 @@ def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
 
 
 def _body_phases(problem: Problem, steps: int, grading: float, width: float) -> np.ndarray:
-    """From the first turning point of the first contact over half a period, or a whole one, in
-    pieces from turning point to turning point of any contact."""
+    """Phases of half a period or a whole one, from the first turning point of the first contact.
+
+    Every turning point of any contact is one of the phases.
+    """
     interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
     turns, start = [part.turns(problem.follows) for part in problem.parts], problem.start
     inner = np.sort(np.concatenate([(turn - start) % interval for turn in turns]))
     inside = inner[(inner > NEAREST_TURNS) & (inner < interval - NEAREST_TURNS)]
-    kept = inside[np.diff(inside, prepend=0.0) > NEAREST_TURNS]
-    ends = start + np.concatenate([[0.0], kept, [interval]])
+    distinct = inside[np.diff(inside, prepend=0.0) > NEAREST_TURNS]
+    ends = start + np.concatenate([[0.0], distinct, [interval]])
     pieces = [ends[:1]]
     for one, other in pairwise(ends):
         count = max(round(steps * (other - one) / np.pi), 1)

@@ -1,4 +1,4 @@
-"""The effort of runs, which adds up."""
+"""The effort of runs."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from dataclasses import dataclass, fields
 
 @dataclass(frozen=True)
 class Effort:
-    """The effort of a run or of several, which adds up.
+    """The effort of one or several runs; efforts can be added.
 
     Attributes
     ----------
     solves : int
-        Step solves.
+        Number of step solves.
     iterations : int
-        Iterations of the step solver.
+        Number of iterations of the step solver.
     work : int
         Step solves times unknowns.
     updates : int
         Iterations times unknowns.
     retried : int
-        Number of runs that found no periodic state at first and were repeated with safer steps.
+        Number of runs that did not converge at first and had a second attempt.
     """
 
     solves: int = 0
@@ -31,7 +31,7 @@ class Effort:
 
     @staticmethod
     def of(solves: int, iterations: int, unknowns: int) -> Effort:
-        """The effort of marches with so many unknowns in a step."""
+        """The effort of marches; unknowns: number of unknowns in a step."""
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:

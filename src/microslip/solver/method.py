@@ -1,7 +1,7 @@
-"""A method: how a contact is marched and how its periodic state is found.  What ships is SHIPPED.
+"""A numerical method: integrator, step solver and search for the periodic state.
 
-Others exist to be compared with it (see the package `methods`).  Each replaces a part: the
-integrator, the solver of a step, the search for the periodic state, or its start.
+SHIPPED is the method of `microslip.solve`.  The package `methods` contains others for comparison,
+each of which replaces the integrator, the step solver, the search, or the start of the search.
 """
 
 from __future__ import annotations
@@ -15,37 +15,37 @@ from microslip.models.path import SDIRK2, Integrator
 
 @dataclass(frozen=True)
 class Method:
-    """The parts of a method; what is left out is as shipped.
+    """The parts of a method; the defaults are those of the shipped method.
 
-    In a method's file `requires`, `resolution`, `turns`, `model` and `parameters` are literals:
-    they are read without running it, see method_names.declared.
+    In the file of a method `requires`, `resolution`, `turns`, `model` and `parameters` are
+    literals, since method_names.declared reads them without running the file.
 
     Attributes
     ----------
     summary : str
-        In a line, for tables and figures.
+        Description in one line, for tables and figures.
     integrator : path.Integrator
-        Where the stages of a step sit, and what they carry on.
+        Time integrator of a step.
     dress : callable or None
-        Takes a contact and `parameters`; returns a contact that solves its steps in another way.
+        dress(contact, **parameters) -> a contact with another step solver.
     parameters : mapping of str to float
-        Numbers that `dress` takes, with their defaults.
+        Keyword arguments of `dress`, with their defaults.
     search : callable or None
         Replaces periodic.find_periodic_state.
     prepared : bool
-        Whether to start near the static limit and with coarse steps, else once from full slip.
+        Whether the search starts near the static limit; else it starts from full slip.
     extrapolated : bool
-        Whether to add the difference to the run with half the steps.
+        Whether the result is extrapolated with a run of half as many steps.
     run : callable or None
         Replaces the whole simulation, as in methods/paper.py.
     model : str
-        The only one that `run` stands for.
+        The only model that `run` supports.
     resolution : tuple of int or None
-        (cells, angles, steps a period) that `run` keeps to whatever is asked for.
+        Fixed resolution of `run`: cells, angles and steps in a period.
     requires : str
-        Package that it takes besides those of microslip.
+        Package that the method needs in addition to the dependencies of microslip.
     turns : bool
-        Whether it knows motions that rotate.
+        Whether the method supports rotations.
     """
 
     summary: str
@@ -62,7 +62,7 @@ class Method:
     turns: bool = True
 
     def dressed(self, contact: Contact) -> Contact:
-        """The contact with this method's solver of a step."""
+        """The contact with the step solver of this method."""
         return contact if self.dress is None else self.dress(contact, **self.parameters)
 
 

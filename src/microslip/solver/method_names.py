@@ -1,10 +1,10 @@
-"""Methods to compare with the one that ships: one file a method.
+"""Names of the methods that can be compared with the shipped one: one file a method.
 
-A method is the file `name_of_it.py` in the folder `methods`, which holds METHOD, a
-`method.Method`; it is then known as `name-of-it`, to `microslip.solve` as well as in a
-configuration.  Files whose name starts with an underscore are shared by methods.  Numbers that a
-method takes may follow its name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package
-that is not one of microslip's: where that is not installed, nothing asks for it.
+The file `some_name.py` in the folder `methods` defines METHOD, a `method.Method`.  Its name is
+`some-name` in `microslip.solve` and in configurations.  Files whose names start with an underscore
+are shared by methods.  Parameters of a method can follow its name, for example
+"admm:penalty=0.1,relaxation=1.5".  A method can require a package that microslip does not depend
+on; studies leave it out if the package is not installed.
 
 Listing and checking names imports no solver.
 """
@@ -32,17 +32,16 @@ METHODS = Path(methods.__file__).parent
 
 @cache
 def names() -> tuple[str, ...]:
-    """Names of all methods, the one that ships first; without those whose file is no Python."""
+    """Names of all methods, the shipped one first, without files that cannot be parsed."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
-    # not a copy or a checkpoint of one, which nobody means
+    # copies and checkpoints of files are no methods
     every = sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier())
     return (SHIPPED, *(name for name in every if not isinstance(_parsed(name), str)))
 
 
 @cache
 def _parsed(name: str) -> ast.Module | str | None:
-    """The syntax tree of a method's file; a text that says what is wrong with it; None if it is
-    not there."""
+    """The syntax tree of a method's file; a text if it cannot be parsed; None without a file."""
     file = METHODS / f"{name.replace('-', '_')}.py"
     try:
         return ast.parse(file.read_text(encoding="utf-8"), file)
@@ -53,7 +52,7 @@ def _parsed(name: str) -> ast.Module | str | None:
 
 
 def split(text: str) -> tuple[str, dict[str, float]]:
-    """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
+    """Name and parameters of a method; raises InputError if the text cannot be parsed."""
     if not isinstance(text, str):
         raise InputError("method", text, f"allowed is one of {', '.join(names())}")
     name = text.partition(":")[0]
@@ -63,43 +62,25 @@ def split(text: str) -> tuple[str, dict[str, float]]:
     return spec.split(text, "method", names())
 
 
-def refusal(text: str) -> str:
-    """Why a text names no method, as one line; "" if it does.  Imports no solver."""
-    try:
-        check(text)
-    except InputError as error:
-        return str(error)
-    return ""
-
-
 def check(text: str) -> None:
-    """Raise InputError where a text names no method.  Imports no solver."""
+    """Raise InputError if a text is not the name of a method.  Imports no solver."""
     name, numbers = split(text)
-    spec.refuse_unknown(text, "method", numbers, _parameters(name))
+    spec.refuse_unknown(text, "method", numbers, tuple(declared(name, "parameters") or ()))
 
 
 def missing(text: str) -> str:
-    """Why a method cannot run here, as one line: the package that it requires is not installed.
+    """Why a method cannot run: a required package is not installed; "" if it can.
 
-    "" if it can.  Imports neither the solver nor the package.  Raises InputError as `split`.
+    Imports neither the solver nor the package.  Raises InputError as `split` does.
     """
-    try:
-        refuse_missing(text)
-    except InputError as error:
-        return str(error)
+    package = declared(split(text)[0], "requires")
+    if package and find_spec(package) is None:
+        return f"needs the package {package}, which is not installed"
     return ""
 
 
-def refuse_missing(text: str) -> None:
-    """Raise InputError where the package that a method requires is not installed, see above."""
-    name, _ = split(text)
-    package = declared(name, "requires")
-    if package and find_spec(package) is None:
-        raise InputError("method", text, f"needs the package {package}, which is not installed")
-
-
 def method_named(text: str) -> Method:
-    """The method.Method that a text names; raises InputError, with what is allowed, if none."""
+    """The method.Method with a name; raises InputError, which lists the allowed names."""
     check(text)
     from dataclasses import replace
 
@@ -109,23 +90,18 @@ def method_named(text: str) -> Method:
     file = name.replace("-", "_")
     try:
         method = import_module(f"{methods.__name__}.{file}").METHOD
-    except (Exception, SystemExit) as error:  # the code of a user may raise anything
+    except (Exception, SystemExit) as error:  # the code of a user can raise anything
         path = METHODS / f"{file}.py"
         reason = f"{path} cannot be imported: {described(error, path)}"
         raise InputError("method", text, reason) from error
     return replace(method, parameters={**method.parameters, **numbers})
 
 
-def _parameters(name: str) -> tuple[str, ...]:
-    """Names of the numbers that a method takes."""
-    return tuple(declared(name, "parameters") or ())
-
-
 @cache
 def declared(name: str, field: str) -> Any:
-    """Value of a field of METHOD in a method's file, read without running it; None: not set.
+    """Value of a field of METHOD in the file of a method, read without running it; None: not set.
 
-    name: without numbers; the value has to be a literal.
+    name: name without parameters.  The value has to be a literal.
     """
     if name == SHIPPED:
         return None

@@ -1,4 +1,5 @@
-"""The map of tractions over one (half) period; goal and result of a search for its fixed point."""
+"""The map of tractions over one (half) period, and the goal and result of a search for its fixed
+point."""
 
 from __future__ import annotations
 
@@ -14,20 +15,21 @@ if TYPE_CHECKING:
     from microslip.states.search import Inertia
 
 MOST_MARCHES = 200
-"""Largest number of marches in a search, by default."""
+"""Default for the largest number of marches in a search."""
 
 
 class Goal(NamedTuple):
-    """Tolerances of a search for the periodic state, and its largest number of marches.
+    """Goal of a search for the periodic state.
 
     Attributes
     ----------
     tolerance, step_tolerance : float
         Tolerances of the state and of a step, forces over mu F_z.
     most_marches : int
-        Marches to try.
+        Largest number of marches.
     near : bool
-        Whether the start is near the state, so that only well solved steps tell what is left.
+        Whether the start is near the periodic state; then the first steps are solved more
+        accurately.
     """
 
     tolerance: float
@@ -38,30 +40,30 @@ class Goal(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PeriodicState:
-    """Result of the search.
+    """Result of a search for the periodic state.
 
     Attributes
     ----------
     forces : np.ndarray, shape (steps + 1, 3)
-        Over the last (half) period marched.
+        Forces at the phases of the last (half) period.
     start : np.ndarray
-        Tractions at its beginning.
+        State at the beginning of the last (half) period.
     residual : float
-        What the plain map still changed, a bound on a force over mu F_z.
+        Change of the state by the plain map, a bound on a force over mu F_z.
     distance : float
-        Estimated distance from the fixed point, likewise.
+        Estimated distance from the fixed point, a force over mu F_z.
     solver_residual : float
-        Sum over the stages of the last period.
+        Residual of the step solver summed over the stages of the last (half) period.
     marches : int
-        Maps marched.
+        Number of marches.
     iterations, solves : int
-        Iterations and stages of the step solver, over all marches.
+        Iterations of the step solver and number of stages, over all marches.
     converged : bool
         Whether the distance is within the tolerance.
     body : np.ndarray or None, shape (steps + 1, 2)
-        x and x' of a driven contact over the last (half) period, see pull.PulledMarch.
+        x and x' of a driven body at the phases of the last (half) period; None without a drive.
     fields : np.ndarray or None
-        contact.March.fields of the last (half) period: the initial guess of a march from `start`.
+        contact.March.fields of the last (half) period: initial guess of a march from `start`.
     """
 
     forces: np.ndarray
@@ -79,23 +81,23 @@ class PeriodicState:
 
 @dataclass(frozen=True)
 class DriftRate:
-    """How slowly a state can go wrong.
+    """Data for the error estimate of slow motions, whose states change little in a period.
 
-    A state whose plain map still changes a share of the gain moves forward at a velocity wrong by
-    that share, and as the force depends on the velocity only through its excess over the static
-    limit, at most the same share of the excess is in doubt.
+    If the plain map still changes the state by a fraction of `gain`, the velocity of the state is
+    wrong by that fraction.  The force depends on the velocity only through its excess over the
+    static limit, so its error is at most the same fraction of the excess.
 
     Attributes
     ----------
     static_force : float
-        Mean forward force of the static limit, over mu F_z; NaN where it is not known.
+        Mean forward force of the static limit, over mu F_z; NaN: unknown.
     full : float
-        That of full slip, the largest that it can be.
+        Mean forward force of full slip, the largest one.
     gain : float
-        Force that a contact which does not slip gains in a march over a (half) period.
+        Rise of the force of a contact without slip in a (half) period.
     least : float
-        Mean forward force below which a state is stuck and changes slowly, roughly that of the
-        static limit; NaN: that is `static_force`.
+        Mean forward force below which a state sticks and changes slowly, roughly the static limit;
+        NaN: equal to `static_force`.
     """
 
     static_force: float
@@ -105,19 +107,19 @@ class DriftRate:
 
 
 class PeriodMap:
-    """The map of a contact over a path.
+    """The map of the state of a contact over a path.
 
     Parameters
     ----------
     contact : contact.Contact
-        What is marched.
+        The contact.
     path : path.Path
-        Half a period, from turning point to turning point, whose second half is its lateral mirror
-        image, or without `mirror` a whole one.
+        Path over half a period, from turning point to turning point, or without `mirror` over a
+        whole period.
     drift_rate : DriftRate or None
-        Given where the motion may be slow.
+        Data for slow motions; None: the motion is not slow.
     mirror : bool
-        See `path`.
+        Whether the other half of the period is the lateral mirror image of the path.
     """
 
     def __init__(
@@ -126,17 +128,17 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
 
     def image(self, state: np.ndarray) -> np.ndarray:
-        """Tractions at the start of the next interval, from those at the end of one; linear."""
+        """Tractions at the start of the next interval, linear in those at the end of one."""
         return self.contact.mirrored(state) if self.mirror else state
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions of a state, and x and x' of a driven body, 0 without one."""
+        """Tractions of a state, and (x, x') of a driven body, here 0."""
         return state, np.zeros(2)
 
     def state(self, tractions: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """The state of tractions, and of x and x' of a driven body."""
+        """The state with given tractions; place: (x, x') of a driven body, not used here."""
         return tractions
 
     def inertia(self) -> Inertia | None:
-        """No body is driven."""
+        """Extrapolation of the motion of a driven body; None: there is none."""
         return None

@@ -1,8 +1,8 @@
-"""The periodic state: a fixed point of "march one (half) period", found without waiting for it.
+"""Search for the periodic state: the fixed point of the march over one (half) period.
 
-The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
-tractions over one period is solved for its fixed point by Anderson acceleration, in compiled code
-(states/search.py).  Reduced models without a system compute their periodic state directly.
+The transients of a plain march last about 1/(2 pi v~) periods.  Anderson acceleration of the map
+finds its fixed point much sooner, in compiled code (states/search.py).  Reduced models without a
+system compute their periodic state directly.
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ if TYPE_CHECKING:
 
 
 def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """March periods until the state repeats itself to the tolerance.
+    """March periods until the state is periodic to within the tolerance.
 
     Parameters
     ----------
     period_map : period_map.PeriodMap
         The map over a (half) period.
     start : np.ndarray
-        State of the map.
+        Start state.
     goal : period_map.Goal
-        What to reach.
+        Tolerances and largest number of marches.
 
     Returns
     -------
     period_map.PeriodicState
-        Never raises for want of convergence: see `converged` there.
+        Its `converged` is False if the search failed.
 
     Raises
     ------
     StepFailure
-        Where the tractions blow up.
+        If the tractions diverge.
     """
     if not period_map.contact.compiled:
         return _direct_state(period_map, goal)
-    contact = cast("SystemContact", period_map.contact)  # or one that counts its marches
+    contact = cast("SystemContact", period_map.contact)  # or a contact that counts its marches
     path, rate = period_map.path, period_map.drift_rate
     slow = rate or DriftRate(0.0, 0.0, np.inf)
     target = search.Goal(
@@ -63,16 +63,16 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     layout = contact.layout
     memory = search.memory_of(layout.pack(tractions), place, stages, path.steps, target)
     system, loading, inertia = contact.system(), contact.loading(path), period_map.inertia()
-    done, most = False, goal.most_marches
-    while not done and memory.counts[0] < most:
+    finished, most = False, goal.most_marches
+    while not finished and memory.counts[0] < most:
         marches, iterations = memory.counts[:2]
         affordable = contact.affordable(path.solves * tractions.size)
         some = int(min(most - marches, affordable))
-        done, broken = search.search(system, loading, inertia, target, memory, some)
+        finished, broken = search.search(system, loading, inertia, target, memory, some)
         if broken:
             signal.raise_signal(signal.SIGINT)
-        marched = int(memory.counts[0] - marches)
-        contact.take(marched * path.solves, int(memory.counts[1] - iterations), tractions.size)
+        marches_made = int(memory.counts[0] - marches)
+        contact.take(marches_made * path.solves, int(memory.counts[1] - iterations), tractions.size)
     marches, iterations = map(int, memory.counts[:2])
     state, forces, body, numbers = memory.best
     state = layout.unpack(state)
@@ -95,7 +95,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
 
 
 def _direct_state(period_map: PeriodMap, goal: Goal) -> PeriodicState:
-    """The PeriodicState of a contact that computes it directly, checked by one march."""
+    """The PeriodicState of a contact with a direct solution, checked by one march."""
     contact, path = cast(DirectContact, period_map.contact), period_map.path
     start = contact.periodic_state(path, period_map.mirror)
     march = contact.march(path, start, goal.step_tolerance)

@@ -20,18 +20,18 @@ from microslip.solver.discretise import Resolution, contact_of
 
 @dataclass(frozen=True)
 class Settings:
-    """How a run is done, whatever it is a run of.
+    """Settings of a run that do not depend on the problem.
 
     Attributes
     ----------
     method : method.Method
-        How steps are solved and the periodic state is searched for.
+        Solver of the steps and search for the periodic state.
     tighter : bool
-        Whether to solve the steps of slow motions tighter.
+        Whether the steps of slow motions are solved to a smaller tolerance.
     budget : budget.Budget or None
-        What the marches may take, None: whatever they do.
+        Budget of the marches; None: unlimited.
     focus : mesh.Focus or None
-        Where rings gather; None: where the motion says that the slip starts.
+        Grading of the rings; None: towards the radius at which slip starts.
     """
 
     method: Method = SHIPPED
@@ -42,7 +42,7 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """The contact of a problem with the method's steps, whose marches count."""
+        """The contact of a problem with the step solver of the method; its marches are counted."""
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
@@ -52,9 +52,9 @@ AS_SHIPPED = Settings()
 
 @dataclass(frozen=True)
 class Run:
-    """Outcome of one run: forces over their full-slip values, and the effort.
+    """Result of one run: forces over their full-slip values, and the effort.
 
-    Where the normal load changes, forces are over mu times its mean.
+    If the normal load oscillates, forces are divided by mu times its mean.
 
     Attributes
     ----------
@@ -63,24 +63,23 @@ class Run:
     distance : float
         Estimated distance from the periodic (steady) state, a force over mu F_z.
     solver_residual : float
-        Summed over the last period, a force over mu F_z.
+        Residual of the step solver summed over the last period, a force over mu F_z.
     periods : float
-        Full ones that were marched in search of a state that repeats itself, 0 for a steady motion.
+        Number of full periods marched in search of the periodic state; 0 for a steady motion.
     effort : Effort
-        Effort of all searches together.
+        Effort of all searches.
     converged : bool
-        Whether the state repeats itself and every step was solved.
+        Whether the state is periodic (or steady) and every step was solved.
     reason : str
         Why it is not converged, else empty.
     state : np.ndarray or None
-        For other runs of the point: the periodic tractions.
+        Periodic or steady tractions, the initial guess of other runs; None: unknown.
     static_force : float
-        Mean forward force of the static limit, also for other runs; NaN where it is not known.
+        Mean forward force of the static limit, also used by other runs; NaN: unknown.
     velocity : float
-        Mean forward velocity, in the unit of the motion, where a force pulls; else NaN.
+        Mean forward velocity under a force, in the unit of the motion; else NaN.
     power : float
-        Mean work of the oscillation in a radian, over u_lim, see power.oscillation_power; NaN where
-        that is not told.
+        Mean power of the oscillation, over u_lim, see means.oscillation_power; NaN: not computed.
     """
 
     mu: float
@@ -98,14 +97,14 @@ class Run:
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
-    """Why stages are not solved to their tolerance, as one line; "" if they are.
+    """Why the stages are not solved to their tolerance, as one line; "" if they are.
 
     Parameters
     ----------
     residual : float
         Residual force of the step solver over mu F_z, summed over the stages.
     solves : int
-        Number of these stages.
+        Number of stages.
     step_tolerance : float
         Tolerance of each stage, a force over mu F_z.
     """
@@ -115,5 +114,5 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """The Run of a march that could not go on: no number, and why."""
+    """The Run of a march that failed, without numbers; reason: why."""
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, Effort(), False, reason)

@@ -1,9 +1,9 @@
-"""One run of a contact from rest under a force that does not keep it moving, until it stands.
+"""One run of a contact under a force below the static limit, until it comes to rest.
 
-First the force alone pushes it as far as partial slip lets it go.  Then the oscillation begins at
-its mean position, and every period moves the contact on by less than the one before.  What these
-still add in the end falls by powers of their number, and faster: the distances that are gone while
-that number doubles fall at least as a geometric series does.
+First the force alone displaces the contact by partial slip.  Then the oscillation begins at its
+mean position, and each period displaces the contact by less than the period before.  The remaining
+displacement falls at least with a power of the number of periods.  So the displacements between
+successive doublings of this number fall at least like a geometric series.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from microslip.solver.period_map import PeriodMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
-"""(Half) periods after which it is first looked at what is left, and the most that are marched."""
+"""Number of (half) periods before the first check of the rest, and the largest number."""
 LOOKS = 1.5, 4.0 / 3.0
-"""From one such number to the next, in turns: multiples of four."""
+"""Ratios of successive numbers of (half) periods at a check, alternately: multiples of four."""
 STEP_SHARE = 1e-4
 """Tolerance of a step, a force over mu F_z, divided by the tolerance of the displacement."""
 SLOWEST_RATIO = 0.9
-"""Largest ratio of the distances gone in two successive doublings of the number of periods; above
-it the remaining distance cannot be extrapolated."""
+"""Largest ratio of the displacements in two successive doublings of the number of periods for which
+the rest is extrapolated."""
 LONG, DRIFTING = 200, 1.8
-"""(Half) periods from which on such a ratio, of 2 if it never slowed down, tells that the contact
-drifts: the threshold of so coarse a contact is another."""
+"""After this number of (half) periods, a larger ratio means that the contact drifts on; a steady
+drift has the ratio 2.  On a coarse mesh the threshold can be below the force."""
 MOST_SHARE = 0.9
-"""Share of the displacement added by the oscillation after which `most_after` is counted."""
+"""Fraction of the displacement by the oscillation that defines `most_after`."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +47,12 @@ class ShakedownRun(Run):
     Attributes
     ----------
     displacement : float
-        Displacement of the contact at the end, from its position without a force, in u_lim.
+        Displacement of the contact at rest from its position without a force, in u_lim.
     pushed : float
         Part of the displacement that the force alone causes.
     most_after : float
-        Periods after which MOST_SHARE of the rest is gone.
+        Number of periods in which the contact covers MOST_SHARE of the displacement by the
+        oscillation.
     """
 
     displacement: float = np.nan
@@ -67,29 +68,29 @@ def run_to_rest(
     tolerance: float,
     settings: Settings,
 ) -> ShakedownRun:
-    """Run a contact that a force pulls until it stands.
+    """Run a contact under a constant force until it comes to rest.
 
     Parameters
     ----------
     problem : problem.Problem
-        At velocity 0, its motion even.
+        The problem at velocity 0; its motion is even (under_force.is_even).
     force : float
         Over mu times the mean normal load, below the static limit.
     model : str
-        Name in models.registry.MODELS, of a contact that may be pulled.
+        Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
         Tolerance of the remaining displacement, in u_lim.
     settings : run.Settings
-        How it is done.
+        Settings of the run.
 
     Returns
     -------
     ShakedownRun
-        Not converged where the contact does not come to rest, or a step failed.
+        Not converged if the contact does not come to rest or a step failed.
     """
-    # or one that counts its marches
+    # or a contact that counts its marches
     contact = cast(SystemContact, settings.contact(problem, model, resolution))
     body = Body(0.0, 0.0, 0.0, force * problem.mean_load)
     try:
@@ -99,7 +100,7 @@ def run_to_rest(
 
 
 class _Walk:
-    """A contact on its way."""
+    """The march of a contact to its position at rest."""
 
     def __init__(self, problem: Problem, contact: SystemContact, steps: int, body: Body):
         self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
@@ -107,16 +108,16 @@ class _Walk:
         self.map = PeriodMap(contact, path, mirror=problem.half_period_mirror)
         self.marches = 0
         self.interval = path.phase[-1] - path.phase[0]
-        self.gone: list[float] = []
+        self.ways: list[float] = []
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
     def to_rest(self, tolerance: float) -> ShakedownRun:
-        """The ShakedownRun; tolerance: of what may be left of the way."""
+        """The ShakedownRun; tolerance: of the remaining displacement."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
         still, pushed = self._march(self._still(), state, step_tolerance)
         first, images = self._first_part()
-        march, begun = self._march(first, still.state, step_tolerance)
+        march, first_way = self._march(first, still.state, step_tolerance)
         state = march.state
         for _ in range(images):
             state = self.map.image(state)
@@ -124,26 +125,26 @@ class _Walk:
         for turn in range(MOST_INTERVALS):
             previous, way = self._march(self.map.path, state, step_tolerance, previous)
             state = self.map.image(previous.state)
-            self.gone.append(way)
+            self.ways.append(way)
             self.marches += 1
             if turn + 1 == look:
-                left = self._left()
-                if left <= tolerance or self._drifts():
+                remaining = self._remaining()
+                if remaining <= tolerance or self._drifts():
                     break
                 look = round(look * LOOKS[look % 3 == 0])
         reason = unsolved(self.residual, self.solves, step_tolerance)
-        if left > tolerance:
-            reason = f"still moves after {self._periods:g} periods, by {self.gone[-1]:.1e} in the "
+        if remaining > tolerance:
+            reason = f"still moves after {self._periods:g} periods, by {self.ways[-1]:.1e} in the "
             reason += "last march"
-        return self._summary((pushed, begun), left, reason, state)
+        return self._summary((pushed, first_way), remaining, reason, state)
 
     @property
     def _periods(self) -> float:
-        """Full periods marched so far."""
+        """Number of full periods marched so far."""
         return float(self.marches * self.interval / (2.0 * np.pi))
 
     def _still(self) -> Path:
-        """The path on which the force alone grows: one step, since slip only grows with it."""
+        """The path without oscillation: one step suffices, since slip only grows with the force."""
         of_phase, depth = self.problem.depth, None
         if of_phase is not None:
 
@@ -156,8 +157,10 @@ class _Walk:
         return make_path(displacement, np.array([0.0, 1.0]), EULER, depth)
 
     def _first_part(self) -> tuple[Path, int]:
-        """The path from the mean position to where an interval of the map ends, and of how many
-        such intervals that is the image of the beginning."""
+        """The path from the mean position to the start of an interval of the map.
+
+        Also returns the number of mirror images between the first interval and that start.
+        """
         end, images = self.map.path.phase[0], 0
         while end <= 0.0:
             end, images = end + self.interval, images + 1
@@ -172,9 +175,9 @@ class _Walk:
         step_tolerance: float,
         previous: PulledMarch | None = None,
     ) -> tuple[PulledMarch, float]:
-        """A march along a path, and how far the contact went.
+        """A march along a path, and the displacement of the contact.
 
-        Raises StepFailure where the tractions blow up.
+        Raises StepFailure if the tractions diverge.
         """
         march = self.contact.pulled_march(
             path, state, step_tolerance, self.body, np.zeros(2), previous
@@ -187,39 +190,44 @@ class _Walk:
         return march, float(march.body[-1, 0] - march.body[0, 0])
 
     def _drifts(self) -> bool:
-        """Whether the contact goes on as fast as it did long before."""
+        """Whether the contact moves on at a nearly constant velocity."""
         before, last = self._last_two()
-        return len(self.gone) >= LONG and last > DRIFTING * before
+        return len(self.ways) >= LONG and last > DRIFTING * before
 
-    def _left(self) -> float:
-        """How much of the way may be left: the series of distances that are gone while the number
-        of intervals doubles, if it went on as it did last; infinite if that does not end."""
+    def _remaining(self) -> float:
+        """Bound of the remaining displacement, by extrapolation of a geometric series.
+
+        Its terms are the displacements between doublings of the number of intervals.  The bound is
+        infinite if the ratio of the last two terms is above SLOWEST_RATIO.
+        """
         before, last = self._last_two()
-        if last <= self.residual / self.contact.stiffness:  # as far as steps are solved, it stands
+        if (
+            last <= self.residual / self.contact.stiffness
+        ):  # at rest within the residual of the steps
             return last
         ratio = last / before if before > 0.0 else np.inf
         return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
 
     def _last_two(self) -> tuple[float, float]:
-        """Distances gone while the number of intervals doubled to half of what it is, and to it."""
-        count = len(self.gone)
-        before, last = sum(self.gone[count // 4 : count // 2]), sum(self.gone[count // 2 :])
+        """Displacements in the last two doublings of the number of intervals."""
+        count = len(self.ways)
+        before, last = sum(self.ways[count // 4 : count // 2]), sum(self.ways[count // 2 :])
         return max(before, 0.0), max(last, 0.0)
 
     def _summary(
-        self, parts: tuple[float, float], left: float, reason: str, state: np.ndarray
+        self, parts: tuple[float, float], remaining: float, reason: str, state: np.ndarray
     ) -> ShakedownRun:
-        pushed, begun = parts
-        marched = np.cumsum([begun, *self.gone])
-        added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)
-        most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
-        if added <= self.residual / self.contact.stiffness:  # no more than steps leave unsolved
+        pushed, first_way = parts
+        travel = np.cumsum([first_way, *self.ways])
+        added = travel[-1] + (0.5 * remaining if np.isfinite(remaining) else 0.0)
+        most = int(np.searchsorted(np.maximum.accumulate(travel), MOST_SHARE * added))
+        if added <= self.residual / self.contact.stiffness:  # within the residual of the steps
             most = 0
         periods = self.interval / (2.0 * np.pi)
         return ShakedownRun(
             mu=self.body.load / self.problem.mean_load,
             torque=0.0,
-            distance=0.5 * left,
+            distance=0.5 * remaining,
             solver_residual=self.residual / self.contact.stiffness,
             periods=self._periods,
             effort=Effort.of(self.solves, self.iterations, state.size),

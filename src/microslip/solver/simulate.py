@@ -1,7 +1,8 @@
-"""One run at one resolution: build the contact and the path, find the state that repeats itself."""
+"""One run at one resolution, from the contact and the path to the periodic or steady state."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from microslip.models.contact import (
     forces,
     forward_slip,
 )
+from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
@@ -27,22 +29,24 @@ from microslip.solver.static_loop import SLOW_LOOP, loop_limit
 from microslip.solver.steady import steady_state
 
 STEP_SHARE = 1e-2
+"""Largest tolerance of a step over that of the periodic state."""
 SLOW_STEP_SHARE = 3e-4
-"""Tolerance of a step over that of the periodic state: the slower the motion, the less a state
-changes in a period, and the more an error of its steps adds up."""
+"""Smallest tolerance of a step over that of the periodic state.  The slower the motion, the longer
+its transients, and the more the errors of the steps add up."""
 TIGHTER = 0.1
-"""The floor of these tolerances in a second attempt, over that in a first one."""
+"""Smallest tolerance of a step in a second attempt, over that in the first attempt."""
 MARCH_SHARE = 0.16
-"""Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
+"""Largest tolerance of a step, times the steps in half a period, over that of the periodic state.
+With two stages in a step the residuals add up to a third of the tolerance."""
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
-"""Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
-the friction itself does with the drift in a radian, so that every point slips forward too much.
-From there an accelerated search finds its way down; below, points would only drift."""
+"""Forward traction that is added to the static limit for the start of a search, over the bound: the
+factor of drift^(2/3), and the largest value.  Friction rises with the same power of the drift.  So
+the start has too much forward traction, from which an accelerated search converges faster."""
 
 MARCHES_FROM_COARSER = 50
-"""Largest number of marches in a search that starts from tractions on other points.  If it needs
-more, a search from the usual start is faster."""
+"""Largest number of marches in a search that starts from interpolated tractions.  If it needs more,
+a search from the usual start is faster."""
 
 
 def simulate(
@@ -58,32 +62,32 @@ def simulate(
     Parameters
     ----------
     problem : problem.Problem
-        Velocity and amplitude above 0 (amplitude None for steady motions), checked by the caller.
+        Velocity and amplitude are above 0 (amplitude None for steady motions), already checked.
     model : str
         Name in models.registry.MODELS.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
-        Tolerance of the periodic state, a force over mu F_z; that of a step is at least 100 times
-        smaller.
+        Tolerance of the periodic state, a force over mu F_z.  The tolerance of a step is at least
+        100 times smaller.
     guess : Run or None
-        Run of the same point; used if it has the same cells and angles, or if the contact can
-        interpolate its tractions.
+        Initial guess: run of the same point.  It is used if it has the same cells and angles, or
+        if the contact can interpolate its tractions.
     settings : Settings
-        How it is done.
+        Settings of the run.
 
     Returns
     -------
     Run
-        Never raises for want of convergence.
+        See `converged` there; a failure to converge raises nothing.
 
     Raises
     ------
     budget.Spent
-        Where the budget is.
+        If the budget is exceeded.
     """
     method = settings.method
-    absolute = tolerance * problem.mean_load  # inside of a run forces are over mu F_z
+    absolute = tolerance * problem.mean_load  # inside a run forces are over mu F_z
     try:
         if method.run is not None:
             return method.run(problem, model, resolution, absolute)
@@ -108,7 +112,7 @@ def _run(
     """Like `simulate`, but the tolerance is a force over mu F_z, and failures raise StepFailure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
-        return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
+        return steady_state(contact, problem, tolerance, STEP_SHARE * tolerance)
     share = step_share(contact.stiffness * problem.drift, resolution.steps, settings.tighter)
     step_tolerance = share * tolerance
     search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
@@ -118,7 +122,7 @@ def _run(
 def step_share(force_rate: float, steps: int, tighter: bool) -> float:
     """Tolerance of a step over that of the periodic state.
 
-    force_rate: force over mu F_z that a contact without slip gains in a radian.
+    force_rate: rise of the force over mu F_z in a radian of phase, for a contact without slip.
     """
     slow_share = force_rate * np.pi * STEP_SHARE
     floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
@@ -126,7 +130,7 @@ def step_share(force_rate: float, steps: int, tighter: bool) -> float:
 
 
 def _extrapolated(fine: Run, coarse: Run) -> Run:
-    """The Run that two of first order amount to, one with half as many steps as the other."""
+    """Extrapolate two runs of first order, the coarse one with half as many steps."""
     return replace(
         fine,
         mu=2.0 * fine.mu - coarse.mu,
@@ -142,7 +146,7 @@ def _extrapolated(fine: Run, coarse: Run) -> Run:
 
 
 class _Search:
-    """The search for the periodic state of one run, from one start after the other."""
+    """Search for the periodic state of one run, from several starts one after the other."""
 
     def __init__(
         self,
@@ -156,25 +160,34 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-        # a prepared search computes the limit of a line; that of a slow loop sets `least` only
+        # a prepared search computes the limit on a line; the limit of a slow loop only sets `least`
         limit = 0.0 if problem.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.drift * interval
         self.drift_rate = DriftRate(limit, problem.mean_load, gain)
         self.path = path_of(problem, contact, steps, method.integrator)
-        self.done: list[PeriodicState] = []
+        self.searches: list[PeriodicState] = []
 
     def run(self, guess: Run | None = None) -> Run:
         """The Run; guess: see simulate."""
-        found, start = None, self._start_from(guess)
+        periodic, start = None, self._start_from(guess)
         if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
-            found = self._find(start, near=start is not guess.state)
-        if found is None or not found.converged:
-            found = self._search_afresh()
-        return self._summary(found)
+            periodic = self._find(start, near=start is not guess.state)
+        if periodic is None or not periodic.converged:
+            periodic = self._search_afresh()
+        return run_of_searches(
+            self.contact,
+            self.problem,
+            self.path,
+            self.searches,
+            self.step_tolerance,
+            self.problem.mean_load,
+            static_force=self.drift_rate.static_force,
+            power=oscillation_power(self.problem, self.path, periodic.forces),
+        )
 
     def _start_from(self, guess: Run | None) -> np.ndarray | None:
-        """Tractions of a guess on the points of this contact; None: it is of no use here."""
+        """Tractions of a guess on the points of this contact; None: not usable."""
         if guess is None or guess.state is None or not guess.converged:
             return None
         if guess.state.shape == (2, *self.contact.forward_position.shape):
@@ -187,13 +200,13 @@ class _Search:
         if not self.method.prepared:
             return self._find(slipping)
         for start in (self._start_near_the_limit(slipping), slipping):
-            found = self._find(start)
-            if found.converged:
+            periodic = self._find(start)
+            if periodic.converged:
                 break
-        return found
+        return periodic
 
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
-        """The static limit with all points pushed forward; full slip where there is no limit.
+        """The static limit plus forward tractions, or full slip if nothing sticks.
 
         Stores the force at the limit in `drift_rate`.
         """
@@ -201,7 +214,7 @@ class _Search:
         if not self.contact.sticks or not (self.problem.straight or slow_loop):
             return slipping
         rise = self.problem.drift ** (2.0 / 3.0)
-        if slow_loop:  # the rise as it is: 4 times as much loses convergence at the smallest drifts
+        if slow_loop:  # a factor of 4 would prevent convergence at the smallest drifts
             limit, excess = self._limit_of_a_loop(rise), rise
         else:
             limit, excess = self._limit_of_a_line(), min(SLOW_EXCESS * rise, LARGEST_EXCESS)
@@ -215,13 +228,15 @@ class _Search:
         return limit.residual + limit.oscillating
 
     def _limit_of_a_loop(self, rise: float) -> np.ndarray:
-        """Tractions of the limit as exactly as the rise of friction above it needs, so that the
-        force of the limit sets `least` only."""
+        """Tractions of the limit, only as accurate as the rise of friction above it requires.
+
+        Therefore the force of the limit only sets `least`.
+        """
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.steps, self.method.integrator)
         tolerance = max(rise, self.tolerance)
         limit = loop_limit(self.contact, rest, path, tolerance, STEP_SHARE * tolerance)
-        self.done.append(limit.periodic)
+        self.searches.append(limit.periodic)
         self.drift_rate = replace(self.drift_rate, least=limit.force)
         return limit.periodic.start + limit.shift
 
@@ -232,48 +247,46 @@ class _Search:
         most = MARCHES_FROM_COARSER if near else MOST_MARCHES
         goal = Goal(self.tolerance, self.step_tolerance, most, near)
         search = self.method.search or find_periodic_state
-        self.done.append(search(period_map, start, goal))
-        return self.done[-1]
+        self.searches.append(search(period_map, start, goal))
+        return self.searches[-1]
 
-    def _summary(self, found: PeriodicState) -> Run:
-        full = self.problem.mean_load
-        forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
-        solves = sum(one.solves for one in self.done)
-        iterations = sum(one.iterations for one in self.done)
-        periods = periods_of(sum(one.marches for one in self.done), self.problem)
-        reason = unsolved(found.solver_residual, self.path.solves, self.step_tolerance)
-        if not found.converged:
-            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
-        return Run(
-            mu=float(forward) / full,
-            torque=float(torque) / self.problem.pressure.torque,
-            distance=found.distance / full,
-            solver_residual=found.solver_residual / full,
-            periods=periods,
-            effort=Effort.of(solves, iterations, found.start.size),
-            converged=not reason,
-            reason=reason,
-            state=found.start,
-            static_force=self.drift_rate.static_force,
-            power=oscillation_power(self.problem, self.path, found.forces),
-        )
+
+def run_of_searches(
+    contact: Contact,
+    problem: Problem,
+    path: Path,
+    searches: Sequence[PeriodicState],
+    step_tolerance: float,
+    unit: float,
+    **others: float,
+) -> Run:
+    """The Run of the last search, with the effort of all searches.
+
+    unit: force over mu F_z by which its distance and residual are divided; others: further fields
+    of the Run.
+    """
+    periodic = searches[-1]
+    forward, _, torque = mean_forces(contact, problem, path, periodic.forces)
+    periods = periods_of(sum(one.marches for one in searches), problem)
+    reason = unsolved(periodic.solver_residual, path.solves, step_tolerance)
+    if not periodic.converged:
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
+    solves = sum(one.solves for one in searches)
+    iterations = sum(one.iterations for one in searches)
+    return Run(
+        mu=float(forward) / problem.mean_load,
+        torque=float(torque) / problem.pressure.torque,
+        distance=periodic.distance / unit,
+        solver_residual=periodic.solver_residual / unit,
+        periods=periods,
+        effort=Effort.of(solves, iterations, periodic.start.size),
+        converged=not reason,
+        reason=reason,
+        state=periodic.start,
+        **others,
+    )
 
 
 def periods_of(marches: int, problem: Problem) -> float:
-    """Full periods in so many marches: each is half a period if the second half is the mirror image
-    of the first."""
+    """Number of full periods in a number of marches, each of which can be half a period."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)
-
-
-def _steady_run(contact: Contact, problem: Problem, tolerance: float, step_tolerance: float) -> Run:
-    found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
-    return Run(
-        mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / problem.pressure.torque,
-        distance=found.distance,
-        solver_residual=found.solver_residual,
-        periods=0.0,
-        effort=Effort.of(found.solves, found.iterations, found.state.size),
-        converged=found.converged,
-        reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
-    )

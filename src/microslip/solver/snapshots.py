@@ -1,4 +1,4 @@
-"""A march seen step by step: the tractions at every phase of a path, and their bounds."""
+"""Tractions and friction bounds at every phase of a march."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from microslip.models.path import Path
 
 
 class Frames(NamedTuple):
-    """A march at every phase of its path.
+    """Tractions and forces at every phase of a path.
 
     Attributes
     ----------
     tractions : np.ndarray, shape (steps + 1, 2, ...)
-        Forward and lateral.
+        Forward and lateral tractions.
     forces : np.ndarray, shape (steps + 1, 3)
-        See contact.March.
+        Forces at every phase, see contact.March.
     residual : float
-        Sum over the stages of what the step solver left, a force over mu F_z.
+        Residual of the step solver summed over the stages, a force over mu F_z.
     solves : int
-        Number of these stages.
+        Number of stages.
     """
 
     tractions: np.ndarray
@@ -40,29 +40,29 @@ def frames(
     tolerance: float,
     previous: Guess | None = None,
 ) -> Frames:
-    """Tractions and forces at every phase of a path.
+    """March along a path and return tractions and forces at every phase.
 
     Parameters
     ----------
     contact : contact.Contact
-        What is marched.
+        The contact.
     path : path.Path
-        From where `state` is.
+        Path of the march.
     state : np.ndarray
         Tractions at the first phase.
     tolerance : float
         Tolerance of a step, a force over mu F_z.
     previous : contact.March or None
-        See contact.Contact.march.
+        Initial guess, see contact.Contact.march.
 
     Returns
     -------
     Frames
-        What the march leaves at these phases.
+        Tractions and forces, shape (steps + 1, ...).
     """
     if contact.compiled and path.end == 1.0:
         march = contact.march(path, state, tolerance, previous)
-        assert march.fields is not None  # as of all compiled contacts
+        assert march.fields is not None  # all compiled contacts have fields
         stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
         at_phases = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
         return Frames(at_phases, march.forces, march.residual, march.solves)
@@ -84,8 +84,8 @@ def frames(
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
-    """Friction bounds at every phase, (steps + 1, 1, n), or those that stay, (1, ...)."""
+    """Friction bounds at every phase, shape (steps + 1, 1, n), or constant ones, (1, ...)."""
     if path.depth is None:
         return contact.bound[None]
-    growing = cast(GrowingContact, contact)  # as the depth of the path tells
+    growing = cast(GrowingContact, contact)  # since the path has a depth
     return growing.bounds_along(path)[:: path.stages.shape[1], None]

@@ -1,15 +1,15 @@
-"""The static limit: what resists a forward motion infinitely slower than the oscillation.
+"""The static limit: friction of a forward motion infinitely slower than the oscillation.
 
-Let +-q_osc be the tractions at the two turning points of the oscillation alone, their mean removed.
-As the forward velocity vanishes, every point that still sticks at times has to drift forward by a
-little in each period, at instants when |R + q_osc| reaches the bound, R being the constant part of
-its traction.  Drift so slow does not change q_osc, and the flow rule makes R the best there is:
+Let +-q_osc be the tractions at the two turning points of the oscillation alone, without their mean.
+As the forward velocity vanishes, every point slips forward a little in each period, when
+|R + q_osc| reaches the friction bound g; R is the constant part of its traction.  So slow a drift
+does not change q_osc, and by the flow rule R solves the problem
 
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
 
-a ratcheting counterpart of Melan's shakedown theorem.  In between the turning points q_osc runs
-along the segment that joins them, so these two instants are the only ones that count.  Motions on
-a loop, and a load that oscillates, are in static_loop.py.
+a counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points q_osc moves
+along the segment that joins them, so only these two instants matter.  For motions on a loop and for
+oscillating loads see static_loop.py.
 """
 
 from __future__ import annotations
@@ -25,14 +25,16 @@ from microslip.models.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
 STEPS = 4
-"""Steps from one turning point to the next.  Between them the slip of each point keeps its
-direction and only grows, so that backward Euler steps of any size end in the same tractions.  (A
-method of second order may end a step below the bound, and the residual feels the square root.)"""
+"""Number of steps from one turning point to the next.  Between them the slip of each point grows in
+a constant direction, so backward Euler gives the same tractions for any number of steps.  A method
+of second order can end a step below the bound, and R depends on the square root of the gap."""
 
 
 def at_turning_points(problem: Problem) -> bool:
-    """Whether the static limit follows from the turning points: motion on a line under a constant
-    load."""
+    """Whether the static limit follows from the turning points.
+
+    It does for a motion on a line under a constant load.
+    """
     return problem.straight and not problem.motion.loads
 
 
@@ -44,9 +46,9 @@ class StaticState(NamedTuple):
     residual, oscillating : np.ndarray
         Constant tractions R, and tractions q_osc; shape of the contact's states.
     solver_residual : float
-        Sum over the steps of what the step solver left, a force over mu F_z.
+        Residual of the step solver summed over the steps, a force over mu F_z.
     solves : int
-        Number of these steps.
+        Number of steps.
     """
 
     residual: np.ndarray
@@ -56,13 +58,13 @@ class StaticState(NamedTuple):
 
 
 def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:
-    """Tractions at the first turning point under the oscillation alone, mean removed.
+    """Tractions at the first turning point under the oscillation alone, without their mean.
 
-    oscillation(phase) -> rigid displacement without forward motion; the phase -pi/2 is the turning
-    point meant.  Shape of the contact's states.
+    oscillation(phase) -> rigid displacement without forward motion; the first turning point is at
+    the phase -pi/2.  The result has the shape of the states of the contact.
     """
-    # by Masing's rule the first quarter from a stress-free start already ends on the closed loop,
-    # and at the other turning point tractions are the same with the opposite sign
+    # by Masing's rule the first quarter from a stress-free start ends on the closed loop; the
+    # tractions at the other turning point have the opposite sign
     return -_quarter_march(contact, oscillation, step_tolerance).state
 
 
@@ -79,10 +81,10 @@ def _quarter(oscillation: Callable) -> Path:
 
 
 def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """The constant tractions R, point by point; arrays (2, ...), forward component first.
+    """The constant tractions R at every point; arrays of shape (2, ...), forward component first.
 
-    The two discs |R +- q| <= g intersect in a lens.  Its point furthest forward is the forward tip
-    of one of the discs where the other contains it, else the forward corner of the lens.
+    The two discs |R +- q| <= g intersect in a lens.  R is the forward tip of one disc if the other
+    disc contains it, else the forward corner of the lens.
     """
     q_forward, q_lateral = oscillating
     size = np.hypot(q_forward, q_lateral)
@@ -91,7 +93,7 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
         slope = np.where(size > 0.0, np.abs(q_lateral) / size, 1.0)
         turn = np.where(size > 0.0, -np.sign(q_lateral) * q_forward / size, 0.0)
     corner = height * np.stack([slope, turn])
-    # the disc whose centre lies behind has its tip inside the other one, if any has
+    # only the disc with the centre further back can have its tip inside the other disc
     ahead = np.abs(q_forward)
     tip = np.stack([bound - ahead, -np.sign(q_forward) * q_lateral])
     other = np.hypot(bound - 2.0 * ahead, 2.0 * q_lateral)
@@ -100,7 +102,7 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
 
 
 def static_state(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticState:
-    """The StaticState of a contact; arguments as for `oscillating_part`."""
+    """The StaticState of a contact; for the arguments see `oscillating_part`."""
     march = _quarter_march(contact, oscillation, step_tolerance)
     residual = residual_part(-march.state, contact.bound)
     return StaticState(residual, -march.state, march.residual, march.solves)

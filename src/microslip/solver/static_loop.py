@@ -1,17 +1,17 @@
-"""The static limit of an oscillation that is not to and fro on a line, and of one of the load.
+"""The static limit of motions on a loop and of oscillating normal loads.
 
-static_limit.py says why the limit is a problem of its own at every point.  On a line two instants
-count; here the whole period does.  Let q(t) be the tractions that the oscillation alone settles
-into, g(t) the friction bound.  A constant traction s may be added wherever it leaves |q + s| <= g
-at all times, and where a point drifts forward s is the best there is:
+As static_limit.py explains, the limit is a separate problem at every point.  On a line two instants
+matter; here the whole period does.  Let q(t) be the periodic tractions of the oscillation alone and
+g(t) the friction bound.  A constant traction s can be added if |q + s| <= g at all times.  At a
+point that drifts forward, s has the largest forward component:
 
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
-Where points slip in every period of the oscillation alone, no s but 0 is left, for q is on the
-bound in directions that balance.  Their mean counts: a loop that is not its own image under a turn
-by half a period drags the contact along.  Where points never slip, q is known up to a constant,
-whatever the period began with, and the maximum makes up for it.
+At points that slip in every period of the oscillation alone, s is 0, since q reaches the bound in
+directions that balance.  There the mean of q remains: a loop that differs from its image half a
+period later drags the contact along.  At points that never slip, q has an arbitrary constant part,
+and the maximum does not depend on it.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02
-"""Drift in a radian, in u_lim, below which the stick zone of the static limit governs the state on
-a loop."""
+"""Drift in a radian of phase, in u_lim, below which a loop has its rings graded by the static
+limit."""
 MARCHES, MOST_ROUNDS = 120, 3
-"""Largest number of marches in a search for the periodic state, and largest number of searches: an
-accelerated search can stall on rounding, and then starts again."""
+"""Largest number of marches in a search for the periodic state, and largest number of searches.  An
+accelerated search that stalls on rounding starts again."""
 HALVINGS = 50
-"""Halvings of the interval with the largest shift: enough to reach rounding."""
+"""Bisections of the interval with the largest shift: enough to reach rounding."""
 
 
 class LoopLimit(NamedTuple):
@@ -47,14 +47,14 @@ class LoopLimit(NamedTuple):
     periodic : period_map.PeriodicState
         The periodic state of the oscillation alone.
     shift : np.ndarray, shape (2, ...)
-        s at every point.
+        Shift s at every point.
     force : float
         Mean forward force, over mu F_z.
     solver_residual : float
-        Summed step residual of the last march of the search and of the march that shows the
-        tractions, a force over mu F_z.
+        Residual of the steps, summed over the last march of the search and the march that computes
+        the tractions, a force over mu F_z.
     solves : int
-        Number of these stages.
+        Number of stages in these two marches.
     """
 
     periodic: PeriodicState
@@ -74,16 +74,16 @@ def loop_limit(
     contact : contact.Contact
         The contact.
     problem : problem.Problem
-        Its velocity is 0.
+        The problem at velocity 0.
     path : path.Path
-        A period of the problem, or half of one.
+        Path over a period, or half a period.
     tolerance, step_tolerance : float
         Tolerances of the state and of a step, forces over mu F_z.
 
     Returns
     -------
     LoopLimit
-        `periodic.converged` tells whether the search converged.
+        The limit; `periodic.converged` is False if the search failed.
     """
     mirror = problem.half_period_mirror
     period_map = PeriodMap(contact, path, mirror=mirror)
@@ -91,55 +91,54 @@ def loop_limit(
     start = np.zeros((2, *shape))
     goal, rounds = Goal(tolerance, step_tolerance, MARCHES), []
     for _ in range(MOST_ROUNDS):
-        found = find_periodic_state(period_map, start, goal)
-        rounds.append(found)
-        start = found.start
-        if found.converged:
+        periodic = find_periodic_state(period_map, start, goal)
+        rounds.append(periodic)
+        start = periodic.start
+        if periodic.converged:
             break
     counts = ("marches", "iterations", "solves")
-    found = replace(found, **{n: sum(getattr(one, n) for one in rounds) for n in counts})
-    force = float(mean_forces(contact, problem, path, found.forces)[FORWARD])
-    residual, solves = found.solver_residual, path.solves
+    periodic = replace(periodic, **{n: sum(getattr(one, n) for one in rounds) for n in counts})
+    force = float(mean_forces(contact, problem, path, periodic.forces)[FORWARD])
+    residual, solves = periodic.solver_residual, path.solves
     if not contact.sticks:
-        return LoopLimit(found, np.zeros((2, *shape)), force, residual, solves)
-    shown = frames(contact, path, start, step_tolerance, found)
-    residual, solves = residual + shown.residual, solves + shown.solves
-    tractions = shown.tractions
+        return LoopLimit(periodic, np.zeros((2, *shape)), force, residual, solves)
+    march = frames(contact, path, start, step_tolerance, periodic)
+    residual, solves = residual + march.residual, solves + march.solves
+    tractions = march.tractions
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     if mirror:
         bounds = np.concatenate([bounds, bounds])
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
     shift = largest_shift(tractions, bounds)
     force += float(np.sum(contact.weight * shift[FORWARD]))
-    return LoopLimit(found, shift, force, residual, solves)
+    return LoopLimit(periodic, shift, force, residual, solves)
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """The shift s with the largest forward component among all with |q + s| <= g at all phases.
+    """The shift s with the largest forward component for which |q + s| <= g at all phases.
 
-    Where s = 0 fits, so does every smaller shift than the largest one: the discs |q + s| <= g are
-    convex, and so is what they share.
+    The discs |q + s| <= g are convex, and so is their intersection.  Since it contains s = 0, it
+    contains every forward shift below the largest one.
 
     Parameters
     ----------
     tractions : np.ndarray, shape (phases, 2, ...)
-        q, forward first.
+        Tractions q, forward component first.
     bounds : np.ndarray, shape (phases, ...) or broadcast to it
-        g, where no q is beyond it by more than rounding.
+        Friction bounds g, exceeded by q only by rounding.
 
     Returns
     -------
     np.ndarray, shape (2, ...)
-        s at every point.  Its lateral component is the middle of the allowed interval, 0 where the
-        forward one is 0.
+        Shift s at every point.  Its lateral component is the middle of the allowed interval, or 0
+        if the forward component is 0.
     """
     forward, lateral = tractions[:, 0], tractions[:, 1]
-    bounds = np.maximum(bounds, np.hypot(forward, lateral))  # s = 0 does fit
+    bounds = np.maximum(bounds, np.hypot(forward, lateral))  # so that s = 0 is allowed
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift fits the discs of all phases, and the bounds of the lateral shift
-        there."""
+        """Whether a forward shift fits the discs of all phases, and the lateral bounds."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

@@ -1,4 +1,4 @@
-"""One run of the static limit at one resolution: nothing moves forward, but it is a Run too."""
+"""One run of the static limit at one resolution."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""How much more than the distance from the periodic state of the oscillation alone the limit may
-feel: three times were seen.  Where points slip, every step puts them on the bound, so that no
-shift is left to them however far the state is from periodic."""
+"""Error of the limit over the distance from the periodic state of the oscillation alone.  Tests
+found at most 3.  Slipping points are on the bound after every step, and have no shift."""
 LOOP_STEP_SHARE = 1e-4
-"""Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
-its distance from the bound."""
+"""Tolerance of a step over that of the periodic state.  The shift of a point depends on the square
+root of its distance from the bound."""
 ENOUGH = 4.0
-"""Factor on the requested distance that is still accepted where rounding limits the search."""
+"""Largest accepted distance over the requested one, since rounding limits the search."""
 MOST_PASSES = 4
+"""Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
 """Largest number of edges of the stick zone; more edges count as scatter."""
 SLIVER = 1e-3
-"""Width, over the contact radius, of what is taken for scatter between two edges: where little
-slips, rings next to an edge have almost nothing left on either side of it."""
+"""Largest distance of two edges that counts as scatter, over the contact radius.  With little slip,
+the rings next to an edge have almost no shift on either side."""
 NOTHING_LEFT = 1e-2
-"""Share of the largest bound that a ring outside of the stick radius may seem to have left."""
+"""Largest shift of a ring outside the stick radius, over the largest bound."""
 
 
 def simulate_static(
@@ -45,10 +45,10 @@ def simulate_static(
     tolerance: float,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """The limit of vanishing velocity at one resolution: arguments and Run as simulate.simulate.
+    """Run the static limit at one resolution; arguments and result are those of simulate.simulate.
 
-    The velocity of the problem is 0.  The rigid contact keeps no residual traction: 0 where the
-    oscillation is on a line.
+    The velocity of the problem is 0.  For a rigid contact and an oscillation on a line the limit
+    is 0.
     """
     try:
         if at_turning_points(problem):
@@ -59,18 +59,18 @@ def simulate_static(
 
 
 def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
-    force, solves, left, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
+    force, solves, residual, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
     if contact.sticks:
         limit = static_state(contact, problem.displacement, step_tolerance)
         force = float(forces(contact, limit.residual)[FORWARD])
-        solves, left = limit.solves, limit.solver_residual
-    reason = unsolved(left, solves, step_tolerance)
+        solves, residual = limit.solves, limit.solver_residual
+    reason = unsolved(residual, solves, step_tolerance)
     return Run(
         mu=force / problem.mean_load,
         torque=0.0,
         distance=0.0,
-        solver_residual=left / problem.mean_load,
-        periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
+        solver_residual=residual / problem.mean_load,
+        periods=0.0,  # the limit takes a quarter of a period without a search
         effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
         reason=reason,
@@ -80,15 +80,15 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
 def _on_a_loop(
     problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
 ) -> Run:
-    if settings.focus is not None:  # the edges are known
+    if settings.focus is not None:  # the edges of the stick zone are known
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
-    done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
-    effort = sum((one.effort for one in done), Effort())
-    return replace(done[-1], periods=sum(one.periods for one in done), effort=effort)
+    runs, _ = edges_on_a_loop(problem, model, resolution, tolerance, settings)
+    effort = sum((one.effort for one in runs), Effort())
+    return replace(runs[-1], periods=sum(one.periods for one in runs), effort=effort)
 
 
-def gathered_on_a_loop(
+def edges_on_a_loop(
     problem: Problem,
     model: str,
     resolution: Resolution,
@@ -96,25 +96,23 @@ def gathered_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Runs on rings that gather at the edges of what never slips, which no formula tells; arguments
-    as for `simulate_static`.
+    """Find the edges of the stick zone of a motion on a loop; no formula gives them.
 
-    progress: called with the Resolution of every run before it starts, None: nothing is.
-    Returns the Runs, of which the last is the answer, and the radii of these edges, none if nothing
-    sticks, or everything, or the contact tells no radii.
+    The arguments are those of `simulate_static`, and progress: called with the Resolution of every
+    run before it starts.  Returns the Runs, of which the last one is the answer, and the radii of
+    the edges; there are none if the whole contact sticks or slips, or if it has no rings.
     """
 
-    def run_on(contact: Contact) -> np.ndarray | None:
-        run, left = _on_these_points(contact, problem, resolution, tolerance, settings)
-        done.append(run)
-        return left if run.converged else None
+    def points_that_stick(contact: Contact) -> np.ndarray | None:
+        run, sticks = _on_these_points(contact, problem, resolution, tolerance, settings)
+        runs.append(run)
+        return sticks if run.converged else None
 
-    done: list[Run] = []
-    radii = _gathered(_contacts(problem, model, resolution, settings, progress), run_on)
-    return done, radii
+    runs: list[Run] = []
+    return runs, _edges(problem, model, resolution, points_that_stick, settings, progress)
 
 
-def gathered_on_a_line(
+def edges_on_a_line(
     problem: Problem,
     model: str,
     resolution: Resolution,
@@ -124,67 +122,62 @@ def gathered_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
-    tell; near: what they are about, where that is known."""
+    """Radii of the edges of the stick zone of a motion on a line, from its turning points.
 
-    def run_on(contact: Contact) -> np.ndarray | None:
+    The arguments are those of `edges_on_a_loop`, and near: approximate radii, if they are known.
+    """
+
+    def points_that_stick(contact: Contact) -> np.ndarray | None:
         limit = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
         if unsolved(limit.solver_residual, limit.solves, STEP_SHARE * tolerance):
             return None
         bounds = np.broadcast_to(contact.bound, limit.residual[0].shape)
         return np.hypot(*limit.residual) > NOTHING_LEFT * bounds.max()
 
-    return _gathered(_contacts(problem, model, resolution, settings, progress), run_on, near)
+    return _edges(problem, model, resolution, points_that_stick, settings, progress, radii=near)
 
 
-def _contacts(
+def _edges(
     problem: Problem,
     model: str,
     resolution: Resolution,
+    points_that_stick: Callable[[Contact], np.ndarray | None],
     settings: Settings,
     progress: Callable[[Resolution], object] | None,
-) -> Callable[[Focus | None], Contact]:
-    """contact(focus) -> the contact of a run that is about to start."""
+    *,
+    radii: tuple[float, ...] = (),
+) -> tuple[float, ...]:
+    """Radii of the edges of the stick zone on rings that are graded towards them.
 
-    def contact(focus: Focus | None) -> Contact:
+    Repeats the run on new rings until the radii stay the same, or MOST_PASSES times.
+    points_that_stick(contact) -> which points stick, None: unknown; radii: first grading.
+    """
+    for _ in range(MOST_PASSES):
         if progress is not None:
             progress(resolution)
-        return settings.contact(problem, model, resolution, focus)
-
-    return contact
-
-
-def _gathered(
-    contact_at: Callable[[Focus | None], Contact],
-    run_on: Callable[[Contact], np.ndarray | None],
-    near: tuple[float, ...] = (),
-) -> tuple[float, ...]:
-    """Radii that stay where they are once rings gather there, or the last ones; run_on(contact) ->
-    which points have something left to resist with, or None."""
-    focus = Focus(near, STRONGEST_FOCUS) if near else None
-    radii: tuple[float, ...] = ()
-    for _ in range(MOST_PASSES):
-        contact = contact_at(focus)
-        radii = _stick_radii(contact, run_on(contact))
-        if not radii or (focus is not None and radii == focus.radii):
+        before, focus = radii, Focus(radii, STRONGEST_FOCUS) if radii else None
+        contact = settings.contact(problem, model, resolution, focus)
+        radii = _stick_radii(contact, points_that_stick(contact))
+        if not radii or radii == before:
             break
-        focus = Focus(radii, STRONGEST_FOCUS)
     return radii
 
 
-def _stick_radii(contact: Contact, left: np.ndarray | None) -> tuple[float, ...]:
-    """Radii between rings of which more than half has something `left` and others, the outermost
-    alone where there are too many; none where these are not known."""
+def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
+    """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
+
+    Returns the outermost radius alone if there are more than MOST_EDGES, none if `sticks` is None.
+    """
     edges = contact.edges
-    if left is None or edges is None:
+    if sticks is None or edges is None:
         return ()
-    sticks = (left.mean(axis=0) if left.ndim > 1 else left) > 0.5
+    sticks = (sticks.mean(axis=0) if sticks.ndim > 1 else sticks) > 0.5
     radii = _without_slivers([float(radius) for radius in edges[1:-1][np.diff(sticks)]])
     return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
 
 
 def _without_slivers(radii: list[float]) -> list[float]:
-    """Ascending radii without pairs that lie within a SLIVER of each other, the closest first."""
+    """Ascending radii without the pairs that are closer than SLIVER."""
     while len(radii) > 1:
         closest = int(np.argmin(np.diff(radii)))
         if radii[closest + 1] - radii[closest] > SLIVER:
@@ -196,30 +189,32 @@ def _without_slivers(radii: list[float]) -> list[float]:
 def _on_these_points(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """The Run on one contact, and which points have something left to resist with, if any has."""
+    """The Run on one contact, and a mask of the points that stick (None if the contact cannot)."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
-    limit, left = loop_limit(contact, problem, path, distance, inner), None
-    found = limit.periodic
+    limit, sticks = loop_limit(contact, problem, path, distance, inner), None
+    periodic = limit.periodic
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
-        left = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
-    near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
-    periods = periods_of(found.marches, problem)
+        sticks = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
+    near = (
+        periodic.converged or periodic.distance <= ENOUGH * distance
+    )  # the distance is part of the error
+    periods = periods_of(periodic.marches, problem)
     reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:
-        reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+        reason = f"no periodic state within {periods:g} periods: {periodic.distance:.1e} left"
     run = Run(
         mu=limit.force / problem.mean_load,
         torque=0.0,
-        distance=FELT * found.distance / problem.mean_load,
+        distance=FELT * periodic.distance / problem.mean_load,
         solver_residual=limit.solver_residual / problem.mean_load,
         periods=periods,
-        effort=Effort.of(found.solves, found.iterations, found.start.size),
+        effort=Effort.of(periodic.solves, periodic.iterations, periodic.start.size),
         converged=not reason,
         reason=reason,
-        # a constant traction does no work on a motion that returns
-        power=oscillation_power(problem, path, found.forces),
+        # a constant traction does no work over a closed loop
+        power=oscillation_power(problem, path, periodic.forces),
     )
-    return run, left
+    return run, sticks

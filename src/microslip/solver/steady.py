@@ -1,88 +1,54 @@
-"""The steady state of a motion that does not oscillate: marched until its tractions stand still."""
+"""The steady state of a motion without oscillation, found by marching."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
-from microslip.models.contact import Contact, energy_norm, forward_slip
+from microslip.models.contact import FORWARD, TORQUE, Contact, energy_norm, forward_slip
 from microslip.models.path import EULER, make_path
+from microslip.motions.problem import Problem
+from microslip.solver.effort import Effort
+from microslip.solver.run import Run
 
 STEADY_STRETCH = 8
-"""Steps marched between two looks at whether a steady motion has reached its steady state."""
+"""Number of steps between two checks of the steady state."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
-
-
-@dataclass(frozen=True, eq=False)
-class SteadyState:
-    """The steady state that a steady motion reaches.
-
-    Attributes
-    ----------
-    state : np.ndarray
-        Tractions.
-    forces : np.ndarray, shape (3,)
-        Forward, lateral, torque.
-    distance : float
-        Estimated distance from the steady state, a force over mu F_z.
-    solver_residual : float
-        Residual force of the step solver over mu F_z, summed over the last stretch.
-    stretches, iterations, solves : int
-        Number of stretches marched, and the effort (see run.Run).
-    converged : bool
-        Whether the distance is within the tolerance and every step was solved.
-    """
-
-    state: np.ndarray
-    forces: np.ndarray
-    distance: float
-    solver_residual: float
-    stretches: int
-    iterations: int
-    solves: int
-    converged: bool
+"""Largest number of such stretches of steps."""
 
 
 def steady_state(
-    contact: Contact,
-    displacement: Callable,
-    velocity: float,
-    tolerance: float,
-    step_tolerance: float,
-) -> SteadyState:
-    """March a steady motion until its tractions stand still.
+    contact: Contact, problem: Problem, tolerance: float, step_tolerance: float
+) -> Run:
+    """March a steady motion until its tractions no longer change.
 
     Parameters
     ----------
     contact : contact.Contact
         In full forward slip at the start.
-    displacement : callable
-        displacement(phase) -> (forward, lateral, angle).
-    velocity : float
-        Dimensionless, for the length of a step.
+    problem : problem.Problem
+        The steady motion; its velocity sets the length of a step.
     tolerance, step_tolerance : float
         Tolerances of the state and of a step, forces over mu F_z.
 
     Returns
     -------
-    SteadyState
-        Not converged where it does not settle in time.
+    Run
+        Forces and tractions at the end, with the residual of the last stretch.  It is not converged
+        if the tractions still change after MAX_STRETCHES stretches.
     """
-    step = STEADY_TRAVEL / max(1.0, velocity)
+    step = STEADY_TRAVEL / max(1.0, problem.velocity)
     state, iterations, solves = forward_slip(contact), 0, 0
     previous = distance = np.inf
-    for stretch in range(1, MAX_STRETCHES + 1):
-        phase = step * STEADY_STRETCH * (stretch - 1) + step * np.arange(STEADY_STRETCH + 1)
-        march = contact.march(make_path(displacement, phase, EULER), state, step_tolerance)
+    for stretch in range(MAX_STRETCHES):
+        phase = step * STEADY_STRETCH * stretch + step * np.arange(STEADY_STRETCH + 1)
+        march = contact.march(make_path(problem.displacement, phase, EULER), state, step_tolerance)
         change = energy_norm(contact, march.state - state)
         state = march.state
         iterations += march.iterations
         solves += march.solves
-        # the changes of a contraction fall geometrically; what is left is their tail
+        # the remaining changes are a geometric series
         if np.isfinite(previous):
             ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
             distance = change / (1.0 - ratio)
@@ -90,13 +56,15 @@ def steady_state(
         if distance <= tolerance:
             break
     solved = march.residual <= march.solves * step_tolerance
-    return SteadyState(
-        state,
-        march.forces[-1],
-        distance,
-        march.residual,
-        stretch,
-        iterations,
-        solves,
-        bool(distance <= tolerance and solved),
+    converged = bool(distance <= tolerance and solved)
+    return Run(
+        mu=float(march.forces[-1, FORWARD]),
+        torque=float(march.forces[-1, TORQUE]) / problem.pressure.torque,
+        distance=distance,
+        solver_residual=march.residual,
+        periods=0.0,
+        effort=Effort.of(solves, iterations, state.size),
+        converged=converged,
+        reason="" if converged else f"no steady state: {distance:.1e} left",
+        state=state,
     )

@@ -14,7 +14,7 @@ from microslip.adaptive.checks import (
     refuse_bounds,
 )
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.pulled import refuse_drive
+from microslip.adaptive.driven_contact import refuse_drive
 from microslip.adaptive.request import TOLERANCE
 from microslip.adaptive.result import Result
 from microslip.config.axes import DRIVES
@@ -90,7 +90,7 @@ def solve_stored(
     if problem.drive is not None:
         refuse_drive(problem, chosen)
     if tolerance is None:
-        from microslip.adaptive.moved import refuse_choice  # loads compiled code
+        from microslip.adaptive.friction import refuse_choice  # only now: it loads compiled code
 
         moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
         refuse_choice(moving, model, cells, steps)

@@ -1,6 +1,6 @@
-"""A contact that marches with another solver of its steps, on a dense influence matrix.
+"""A contact with a dense influence matrix and a replaceable step solver.
 
-The solver is a compiled function
+The step solver is a compiled function
 
     solve(points: Points, stage: Stage, settings) -> (iterations, residual)
 
@@ -21,19 +21,20 @@ from microslip.models.contact import Contact, Guess, March, StepFailure, forces
 from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
-"""Residual of a step, over mu F_z, above which it counts as diverged rather than slow."""
+"""Residual of a step, over mu F_z, above which the solver counts as diverged."""
 MAX_DESCENTS = 3000
+"""Largest number of gradient steps in `descend`."""
 
 
 class Points(NamedTuple):
-    """The K points of a contact, for compiled code.
+    """Data of the K points of a contact, for compiled code.
 
     Attributes
     ----------
     matrix : np.ndarray, shape (2 K, 2 K)
-        A, forward components first.
+        Influence matrix A, forward components first.
     scale : np.ndarray, shape (K,)
-        Its diagonal.
+        Diagonal of A for the forward components.
     bound, weight : np.ndarray, shape (K,)
         Friction bound and area of each point.
     """
@@ -45,14 +46,14 @@ class Points(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """One step to be solved, for compiled code.
+    """Data of one stage, for compiled code.
 
     Attributes
     ----------
     b : np.ndarray, shape (2, K)
         Imposed displacement.
     q : np.ndarray, shape (2, K)
-        Tractions: initial guess, and solution.
+        Tractions: the initial guess, replaced by the solution.
     slip : np.ndarray, shape (2, K)
         Receives b - A q.
     tolerance : float
@@ -66,7 +67,7 @@ class Stage(NamedTuple):
 
 
 def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
-    """Settings of a solver that has none."""
+    """The settings of a step solver without settings."""
     return 0.0
 
 
@@ -100,7 +101,7 @@ class DenseContact:
         tolerance: float,
         previous: Guess | None = None,
     ) -> March:
-        """March along `path`; raises StepFailure at the first step that stays unsolved."""
+        """March along a path, see Contact; raises StepFailure if a step is not solved."""
         q = state.reshape(2, -1).copy()
         at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
         found = np.empty((path.steps + 1, 3))
@@ -127,7 +128,7 @@ class DenseContact:
             count, residual = self.solve(self.points, Stage(b, q, slip, tolerance), self.settings)
         except np.linalg.LinAlgError as error:
             raise StepFailure(f"diverged: {error}") from error
-        if not residual <= tolerance:  # NaN is not, either
+        if not residual <= tolerance:  # also true for NaN
             far = not residual <= FAR_FROM_SOLVED
             raise StepFailure(
                 f"{'diverged: ' if far else ''}a step was left unsolved after {count} iterations: "
@@ -149,17 +150,17 @@ class DenseContact:
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
-    """A function for `Method.dress` that turns a contact and parameters into a DenseContact."""
+    """`Method.dress` with a step solver: dress(contact, **parameters) -> DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 
 def safe_length(matrix: np.ndarray) -> float:
-    """Length of a gradient step that lowers the energy for certain: 1 / largest eigenvalue."""
+    """Length of a gradient step that always lowers the energy: 1 / largest eigenvalue."""
     return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
 
 
 def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
-    """The influence operator of a contact, column by column."""
+    """The influence matrix of a contact; shape: of its states."""
     size = int(np.prod(shape))
     columns = np.empty((size, size))
     unit = np.zeros(size)
@@ -172,9 +173,9 @@ def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
 
 @kernel
 def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> float:
-    """Fill slip = b - A q, all (2, K), and return the residual of the step."""
+    """Compute slip = b - A q, arrays of shape (2, K), and return the residual of the step."""
     moved, n = points.matrix @ q.ravel(), q.shape[1]
-    for c in range(2):  # as loops, since assignments of arrays take seconds to compile
+    for c in range(2):  # loops, since array assignments take seconds to compile
         for i in range(n):
             slip[c, i] = b[c, i] - moved[c * n + i]
     shape = (2, 1, q.shape[1])
@@ -184,7 +185,7 @@ def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> flo
 
 @kernel
 def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
-    """Shrink every traction of q, (2, K), onto its bound."""
+    """Project the tractions q, shape (2, K), on the friction bound."""
     for i in range(q.shape[1]):
         f = shrink(q[0, i], q[1, i], bound[i])
         q[0, i] *= f
@@ -193,8 +194,7 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel
 def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
-    (K,); see the module's docstring."""
+    """Solve a step by projected gradient steps; length, shape (K,): fixed step of each point."""
     b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

@@ -1,6 +1,6 @@
-"""Simple searches for the periodic state, to compare with, and the marches in Python that they use.
+"""Simple searches for the periodic state, for comparison, and the marches in Python that they use.
 
-All searches return a period_map.PeriodicState.
+Every search takes a period_map.PeriodMap, a start and a Goal, and returns a PeriodicState.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 from microslip.states.search import largest_excess
 
 SLOWEST = 1.0 - 1e-6
-"""Largest ratio of two changes that is believed: rounding alone makes it 1."""
+"""Largest ratio of two successive changes in an extrapolation; by rounding it can be 1."""
 FORCING = 1e-3
-"""Tolerance of a step over the last change of the state, while the state is far from periodic."""
+"""Tolerance of a step over the last change of the state, far from the periodic state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""First tolerance of a step, from a start that is far and from one that is near."""
+"""First tolerance of a step, for a distant start and for a near start."""
 DEPTH = 12
-"""Differences in the least squares of Anderson's method."""
+"""Number of differences in the least-squares problem of Anderson acceleration."""
 NOISE = 0.1
-"""Largest residual of the steps over the change of the state; above it the march is repeated with
-better solved steps."""
+"""Largest residual of the steps over the change of the state; above it the march is repeated with a
+smaller tolerance of the steps."""
 QUIET = 0.25
-"""Share of NOISE allowed to the steps of the next march from a near start."""
+"""Fraction of NOISE that sets the tolerance of the steps after a near start."""
 FORGETFUL = 0.2
-"""Contraction of the plain map since the start below which it needs no acceleration."""
+"""Contraction of the plain map from march to march below which it needs no acceleration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +41,7 @@ class MarchInterval:
     state : np.ndarray
         Tractions at the start.
     image : np.ndarray
-        Tractions at the start of the next march: at the end of the period, or the mirror image of
-        those in its middle.
+        Tractions at the start of the next march: those at the end, mirrored for half a period.
     residual : float
         Size of image - state, as a force over mu F_z.
     march : contact.March
@@ -56,11 +55,11 @@ class MarchInterval:
 
 
 class Marches:
-    """Calls the marches of a period_map.PeriodMap one by one.
+    """Marches of a period_map.PeriodMap, one by one, with their effort.
 
-    Marches(period_map)(state, step_tolerance) is a MarchInterval.  The estimated distance from the
-    fixed point, a force, is the largest of three: the residual, the last correction, and the excess
-    of the force over the static limit times residual / gain, see search.largest_excess.
+    The estimated distance from the fixed point, a force, is the largest of three numbers: the
+    residual, the last correction, and the excess of the force over the static limit times
+    residual / gain, see search.largest_excess.
     """
 
     def __init__(self, period_map: PeriodMap):
@@ -73,7 +72,7 @@ class Marches:
     def __call__(self, state: np.ndarray, step_tolerance: float) -> MarchInterval:
         """March once from `state`; steps are solved to `step_tolerance`.
 
-        Raises StepFailure where the tractions blow up.
+        Raises StepFailure if the tractions diverge.
         """
         self._march = march = self.contact.march(
             self.path, state, step_tolerance, previous=self._march
@@ -88,7 +87,7 @@ class Marches:
         return MarchInterval(state, image, energy_norm(self.contact, change), march)
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
-        """The state projected on the friction bound, if the integrator respects it."""
+        """The state, projected on the friction bound if the integrator keeps to the bound."""
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
@@ -117,24 +116,24 @@ class Marches:
 
 
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Anderson acceleration of marches that Python calls one by one.
+    """Search by Anderson acceleration of marches in Python.
 
-    The start should have too much forward traction rather than too little.  This prevents
+    The start should have too much forward traction rather than too little, which prevents
     convergence to a state without slip.
 
     Parameters
     ----------
     period_map : period_map.PeriodMap
-        The map.
+        The map over a (half) period.
     start : np.ndarray
-        Tractions.
+        Tractions at the start.
     goal : period_map.Goal
         Tolerances and largest number of marches.
 
     Returns
     -------
     period_map.PeriodicState
-        The converged state, else the best one.
+        The converged state, or the one with the smallest distance.
     """
     marches = Marches(period_map)
     accelerate, step_tolerance = Anderson(marches.metric, DEPTH), goal.step_tolerance
@@ -152,7 +151,7 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
         ceiling = NOISE * inner if noisy else loosest
         inner = max(step_tolerance, min(forcing * interval.residual, ceiling))
         if noisy:
-            continue  # the residual of the steps hides the change of the state
+            continue  # the residual of the steps exceeds the change of the state
         forgets = forgets and interval.residual <= FORGETFUL * last_residual
         last_residual = interval.residual
         proposal = accelerate(state, interval.image)
@@ -169,9 +168,9 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
 
 
 def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """March on until the plain map stands still, as strictly as the shipped search judges it.
+    """Search by the plain march, with the distance estimate of the shipped search.
 
-    What is left is the geometric tail of the changes, in the ratio of the last two.
+    The remaining changes are extrapolated as a geometric series by the ratio of the last two.
     """
     marches, state, last, distance = Marches(period_map), start, None, float("inf")
     for _ in range(goal.most_marches):
@@ -188,7 +187,7 @@ def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState
 
 
 def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """March on until the mean force of two half periods is the same to the tolerance."""
+    """Search by the plain march until the mean forces of two intervals differ by the tolerance."""
     marches, state, last = Marches(period_map), start, float("inf")
     for _ in range(goal.most_marches):
         interval = marches(state, goal.step_tolerance)
@@ -201,7 +200,7 @@ def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
 
 
 def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
+    """Search by Anderson acceleration until the plain map changes less than the tolerance."""
     marches = Marches(period_map)
     accelerate, state = Anderson(marches.metric, DEPTH), start
     for _ in range(goal.most_marches):
@@ -213,7 +212,7 @@ def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Peri
 
 
 class Anderson:
-    """Anderson acceleration of a fixed-point map on tractions, least squares in a force metric."""
+    """Anderson acceleration of a map of tractions; metric: weights of the least squares."""
 
     def __init__(self, metric: np.ndarray, depth: int):
         self.scale = np.sqrt(metric)
@@ -222,7 +221,7 @@ class Anderson:
         self.changes: list[np.ndarray] = []
 
     def __call__(self, state: np.ndarray, image: np.ndarray) -> np.ndarray:
-        """Next state from the pairs (state, image) seen so far."""
+        """The next state, from the pairs (state, image) of all calls so far."""
         self.images.append(image)
         self.changes.append(image - state)
         if len(self.changes) > self.depth + 1:

@@ -1,7 +1,7 @@
-"""ADMM on the dense matrix: a linear solve, factorised once, and a projection in turns.
+"""ADMM on the dense matrix: alternately a linear solve, factorised once, and a projection.
 
-penalty: over the self-influence of each point; relaxation: 1 none, below 2.  It converges for any
-penalty; how fast depends on it.
+penalty: over the self-influence of each point; it changes the rate of convergence only.
+relaxation: between 1 (none) and 2.
 """
 
 from __future__ import annotations

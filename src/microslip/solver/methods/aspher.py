@@ -1,20 +1,20 @@
 """The incremental frictional solver of the package aspher, on the same squares and the same path.
 
-V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause); it is asked only where it is
-installed.  It solves the normal contact on the squares, then one tangential problem a step by a
-projected conjugate gradient method: backward Euler.  It knows translations alone, at any nu.
+V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The method needs this package.
+It solves the normal contact on the squares, then one tangential problem per step of backward Euler
+by a projected conjugate gradient method.  It supports translations only, at any nu.
 
-It marches from no traction, without any search, until the means of two periods agree or for
-MOST_PERIODS: only where the forward motion is fast does the state become periodic in that time.
-Two settings are not its own:
+The march starts without tractions and ends when the means of two periods agree, or after
+MOST_PERIODS.  In that time only fast forward motions become periodic.  Two settings differ from the
+defaults of the package:
 
-- Without its preconditioner, which suits points that stick: where slip turns its direction it takes
-  about five times as many iterations with it, for means that are no better.
-- A step that it would refuse counts as failed, and the march goes on from the best tractions that
-  it found.  Left to itself it falls back to those before the step, and the means become worthless.
+- The preconditioner is off.  It suits sticking points; when the slip changes its direction, it
+  takes about five times as many iterations for means that are no better.
+- A step that the package rejects counts as failed, and the march continues from its best tractions.
+  By default the package returns to the tractions before the step, and the means become wrong.
 
-An iteration of its takes two products with the influence operator, where one of ours takes one:
-the effort counts iterations all the same.
+An iteration takes two products with the influence operator, one more than ours.  The effort counts
+iterations.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from microslip.solver.run import Run, failed_run
 from microslip.theory.hertz import G_STAR
 
 MOST_PERIODS = 6
+"""Largest number of periods marched."""
 ACCEPTED = 1e-2
-"""Its own limit of a solved step: largest change of a traction in a projected step, over the
+"""Limit of a solved step in the package: largest change of a traction in a projected step, over the
 largest bound."""
 
 
 class Solver:
-    """A sphere under load on `cells` x `cells` squares over [-1, 1]^2, to be moved step by
-    step; working units, mu = 1."""
+    """A loaded sphere on `cells` x `cells` squares over [-1, 1]^2; working units, mu = 1."""
 
     def __init__(self, cells: int, poisson: float):
         import aspher
@@ -67,27 +67,31 @@ class Solver:
         self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
 
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
-        """Move on to a rigid displacement (in u_lim); returns the forward force (over mu F_z) and
-        the residual, as coulomb.coulomb_residual.  Takes note of steps that failed."""
+        """Move to a rigid displacement (in u_lim) and count the step, also if it failed.
+
+        Returns the forward force (over mu F_z) and the residual, see coulomb.coulomb_residual.
+        """
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters
         self.solves += 1
         self.failed += not (step.converged and step.proj_residual <= ACCEPTED)
         q, slip = np.stack([step.qx, step.qy]), np.stack([step.slip_x, step.slip_y])
-        left = project(q + slip / self.scale, self.bound) - q
-        force, residual = q[0].sum(), np.hypot(*left).sum()
+        remaining = project(q + slip / self.scale, self.bound) - q
+        force, residual = q[0].sum(), np.hypot(*remaining).sum()
         return float(force) * self.size**2, float(residual) * self.size**2
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
-    """March the half period of this number, from 0; returns the forward forces at its phases, the
-    first one left out, and the sum of the residuals."""
+    """March a half period; number: 0, 1, ....
+
+    Returns the forward forces at its phases, except the first, and the sum of the residuals.
+    """
     start, end = path.positions[0, :2], path.positions[-1, :2]
     sign = (-1) ** number
     forward = path.positions[1:, 0] - start[0] + number * (end[0] - start[0])
     lateral = sign * path.positions[1:, 1] - start[1]
-    found = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
-    return found[:, 0], float(found[:, 1].sum())
+    steps_made = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
+    return steps_made[:, 0], float(steps_made[:, 1].sum())
 
 
 def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float) -> Run:

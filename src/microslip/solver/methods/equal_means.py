@@ -1,6 +1,6 @@
-"""The plain march, stopped when the mean friction of two half periods agrees.
+"""Plain march until the mean friction of two half periods agrees.
 
-The state drifts on long after two means look alike: the slower the motion, the longer.
+The state of slow motions drifts on long after two means agree.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Backward Euler: robust, never beyond the bound, first order."""
+"""Backward Euler: robust, tractions never exceed the bound, first order."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Semismooth Newton's method on q = P(q + slip / scale), always with the full step.
+"""Semismooth Newton method for q = P(q + slip / scale), with full steps.
 
-Near the solution it takes a few steps; further away the set of slipping points flips back and forth
-and nothing brings it down.  Points where the bound is next to nothing flip first.
+It converges in a few steps near the solution.  Further away the set of slipping points can change
+back and forth without end, first at points with a very small bound.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MAX_ITERATIONS = 60
 
 @kernel
 def _copy(out: np.ndarray, values: np.ndarray) -> None:
-    """out = values, (2, K) both; an assignment of arrays takes seconds to compile."""
+    """Copy values to out, both (2, K); array assignments take seconds to compile."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] = values[c, i]

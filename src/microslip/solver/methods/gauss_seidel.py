@@ -1,6 +1,6 @@
-"""Projected Gauss-Seidel: point after point, each seeing what those before it did.
+"""Projected Gauss-Seidel iteration, point after point.
 
-It lowers the energy with every point, so it converges for any relaxation between 0 and 2.
+Every point lowers the energy, so the iteration converges for a relaxation between 0 and 2.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ MAX_ITERATIONS = 1000
 
 
 def _columns(matrix: np.ndarray, scale: np.ndarray, relaxation: float) -> tuple[np.ndarray, float]:
-    """The matrix by columns, which is how its entries are used, and the relaxation."""
+    """The transposed matrix, for contiguous access to columns, and the relaxation."""
     return np.ascontiguousarray(matrix.T), relaxation
 
 

@@ -1,7 +1,6 @@
-"""Every point corrects its own slip as if it were alone, all at once and undamped.
+"""Projected Jacobi iteration: every point removes its own slip, independently and undamped.
 
-Neighbours answer to the same slip together and overshoot: the matrix of a contact is far from
-diagonal.
+Neighbouring points overshoot together, since the matrix of a contact is far from diagonal.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
-    """Length of the step that would remove the slip of a single point, times the damping."""
+    """Step of every point: the one that removes the slip of a single point, times the damping."""
     return damping / scale
 
 

@@ -1,4 +1,4 @@
-"""No acceleration: period after period, until the state repeats itself."""
+"""Plain march, period after period, until the state is periodic."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The implicit midpoint rule: second order where nothing changes, and no damping at all.
+"""The implicit midpoint rule: second order for smooth solutions, without damping.
 
-Coulomb's law holds at the middle of a step; the end is extrapolated from there, so that tractions
-leave the friction bound and the error of one step comes back in the next with the other sign.
+Coulomb's law holds in the middle of a step.  The tractions at the end are extrapolated and can
+exceed the friction bound, and the error of a step returns in the next one with the opposite sign.
 """
 
 from __future__ import annotations

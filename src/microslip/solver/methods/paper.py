@@ -1,8 +1,8 @@
 """The paper's own run: 32 x 32 squares, backward Euler, 8,000 steps from full slip, no search.
 
-R. Pohrt, Front. Mech. Eng. 6:566440 (2020): stresses to 0.1 %, and the mean of the last period.  A
-period has 100 steps here; a step counts as solved once its tractions are off Coulomb's law by 0.1 %
-of the total friction.  Whatever resolution is asked for, this is what runs.
+R. Pohrt, Front. Mech. Eng. 6:566440 (2020): stresses to 0.1 %, and the mean of the last period.
+Here a period has 100 steps.  A step is solved when its residual is 0.1 % of the total friction.
+The requested resolution is ignored.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ STRESS_TOLERANCE = 1e-3
 
 
 def path_of(problem: Problem, steps: int = STEPS) -> Path:
-    """Path of so many steps from the middle of a stroke."""
+    """Path of a number of steps from the middle of a stroke."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 

@@ -1,6 +1,7 @@
-"""Projected gradient with a fixed step: safe up to twice the reciprocal of the largest eigenvalue.
+"""Projected gradient with a fixed step, stable below twice the inverse of the largest eigenvalue.
 
-Short enough to be safe it is slow, since smooth tractions yield far more than rough ones.
+A stable step converges slowly, since the compliance of smooth tractions is far larger than that of
+rough ones.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
-    """`step` in units of the reciprocal of the largest eigenvalue, for every point."""
+    """Step of every point; step: in units of the inverse of the largest eigenvalue."""
     return np.full_like(scale, step * safe_length(matrix))
 
 

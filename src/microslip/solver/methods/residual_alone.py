@@ -1,6 +1,6 @@
-"""Anderson acceleration from full slip, which believes a small residual of the plain map.
+"""Anderson acceleration from full slip, stopped by the residual of the plain map alone.
 
-Where the drift is slow a state changes so little in a period that a small residual proves nothing.
+At a slow drift every state changes little in a period, so a small residual proves nothing.
 """
 
 from __future__ import annotations

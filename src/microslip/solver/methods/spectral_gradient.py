@@ -1,6 +1,6 @@
-"""Projected gradient with Barzilai-Borwein steps, as the squares ship with, on the dense matrix.
+"""Projected gradient with Barzilai-Borwein steps on the dense matrix, the step solver of squares.
 
-The length of a step is what the last one measured of the matrix along its own direction.
+The length of a step is the inverse curvature along the direction of the step before.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
-"""Iterations granted to long steps for halving the residual; then steps are short until it is."""
+"""Number of iterations in which long steps must halve the residual; after that steps are short."""
 
 
 def _shortest(matrix: np.ndarray, scale: np.ndarray) -> float:

@@ -1,8 +1,8 @@
-"""Fixed-point stick/slip switching: guess who slips and which way, solve for the rest, guess again.
+"""Fixed-point stick/slip switching: alternately the states of points and a linear solve.
 
-Slipping points keep their traction at the bound along the slip seen last, sticking points do not
-slip; then points beyond the bound are let go, and points dragged against their slip are caught.
-Nothing measures progress, so the guesses may chase each other for ever.
+The traction of a slipping point is on the bound along its last slip; sticking points do not slip.
+After the solve, a point beyond the bound slips, and a point whose slip opposes its traction sticks.
+Nothing guarantees progress, so the states can cycle.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
                 size = np.sqrt(q[0, i] ** 2 + q[1, i] ** 2)
                 if size > bound[i]:
                     sticks[i] = False
-                    slip[0, i], slip[1, i] = q[0, i], q[1, i]  # the way it was held back
+                    slip[0, i], slip[1, i] = q[0, i], q[1, i]  # the direction of its traction
             elif slip[0, i] * q[0, i] + slip[1, i] * q[1, i] < 0.0:
                 sticks[i] = True
     return MAX_ITERATIONS, residual

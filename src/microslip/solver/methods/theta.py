@@ -1,4 +1,4 @@
-"""The theta method a little beyond the midpoint: what rings there is damped here, slowly."""
+"""The theta method slightly above the midpoint rule, whose oscillations it damps slowly."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""The friction of a contact that is moved forward at a given velocity."""
+"""Friction of a contact at a prescribed velocity, with its error estimate."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple
 
 from microslip.adaptive.choice import choose_model
@@ -15,26 +15,25 @@ from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import refine, run_tolerance
 from microslip.motions.problem import Problem
-from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.run import Run, Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.stick_edge import edge_focus
 
 
-class Marched(NamedTuple):
-    """Arguments of refine.refine for a contact that is moved.
+class Plan(NamedTuple):
+    """Runs of a contact at a prescribed velocity: arguments of refine.refine.
 
     Attributes
     ----------
     run : callable
         run(resolution, guess) -> run.Run.
     ladder : ladder.Ladder
-        Its resolutions.
+        Ladder of resolutions.
     readings : list of callable
-        Like `run`, for other pressures that the same numbers may stand for.
+        Like `run`, for other pressures that agree with the same measured values.
     """
 
     run: Callable
@@ -42,32 +41,33 @@ class Marched(NamedTuple):
     readings: list[Callable]
 
 
-def marched(request: Request) -> Marched:
-    """The Marched of a point with a velocity of at least 0.
+def plan_for(request: Request) -> Plan:
+    """The Plan of a point with a velocity of at least 0.
 
-    Where the search for stick edges takes more than the point may, its run raises budget.Spent.
+    Its runs raise budget.Spent when the budget of the point is spent.
     """
     problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
-    try:
-        focus = found_focus(problem, request.model, request.budget, request.progress)
-    except Spent as spent:
-        return _nothing_to_run(spent)
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
     if request.tolerance is None:
         refuse_free(ladder, request.cells, request.steps)
     share = run_tolerance(tolerance)
-    settings = Settings(request.how, budget=request.budget, focus=focus)
+
+    @cache  # the search for the slip front counts once
+    def settings() -> Settings:
+        focus = edge_focus(problem, request.model, request.budget, request.progress)
+        return Settings(request.how, budget=request.budget, focus=focus)
 
     def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
+        how = settings()
         if request.progress is not None:
             request.progress(resolution)
         if problem.velocity == 0.0 and motion.periodic:
-            return simulate_static(problem, request.model, resolution, share, settings)
+            return simulate_static(problem, request.model, resolution, share, how)
 
         def run_at(velocity: float, guess: Run | None, tighter: bool = False) -> Run:
             there = replace(problem, velocity=velocity)
-            how_so = replace(settings, tighter=tighter)
-            return simulate(there, request.model, resolution, share, guess, how_so)
+            how_tight = replace(how, tighter=tighter)
+            return simulate(there, request.model, resolution, share, guess, how_tight)
 
         if request.method != SHIPPED or not motion.periodic:
             return run_at(problem.velocity, guess)
@@ -77,34 +77,24 @@ def marched(request: Request) -> Marched:
         partial(run, problem=replace(problem, pressure=other))
         for other in problem.pressure.readings
     ]
-    return Marched(run, ladder, readings)
+    return Plan(run, ladder, readings)
 
 
-def _nothing_to_run(spent: Spent) -> Marched:
-    """The Marched of a point whose budget was spent before its first run."""
-
-    def run(resolution: Resolution, guess: Run | None) -> Run:
-        raise spent
-
-    return Marched(run, Ladder(1, 0, 0), [])
-
-
-def solve_moved(request: Request) -> Result:
-    """The friction with its error estimate, a result.Result, of a point that has no closed form."""
-    problem, (run, ladder, readings) = request.problem, marched(request)
+def solve_friction(request: Request) -> Result:
+    """The Result of a contact at a prescribed velocity, by runs of a model."""
+    problem, (run, ladder, readings) = request.problem, plan_for(request)
     refined = refine(run, ladder, request.accuracy, readings)
-    steady = not problem.motion.periodic
     return Result(
         **request.point,
         model=request.model,
         friction=within_friction(problem, refined.value),
-        torque=refined.torque if steady else None,
-        **verdict(request, refined, ladder, request.tolerance),
+        torque=None if problem.motion.periodic else refined.torque,
+        **verdict(request, refined, request.tolerance),
     )
 
 
 def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
-    """Raise InputError where a resolution would have to be chosen without a tolerance."""
+    """Raise InputError if a resolution has to be chosen without a tolerance."""
     exact = no_vibration(problem)
     if exact is None and model == "auto":
         exact = unless_imposed(problem, None, cells, steps)

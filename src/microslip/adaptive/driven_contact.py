@@ -1,14 +1,14 @@
-"""The friction of a contact that a spring pulls, and the velocity of one that a force pulls."""
+"""Friction of a contact on a spring, and velocity of a contact under a prescribed force."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from operator import attrgetter
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
-from microslip.adaptive.request import Request, verdict, within_friction
+from microslip.adaptive.request import Request, driven_by, verdict, within_friction
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -26,54 +26,53 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.estimate.ladder import Ladder, ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance, unknown
+from microslip.estimate.ladder import ladder_for, refuse_free, with_mass
+from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
-from microslip.motions.drive import Drive, Force
+from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
+from microslip.solver.driven_run import Accuracy, simulate_driven
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Run, Settings
-from microslip.solver.stick_edge import found_focus
 from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
-"""Stated error of the velocity of a steady motion, over 1 and the velocity."""
+"""Error estimate of the velocity v of a steady motion, divided by max(1, v)."""
 COARSE_TOLERANCE = 1e-2
 """Tolerance of the coarse runs that locate the velocity under a force."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
-"""Resolution of a contact that is built for its stiffness only."""
+"""Resolution of the contact whose stiffness sets the steps of a mass."""
 FIRST_VELOCITY = 0.1
-"""Velocity for which the coarse runs are planned."""
+"""Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Least velocity of the coarse run under the force, over the velocity from the friction of coarse
-runs; a slower run under the force is not resolved and is not used."""
+"""Smallest accepted velocity of the coarse run under the force, divided by the velocity at which
+coarse runs have that friction.  A slower run is not resolved and is not used."""
 SCALE_SHARE = 0.9
-"""Share of the coarse velocity that the relative tolerance refers to."""
+"""Fraction of the coarse velocity to which the relative tolerance refers."""
 ROUGH_TOLERANCE = 3e-2
 """First tolerance of the static limit.  It is divided by 10 until the force differs from the limit
 by more than the error."""
 STATIC_TOLERANCE = 1e-3
-"""Largest accepted error of a static limit that a force is close to; the SI side asks for the same,
-so that both agree on what is below the threshold."""
+"""Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
+same value, so both agree on which forces are below the threshold."""
 GAP_MARGIN = 2.0
-"""Errors of the static limit above it at which the contact moves for certain."""
+"""Distance above the static limit, in units of its error, at which the contact certainly moves."""
 
 
 def refuse_drive(problem: Problem, model: str) -> None:
-    """Raise InputError where a model, by name, or a motion does not go with a drive."""
+    """Raise InputError if a model (by name) or a motion cannot be combined with the drive."""
     motion, drive = problem.motion, drive_of(problem)
     pulls = "stiffness" if drive.force is None else "force"
     if drive.force is not None and drive.force < 0.0 and not problem.propels:
         allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
         raise InputError("force", drive.force, allowed)
     if not MODELS[model].pulled:
-        raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
+        raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
     if drive.force is not None:
         if not motion.periodic:
             refuse_steady(problem)
@@ -83,8 +82,8 @@ def refuse_drive(problem: Problem, model: str) -> None:
         raise InputError("velocity", 0.0, allowed)
 
 
-def refuse_pull(request: Request) -> None:
-    """Raise InputError where what is asked does not go with a drive."""
+def refuse_request(request: Request) -> None:
+    """Raise InputError if the model, the motion or the method cannot be combined with the drive."""
     drive = drive_of(request.problem)
     refuse_drive(request.problem, request.model)
     if request.method != SHIPPED:
@@ -92,44 +91,36 @@ def refuse_pull(request: Request) -> None:
         raise InputError("method", request.method, f"allowed is {SHIPPED} with a {pulls}")
 
 
-def solve_pulled(request: Request) -> Result:
-    """The friction, or under a force the velocity, with its error estimate: a result.Result; see
-    microslip.solve.
+def solve_driven(request: Request) -> Result:
+    """The Result of a contact with a drive: its friction, or under a force its velocity.
 
-    It is for the caller to `refuse_pull` before.
+    The caller checks the request by `refuse_request` first.
     """
-    drive = drive_of(request.problem)
+    problem, drive = request.problem, drive_of(request.problem)
     if drive.force is not None:
         return _under_force(request)
-    body: dict[str, Any] = {
-        "stiffness": drive.stiffness,
-        "mass": drive.mass,
-        "damping": drive.damping,
-    }
-    problem = request.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
-        # what is steady stretches the spring to one length, whatever it is
-        return replace(solve_each(_prescribed(request)), **body)
+        # a constant force stretches the spring to a constant length
+        answer = solve_each(replace(request, problem=replace(problem, drive=None)))
+        return replace(answer, **driven_by(drive))
     bracket = _bracket(request)
     if bracket is not None:
-        point = request.point | {"model": CLOSED_FORM}
-        return replace(of_closed_form(point, bracket, request.seconds), **body)
-    refined, ladder = _refined(request, Accuracy(request.accuracy))
+        return of_closed_form(request.point | {"model": CLOSED_FORM}, bracket, request.seconds)
+    refined = _refined(request, Accuracy(request.accuracy))
     return Result(
         **request.point,
-        **body,
         model=request.model,
         friction=within_friction(problem, refined.value),
-        **verdict(request, refined, ladder, request.tolerance),
+        **verdict(request, refined, request.tolerance),
     )
 
 
 def _bracket(request: Request) -> tuple[float, None, float] | None:
-    """(mu, torque, error) by the energy bound of theory/bounds.py, or None where its error is above
-    the tolerance.
+    """(mu, torque, error) from the energy bound of theory/bounds.py.
 
-    The bound of a transverse or bore motion holds for any body on a spring: the work of the spring
-    in a period is the mean force times the way, a mass adds nothing, and a dashpot takes some away.
+    Returns None if the error is above the tolerance.  The bound for transverse and bore motions
+    also applies to a body on a spring: per period, the spring does the work of the mean force, a
+    mass does none, and a dashpot dissipates energy.
     """
     motion = request.problem.motion
     imposed = request.cells is not None or request.steps is not None
@@ -144,13 +135,8 @@ def _bracket(request: Request) -> tuple[float, None, float] | None:
     return (1.0 - 0.5 * drop, None, error) if error <= request.tolerance else None
 
 
-def _prescribed(request: Request) -> Request:
-    """The request at the prescribed velocity of the problem, without its drive."""
-    return replace(request, problem=replace(request.problem, drive=None))
-
-
 def _driven(request: Request, **drive: float) -> Request:
-    """The request with a changed drive."""
+    """The request with other fields of the drive, which is a Force."""
     problem = request.problem
     changed = problem.drive
     assert isinstance(changed, Force)
@@ -158,24 +144,24 @@ def _driven(request: Request, **drive: float) -> Request:
 
 
 def _under_force(request: Request) -> Result:
-    """The velocity under a force."""
+    """The Result of a contact under a prescribed force."""
     drive = drive_of(request.problem)
     if drive.mass == 0.0 and request.problem.motion.periodic:
         request = replace(request, problem=without_forward_motion(request.problem))
     problem, force = request.problem, force_of(request.problem)
-    if force < 0.0 and not problem.propels:  # a pull back is a pull forward, seen from behind
+    if force < 0.0 and not problem.propels:  # the mirror image of a forward force
         ahead = _under_force(_driven(request, force=-force))
         return replace(
             ahead, force=force, friction=-ahead.friction, mean_velocity=-ahead.mean_velocity
         )
     away = runs_away(problem)
     if away:
-        return _known(request, math.nan, math.inf, away)
+        return _without_runs(request, math.nan, math.inf, away)
     if not problem.motion.periodic:
         velocity = steady_velocity(problem)
-        return _known(request, velocity, STEADY_ERROR * max(1.0, velocity))
+        return _without_runs(request, velocity, STEADY_ERROR * max(1.0, velocity))
     if not oscillates(problem):
-        return _known(request, 0.0, 0.0)
+        return _without_runs(request, 0.0, 0.0)
     least = -math.inf
     if is_even(problem):
         static = _static(request, force)
@@ -185,7 +171,7 @@ def _under_force(request: Request) -> Result:
                 static = exact
         if _is_below(force, static):
             return replace(
-                _known(request, 0.0, 0.0),
+                _without_runs(request, 0.0, 0.0),
                 model=static.model,
                 cells=static.cells,
                 angles=static.angles,
@@ -194,32 +180,32 @@ def _under_force(request: Request) -> Result:
             least = _surely_moving(static)
             if not least < CLOSEST_FORCE:
                 error = static.mu_macro_error
-                return _given_up(
+                return _without_answer(
                     request,
-                    f"the error of the force threshold, {error:.1e}, does not tell whether the "
+                    f"the error of the force threshold, {error:.1e}, leaves open whether the "
                     "contact moves, and a larger force is too close to full friction",
                 )
     return _moving(request, max(force, least))
 
 
 def _is_below(force: float, static: Result) -> bool:
-    """Whether a force is below the static limit by its error or more."""
+    """Whether a force is below the static limit by at least the error of the limit."""
     return force <= static.mu_macro - static.mu_macro_error
 
 
 def _is_close(force: float, static: Result) -> bool:
-    """Whether the error of the static limit leaves open on which side of it a force is."""
+    """Whether a force differs from the static limit by less than the error of the limit."""
     low, high = (static.mu_macro + sign * static.mu_macro_error for sign in (-1, 1))
     return low < force <= high
 
 
 def _surely_moving(static: Result) -> float:
-    """A force at which the contact moves, by the error estimate of the static limit."""
+    """A force at which the contact certainly moves, given the error of the static limit."""
     return static.mu_macro + GAP_MARGIN * static.mu_macro_error
 
 
 def _static(request: Request, force: float) -> Result:
-    """The Result of the static limit, no more exactly than the force needs to be told from it."""
+    """The Result of the static limit, just accurate enough to be compared with the force."""
     rough = ROUGH_TOLERANCE
     while request.tolerance is not None and request.tolerance < rough:
         static = _at_rest(request, rough)
@@ -230,86 +216,74 @@ def _static(request: Request, force: float) -> Result:
 
 
 def _at_rest(request: Request, tolerance: float | None) -> Result:
-    """The Result of the static limit, to a tolerance."""
+    """The Result of the static limit at a tolerance."""
     problem = replace(request.problem, velocity=0.0, drive=None)
     return solve_each(replace(request, problem=problem, tolerance=tolerance))
 
 
-def _known(request: Request, velocity: float, error: float, reason: str = "") -> Result:
-    """The Result where nothing has to be marched."""
-    drive, force = drive_of(request.problem), force_of(request.problem)
+def _without_runs(request: Request, velocity: float, error: float, reason: str = "") -> Result:
+    """The Result for a velocity that follows without a run; reason: why it is not converged."""
+    force, tolerance = force_of(request.problem), request.tolerance
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
-        **_pulling(drive),
         model=CLOSED_FORM if request.chosen else request.model,
         friction=Estimate(math.copysign(1.0, force) if reason else force),
-        converged=not reason and _good_enough(error, velocity, request.tolerance),
+        converged=not reason and (tolerance is None or error <= tolerance * max(1.0, velocity)),
         periodic=not reason,
         reason=reason,
         solve_time_s=request.seconds,
     )
 
 
-def _good_enough(error: float, velocity: float, tolerance: float | None) -> bool:
-    return tolerance is None or error <= tolerance * max(1.0, abs(velocity))
+def _moving(request: Request, moving_force: float) -> Result:
+    """The Result of a moving contact.
 
-
-def _pulling(drive: Drive) -> dict[str, Any]:
-    """Fields that say how a force pulls."""
-    return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
-
-
-def _moving(request: Request, marched: float) -> Result:
-    """The Result of a contact that moves, marched under a force that it moves under for certain.
-
-    Where the static limit is not known well enough to tell whether it moves under the force that
-    was asked for, its velocity is between 0 and that one.
+    moving_force: a force under which the contact certainly moves; the runs use it.  If it is larger
+    than the requested force, the velocity lies between 0 and the velocity of the runs.
     """
-    drive, force, original = drive_of(request.problem), force_of(request.problem), request
-    request = _driven(request, force=marched)
+    force, original = force_of(request.problem), request
+    request = _driven(request, force=moving_force)
     try:
         near = _near(request)
     except Spent as spent:
-        return _given_up(original, str(spent))
+        return _without_answer(original, str(spent))
     request = replace(request, problem=replace(request.problem, velocity=near.velocity))
     scale = SCALE_SHARE * near.velocity
     while True:
         accuracy = Accuracy(request.accuracy * max(1.0, scale), near.slope)
-        refined, ladder = _refined(request, accuracy)
+        refined = _refined(request, accuracy)
         velocity = abs(refined.value.value)
         if not refined.converged or scale <= max(1.0, velocity):
             break
-        scale = SCALE_SHARE * velocity  # with a small mass it may be far below the coarse one
-    found = refined.value
+        scale = SCALE_SHARE * velocity  # a small mass can move far slower than the coarse run
+    estimate = refined.value
     if not request.problem.propels:
-        found = replace(found, value=max(found.value, 0.0))  # below are rounding and error
-    if not refined.converged and not found.error < abs(found.value):
-        found = UNKNOWN  # not even its order of magnitude
-    elif marched > force:
-        half = 0.5 * found.value
-        found = Estimate(half, {**found.by_source, "model": half})
-    refined = replace(refined, value=found)
+        # a negative value is rounding and error
+        estimate = replace(estimate, value=max(estimate.value, 0.0))
+    if not refined.converged and not estimate.error < abs(estimate.value):
+        estimate = UNKNOWN  # the order of magnitude is unknown
+    elif moving_force > force:
+        half = 0.5 * estimate.value
+        estimate = Estimate(half, {**estimate.by_source, "model": half})
+    refined = replace(refined, value=estimate)
     tolerance = request.tolerance
-    largest = None if tolerance is None else tolerance * max(1.0, abs(found.value))
+    largest = None if tolerance is None else tolerance * max(1.0, abs(estimate.value))
     return Result(
-        **request.point | {"mean_velocity": found},
-        **_pulling(drive),
+        **original.point | {"mean_velocity": estimate},
         model=request.model,
         friction=Estimate(force),
-        **verdict(request, refined, ladder, largest),
+        **verdict(request, refined, largest),
     )
 
 
 def _near(request: Request) -> Near:
-    """The under_force.Near of what the force makes of the contact, by coarse runs.
+    """Estimate the velocity under the force by coarse runs.
 
-    Friction of the contact that is moved tells about where it is, and one run under the force more
-    exactly, unless it is so slow that this would take finer ones.
+    Runs at prescribed velocities bracket the velocity.  One run under the force then improves the
+    estimate, unless that run is too slow to be resolved.
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
-    # the plan depends on where slip starts, and finds it again by itself
-    found_focus(moving, request.model, request.budget, request.progress)
     ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
     if request.tolerance is None:
         refuse_free(ladder, request.cells, request.steps)
@@ -325,15 +299,15 @@ def _near(request: Request) -> Near:
     near = velocity_near(moving, force, friction_at)
     place = replace(moving, velocity=near.velocity)
     accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
-    found = simulate_pulled(place, request.model, coarse, accuracy, settings)
-    if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
-        return near._replace(velocity=found.velocity)
+    run = simulate_driven(place, request.model, coarse, accuracy, settings)
+    if run.converged and run.velocity > SLOWEST_SHARE * near.velocity:
+        return near._replace(velocity=run.velocity)
     return near
 
 
-def _given_up(request: Request, reason: str) -> Result:
-    """The Result of a point of which nothing is known yet."""
-    unknown = replace(_known(request, math.nan, math.inf, reason), model=request.model)
+def _without_answer(request: Request, reason: str) -> Result:
+    """The Result of a point without any estimate; reason: why."""
+    unknown = replace(_without_runs(request, math.nan, math.inf, reason), model=request.model)
     return replace(
         unknown,
         friction=Estimate(force_of(request.problem)),
@@ -342,14 +316,10 @@ def _given_up(request: Request, reason: str) -> Result:
     )
 
 
-def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
-    """The refine.Refined to an accuracy, and its ladder."""
+def _refined(request: Request, accuracy: Accuracy) -> Refined:
+    """Runs of a driven contact, refined to an accuracy."""
     problem, tolerance = request.problem, accuracy.tolerance
     drive = drive_of(problem)
-    try:
-        found_focus(problem, request.model, request.budget, request.progress)
-    except Spent as spent:
-        return unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0)
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
     contact = contact_of(problem, request.model, COARSEST)
     ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
@@ -361,14 +331,14 @@ def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
     def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
         if request.progress is not None:
             request.progress(resolution)
-        return simulate_pulled(problem, request.model, resolution, share, settings, guess=guess)
+        return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
 
     readings = [
         partial(run, problem=replace(problem, pressure=other))
         for other in problem.pressure.readings
     ]
-    quantity = "mu" if drive.force is None else "velocity"
-    refined = refine(run, ladder, tolerance, readings, quantity)
+    read = attrgetter("mu" if drive.force is None else "velocity")
+    refined = refine(run, ladder, tolerance, readings, read)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
-    return refined, ladder
+    return refined
