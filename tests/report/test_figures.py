@@ -212,7 +212,7 @@ def test_a_missing_variable_is_named(name, key, variable):
 def test_a_mistake_in_our_code_is_no_property_of_the_data(monkeypatch):
     from microslip.report.figures import maps
 
-    monkeypatch.setattr(maps, "MAPS", {})
+    monkeypatch.setattr(maps, "MOTIONS", {})
     with pytest.raises(KeyError):
         drawing.draw("fig6_bore_map", BORE)
 

@@ -16,11 +16,11 @@ from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists
 
 from microslip.datasets.query import accessor
+from microslip.datasets.query.surface import Surface
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, groups, map_panel, panels, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.surface import refined
 from microslip.theory import paper
 
 pytestmark = pytest.mark.slow  # drawing takes a second or two
@@ -109,7 +109,8 @@ def mapped(velocities=9, amplitudes=7):
 
 def test_the_surface_is_that_of_friction_at():
     dataset = mapped()
-    x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
+    surface = Surface(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
+    x, y, fine = surface.velocity, surface.amplitude, surface.values
     assert min(fine.shape) > 150
     said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
@@ -122,7 +123,7 @@ def test_the_surface_is_that_of_friction_at():
 def test_no_island_is_drawn_that_nobody_computed():
     steep = np.array([[1.0, 1, 1, 1], [0.9, 1, 1, 1], [0, 0, 1, 1], [0, 0, 0, 1]])
     x, y = np.geomspace(0.01, 10, 4), np.arange(4.0)
-    _, _, fine = refined(x, y, steep)
+    fine = Surface(x, y, steep).values
     assert fine.min() >= 0 and fine.max() <= 1
     rising = np.diff(fine, axis=1)
     assert rising.min() >= -1e-12  # as the points do
@@ -132,7 +133,8 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
     values = np.add.outer(np.arange(6.0), np.arange(7.0))
     values[2, 3] = np.nan
     x, y = np.geomspace(1, 64, 7), np.arange(6.0)
-    fine_x, fine_y, fine = refined(x, y, values)
+    surface = Surface(x, y, values)
+    fine_x, fine_y, fine = surface.velocity, surface.amplitude, surface.values
     hole = np.ma.getmaskarray(fine)
     inside = (fine_y > 1)[:, None] & (fine_y < 3)[:, None]
     inside = inside & (fine_x > x[2]) & (fine_x < x[4])

@@ -14,10 +14,10 @@ import xarray as xr
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.canonical import number
-from microslip.report.figures import maps as map_figures
 from microslip.report.figures import style
 from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
 from microslip.report.figures.formulas import html
+from microslip.report.figures.maps import CURVES
 from microslip.sweeps.evaluate import plain
 from microslip.theory.catalogue import FORMS, ClosedForm
 
@@ -26,7 +26,6 @@ AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
 """Axes that a dataset may have besides Poisson's ratio."""
 DRIVE = "drive"
 """Attribute of the dataset of a contact with a drive."""
-FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
 SPARE_COLOURS = (style.SKY, style.GREY)
 NAMES = {
     name: form
@@ -164,19 +163,15 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
 
 def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:
     key = form.name
-    looks = {}
-    if motion in FIGURES:
-        plan = map_figures.MAPS[FIGURES[motion]]
-        looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
-    spare = list(NAMES).index(key) % len(SPARE_COLOURS)
-    look = looks.get(key, map_figures.Overlay(key, form.label, SPARE_COLOURS[spare], style.DOTTED))
+    spare = SPARE_COLOURS[list(NAMES).index(key) % len(SPARE_COLOURS)], style.DOTTED
+    color, dash = CURVES.get(motion, {}).get(key, spare)
     only_at_0 = poisson > 0 and form.exact and not form.any_poisson
     values = dataset[key]
     found = {
-        "label": f"{look.label} for ν = 0" if only_at_0 else look.label,
+        "label": f"{form.label} for ν = 0" if only_at_0 else form.label,
         "long_name": values.attrs["long_name"],
-        "color": look.color,
-        "dash": "solid" if look.linestyle == style.SOLID else _dash(look.linestyle),
+        "color": color,
+        "dash": "solid" if dash == style.SOLID else _dash(dash),
         "dims": list(values.dims),
         "values": plain(values.values),
     }

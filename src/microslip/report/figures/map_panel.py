@@ -12,11 +12,12 @@ from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from scipy.spatial import KDTree
 
+from microslip.datasets.query.surface import Surface
 from microslip.report.figures import panels, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
-from microslip.report.figures.surface import refined, supported
 
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
@@ -35,10 +36,37 @@ def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
 
 
 def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: float) -> None:
-    """Write their numbers on the contours of these levels once the panel has its final size."""
+    """Write numbers on contours once the panel has its final size.
+
+    A number stands where the other contours are farthest away. A contour without enough room for
+    its number has none.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Levels of the contours that have a number.
+    size : float
+        Font size in points.
+    """
+    height = size * look.DPI / 72.0
 
     def write() -> None:
-        axes.clabel(contours, levels, fmt="%.1f", fontsize=size, inline_spacing=2)
+        lines = [axes.transData.transform(path.vertices) for path in contours.get_paths()]
+        low, high = axes.bbox.get_points() + 2.0 * height * np.array([[1.0], [-1.0]])
+        places: list[np.ndarray] = []
+        for k in np.flatnonzero(np.isin(contours.levels, levels)):
+            line = lines[k][((lines[k] > low) & (lines[k] < high)).all(axis=1)]
+            if not len(line):
+                continue
+            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], low[None]])).query(line)
+            if places:
+                room[KDTree(places).query(line)[0] < 3.0 * height] = 0.0
+            if room.max() > 0.7 * height:
+                places.append(line[room.argmax()])
+        if places:
+            ink: look.Ink = {"fmt": "%.1f", "fontsize": size, "inline_spacing": 2}
+            ink |= {"manual": axes.transData.inverted().transform(places).tolist()}
+            axes.clabel(contours, levels, **ink)
 
     panels.after_layout(axes.get_figure(root=True), write)
 
@@ -73,14 +101,17 @@ def fill(
     if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
         raise ValueError("a map needs two amplitudes and two positive velocities at least")
     shown = shown.transpose("amplitude", "velocity", ...)
-    points = velocity, amplitude, _ = columns(shown, "velocity", "amplitude", "mu_macro")
-    x, y, values = refined(*points)
+    velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
+    surface = Surface(velocity, amplitude, mu)
+    grid = surface.velocity, surface.amplitude
     colours, norm = signed.scale(fills)
-    inside = np.clip(values, fills[0], fills[-1])  # rounding at the ends must leave no white holes
-    filled = bands(axes, x, y, inside, levels=fills, cmap=colours, norm=norm)
-    known = supported((x, y, values), points, lines)
+    # Rounding at the ends must leave no white holes.
+    inside = np.clip(surface.values, fills[0], fills[-1])
+    filled = bands(axes, *grid, inside, levels=fills, cmap=colours, norm=norm)
+    supported = surface.supported(lines)
     contours = axes.contour(
-        *known,
+        *grid,
+        supported,
         levels=lines,
         colors=signed.inks(lines, fills),
         linestyles=["dashed" if level < 0 else "solid" for level in lines],
@@ -93,7 +124,7 @@ def fill(
     panels.ticks_outside(axes)
     handles: list[Artist] = []
     few = min(len(velocity), len(amplitude)) < FEW
-    if few or np.ma.count(known[2]) < np.ma.count(values):
+    if few or np.ma.count(supported) < np.ma.count(surface.values):
         axes.plot(*map(np.ravel, np.meshgrid(velocity, amplitude)), **POINTS)
         handles.append(Line2D([], [], label="computed points", **POINTS))
     hatched = _hatch(axes, velocity, amplitude, shown["converged"].values != 0)

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import MU_MACRO
+from microslip.datasets.query.surface import Surface
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
 from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.map_panel import bands, number_contours
-from microslip.report.figures.surface import refined, supported
 
 LEVELS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 LOOKS = (
@@ -62,9 +62,12 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     """Contours of friction at each Poisson's ratio; those at the smallest one have numbers."""
     for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
-        points = columns(one, "velocity", "amplitude", "mu_macro")
-        known = supported(refined(*points), points, LEVELS)
-        lines = axes.contour(*known, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1)
+        surface = Surface(*columns(one, "velocity", "amplitude", "mu_macro"))
+        grid = surface.velocity, surface.amplitude
+        supported = surface.supported(LEVELS)
+        lines = axes.contour(
+            *grid, supported, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1
+        )
         if index == 0:
             number_contours(axes, lines, LEVELS, look.SMALLEST)
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
@@ -78,13 +81,14 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     """The effect of the largest ratio. Changes within twice the tolerance, which the errors of the
     points leave open, are pale."""
     last = shown.isel(poisson=-1)
-    x, y, values = refined(*columns(last, "velocity", "amplitude", "mu_macro_change"))
+    surface = Surface(*columns(last, "velocity", "amplitude", "mu_macro_change"))
+    grid = surface.velocity, surface.amplitude
     step = 2.0 * float(shown.attrs["tolerance"])
     if not step > 0.0:  # no tolerance was requested: the largest error estimate
         step = 2.0 * max(float(shown["mu_macro_error"].max()), 1e-3)
-    count = max(2, int(np.ceil(np.abs(values).max() / step)))
+    count = max(2, int(np.ceil(np.abs(surface.values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
-    filled = bands(axes, x, y, values, levels=levels, cmap=DIVERGING)
+    filled = bands(axes, *grid, surface.values, levels=levels, cmap=DIVERGING)
     inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else their labels would meet
     ends = (levels[0], *inner, levels[-1])
     first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
