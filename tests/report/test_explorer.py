@@ -142,13 +142,30 @@ def test_the_default_configuration_answers_for_all_of_poissons_ratios():
     assert {default.certified[name].poisson for name in chosen} == {(0, 0.5)}
 
 
-def test_a_map_that_has_no_room_is_refused():
-    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
-    configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
-    assert explorer.refusal(stub.configured()) is None
-    assert explorer.refusal(configuration) == (
-        "sweeps.transverse: 5,151 points have no room in the explorer; allowed: up to 5,000"
-    )
+FINE = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
+SMALL = {"velocity": [0.1, 1], "amplitude": [0, 1]}
+LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
+
+
+@pytest.mark.parametrize(
+    ("configuration", "wanted", "refusal"),
+    [
+        ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
+        ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
+         "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+         "amplitudes and two velocities above 0"),
+        ({"sweeps": {"bore": FINE | {"amplitude": [0, *range(1, 51)]}}}, explorer.PAGE,
+         "sweeps.bore: 5,151 points have no room in the explorer; allowed: up to 5,000"),
+        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE, None),
+        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE_OF_ALL,
+         "sweeps: 20,305 points have no room in explorer_all.html; allowed: up to 20,000, "
+         "at all of Poisson's ratios together"),
+    ],
+)  # fmt: skip
+def test_a_configuration_without_a_map_or_with_too_many_points_is_refused(
+    configuration, wanted, refusal
+):
+    assert explorer.refusal(load.from_mapping(configuration), wanted) == refusal
 
 
 def test_the_page_asks_for_nothing_outside(made, monkeypatch):
@@ -187,12 +204,6 @@ def test_the_log_names_periods_that_did_not_converge(made):
     lines = list(explorer.report(made[1]))
     assert lines[0] == "explorer: transverse: 6 periods, 1 not converged"
     assert "  not converged: amplitude 1.2, velocity 0.02: none to be found" in lines
-
-
-def test_all_assets_are_there():
-    assert set(explorer.ASSETS) == {
-        path.name for path in page.FOLDER.iterdir() if path.suffix not in (".py", "")
-    }
 
 
 # The rule

@@ -9,7 +9,7 @@ from stubs.in_node import needs_node, page_says
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
-from microslip.report.explorer import explorer, payload
+from microslip.report.explorer import payload
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
@@ -130,18 +130,6 @@ def test_what_is_pulled_is_lines_of_what_comes_out(made):
         assert one["values"] == part.values.ravel().tolist()
 
 
-def test_too_many_points_are_refused():
-    many = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
-    many |= {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
-    given = {"sweeps": {"bore": MAP}, "extended": {"large": many}}
-    configuration = load.from_mapping(given)
-    assert explorer.refusal(configuration) is None
-    assert explorer.refusal(configuration, explorer.PAGE_OF_ALL) == (
-        "sweeps: 20,313 points have no room in explorer_all.html; allowed: up to 20,000, "
-        "at all of Poisson's ratios together"
-    )
-
-
 # What the page says
 
 
@@ -158,19 +146,12 @@ def picked(field, text):
     return f"element('si-{field}').value = '{text}', element('si-{field}').fire('change')"
 
 
-def test_buttons_and_the_list_offer_all_sweeps(made):
-    tabs, others, ready = page_says(
-        made[1], "element('tabs').text", "element('others').text", "document.body.dataset.ready"
-    )
-    assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
-    # a group has its title in a label, which is no text
-    assert others == "other sweeps to and fro ratios still drift body"
-    assert ready == "yes"
-
-
-def test_every_sweep_can_be_looked_at_and_left_again(made):
-    said = page_says(
+def test_every_sweep_can_be_chosen_and_left_again(made):
+    tabs, others, ready, *said = page_says(
         made[1],
+        "element('tabs').text",
+        "element('others').text",
+        "document.body.dataset.ready",
         chosen("along"),
         "[element('map-view').hidden, element('map').data[0].z, element('run').text]",
         chosen("still"),
@@ -180,6 +161,10 @@ def test_every_sweep_can_be_looked_at_and_left_again(made):
         "element('tabs').children[1].fire('click')",
         "[element('lines-view').hidden, element('point-view').hidden, element('disc').drawn]",
     )
+    assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
+    # a group has its title in a label, which is no text
+    assert others == "other sweeps to and fro ratios still drift body"
+    assert ready == "yes"
     dataset = made[0]["along"].transpose("amplitude", "velocity", ...)
     hidden, shown, run = said[1]
     assert (hidden, run) == (False, "The page has no periods of this map.")
@@ -347,20 +332,3 @@ def test_a_mistake_is_told_and_leaves_no_answer_behind(made):
     assert kind == "bad"
     assert said[6] == ["", "", None]
     assert said[8] == ""
-
-
-def test_names_of_the_scripts_do_not_meet():
-    """All scripts of the page share their names: of two functions the later one would win."""
-    import re
-
-    from microslip.report.explorer.page import FOLDER
-
-    names = []
-    for asset in explorer.ASSETS:
-        if asset.endswith(".js"):
-            text = (FOLDER / asset).read_text(encoding="utf-8")
-            names += re.findall(r"^(?:function|class|let) (\w+)", text, re.M)
-            for line in re.findall(r"^const (.*)", text, re.M):
-                names += re.findall(r"(?:^|, )(\w+) = ", line)
-    assert len(names) > 90
-    assert len(set(names)) == len(names)
