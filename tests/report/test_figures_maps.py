@@ -36,25 +36,14 @@ def maps_in(figure) -> list:
 
 # Colours
 
-# Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291, severity 1: linear RGB as it is seen.
-SEEN = {
-    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216]]
-    + [[-0.003882, -0.048116, 1.051998]],
-    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413]]
-    + [[-0.011820, 0.042940, 0.968881]],
-    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602]]
-    + [[0.004733, 0.691367, 0.303900]],
-    "normal": np.eye(3),
-}
 XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750]])
 XYZ = np.vstack([XYZ, [0.0193339, 0.1191920, 0.9503041]])
 
 
-def lab(colours, seen="normal"):
-    """CIELAB of sRGB colours, shape (n, 3), as someone sees them; D65."""
+def lab(colours):
+    """CIELAB of sRGB colours, shape (n, 3); D65."""
     c = np.asarray(colours, float)
     linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    linear = np.clip(linear @ np.transpose(SEEN[seen]), 0, 1)
     x = linear @ XYZ.T / XYZ.sum(axis=1)
     f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
     return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], -1)
@@ -66,23 +55,14 @@ def shown(values, levels=(-1.0, 1.0)):
     return colours(norm(np.asarray(values, float)))[:, :3]
 
 
-def test_friction_has_the_colours_of_figure_2_wherever_it_may_be_negative():
-    values = np.linspace(0, 1, 21)
-    ours = matplotlib.colormaps[look.COLOURMAP](values)[:, :3]
+def test_colours_are_even_below_0_and_those_of_figure_2_above_whatever_the_range():
+    ours = matplotlib.colormaps[look.COLOURMAP](np.linspace(0, 1, 21))[:, :3]
     for lowest in (0.0, -0.3, -1.0):
-        np.testing.assert_allclose(shown(values, (lowest, 1.0)), ours, atol=0.02)
-
-
-def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_vision():
-    below = shown(-np.linspace(0, 1, 21))
-    steps = np.linalg.norm(np.diff(lab(below), axis=0), axis=1)
+        np.testing.assert_allclose(shown(np.linspace(0, 1, 21), (lowest, 1.0)), ours, atol=0.02)
+    below = lab(shown(-np.linspace(0, 1, 21)))
+    steps = np.linalg.norm(np.diff(below, axis=0), axis=1)
     assert steps.max() < 1.3 * steps.min()
-    assert np.all(np.diff(lab(below)[:, 0]) > 0)  # away from 0 it gets lighter, as above 0
-    above = shown(np.linspace(0.1, 1, 91))
-    for seen in SEEN:
-        clear = lab(shown([-0.1, -0.2, -0.3, -0.4, -0.5]), seen)
-        away = np.linalg.norm(clear[:, None] - lab(above, seen), axis=-1)
-        assert away.min() > 10, seen  # 2 or 3 can just be told apart
+    assert np.all(np.diff(below[:, 0]) > 0)  # away from 0 it gets lighter, as above 0
 
 
 def test_lines_stand_out_from_their_bands():
