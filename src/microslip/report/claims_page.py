@@ -16,11 +16,10 @@ import xarray as xr
 
 from microslip.foundation.files import writing_beside
 from microslip.report.dataset_page import provenance
-from microslip.studies.claims.static_limits import FORMULAS, SPLIT
+from microslip.studies.claims.static_limits import FORMULAS
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
 from microslip.theory.catalogue import FORMS
 
-PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
@@ -53,19 +52,20 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
         claims=claims,
         motions=[_static(dataset, name) for name in MOTIONS if f"{name}_limit" in dataset],
         runs=runs.values(),
+        dataset=dataset,
         made_by="\n".join(provenance(dataset, lines, ("title", "comment"))),
     )
 
 
-def _records(dataset: xr.Dataset, dim: str) -> list[SimpleNamespace]:
-    """The entries of a dimension: its coordinate as `name`, and its variables, without the name of
-    the dimension in theirs."""
+def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
+    """The entries of a dimension: its coordinate as `name`, and its variables by their names
+    without a prefix, by default the name of the dimension."""
     columns = {
-        name.removeprefix(f"{dim}_") if name != dim else "name": dataset[name].values.tolist()
+        name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
         for name in map(str, dataset.variables)
         if dataset[name].dims == (dim,)
     }
-    rows = zip(*columns.values(), strict=True)
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     return [SimpleNamespace(**dict(zip(columns, row, strict=True))) for row in rows]
 
 
@@ -119,39 +119,12 @@ def _with_error(value: float, error: float) -> str:
     return f"{rounded if float(rounded) else _number(value)} \N{PLUS-MINUS SIGN} {error:.2g}"
 
 
-def _static(dataset: xr.Dataset, motion: str) -> dict:
-    """A table over the amplitudes, and the largest excess of the paper's formulas."""
+def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
+    """The table of the static limit: its rows over the amplitude, and gaps of the formulas."""
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
-    slow, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
-    head = ["amplitude", "limit", f"at velocity {slowest:g}"]
-    head += [f"{name} (less limit)" for name in names.values()]
-    head += [f"of the bound inside, {names['zone']} less limit"]
-    head += [f"paper's run at {slow:g} (less limit)", "of it from velocity"]
-    head += ["of it from resolution", "squares alone, velocity to 0"]
-    of = {
-        name: dataset[f"{motion}_{name}"].values for name in (*SPLIT, *names, "lost", "amplitude")
-    }
-    rows = []
-    for k, limit in enumerate(of["limit"]):
-        formulas = [f"{of[name][k]:.4f} ({of[name][k] - limit:+.4f})" for name in (*names, "paper")]
-        lost = of["lost"][k]
-        rows.append(
-            [
-                _number(of["amplitude"][k]),
-                *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in ("limit", "march")),
-                *formulas[:-1],
-                f"{100 * lost:.1f} %" if np.isfinite(lost) else "",
-                formulas[-1],
-                *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in PARTS_OF_SHIFT),
-                f"{of['squares_shift'][k]:+.4f}",
-            ]
-        )
-    most = []
-    for name, equation in names.items():
-        gap, at = (float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at"))
-        most.append(f"{equation} by {gap:.4f} at amplitude {at:.3g}")
-    note = f"Most above the limit: {'; '.join(most)}."
-    if motion == "bore":
-        share = 100 * float(dataset["static_asymptote_excess"])
-        note += f" At large amplitudes Eq 33 tends to {share:.1f} % more than the limit."
-    return {"title": MOTIONS[motion], "head": head, "rows": rows, "note": note}
+    gaps = [
+        (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))
+        for name, equation in names.items()
+    ]
+    rows = _records(dataset, f"{motion}_amplitude", f"{motion}_")
+    return SimpleNamespace(title=MOTIONS[motion], names=names, gaps=gaps, rows=rows)
