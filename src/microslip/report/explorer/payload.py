@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -27,23 +26,12 @@ from microslip.theory.catalogue import FORMS
 UNSIGNED, SIGNED = 65535, 32767
 
 
-@dataclass(frozen=True)
-class Labels:
-    """Names of a map, in the markup that plotly knows, and of the other component of its force."""
-
-    title: str
-    other: str
-    force: str  # what of a period it is
-
-
-LABELS = {
-    "transverse": Labels(
-        "Transverse oscillation", "lateral force / (<i>μF<sub>z</sub></i>)", "force_lateral"
-    ),
-    "bore": Labels(
-        "Oscillating bore", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>", "torque"
-    ),
+TITLES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
+OTHER_FORCES = {
+    "transverse": ("force_lateral", "lateral force / (<i>μF<sub>z</sub></i>)"),
+    "bore": ("torque", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>"),
 }
+"""The force drawn beside the forward force: its name in a period and its label for plotly."""
 ERRORS = {
     "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
@@ -94,15 +82,13 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
-    labels = LABELS[name]
-    found = brief.maps(name, dataset)
-    for one in found:
-        one["title"] = labels.title
+    force, label = OTHER_FORCES[name]
+    found = [one | {"title": TITLES[name]} for one in brief.maps(name, dataset)]
     first = next(one for one in found if one["poisson"] == poisson)
     first |= {
-        "labels": [*first["labels"], labels.other],
+        "labels": [*first["labels"], label],
         "points": {key: plain(shown[key].values) for key in POINTS},
-        "periods": _periods(shown, records, labels.force),
+        "periods": _periods(shown, records, force),
     }
     return [first, *(one for one in found if one is not first)]
 

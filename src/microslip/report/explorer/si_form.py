@@ -6,7 +6,7 @@ All are those of microslip.predict, so that the page asks, warns and refuses as 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from microslip.foundation.arguments import LARGEST
@@ -49,6 +49,7 @@ class Field:
     units: tuple[str, ...]
     example: str
     low_open: bool = True
+    low: float = 0.0
     high: float | None = None
 
 
@@ -79,7 +80,10 @@ def packed() -> dict:
     """All that the form needs as one value that JSON can hold."""
     return {
         "motions": {motion: f"{motion}: {MOTIONS[motion]}" for motion in CHOICES},
-        "fields": {name: _field(field) for name, field in FIELDS.items()},
+        "fields": {
+            name: asdict(field) | {"units": [_unit(unit, field.unit) for unit in field.units]}
+            for name, field in FIELDS.items()
+        },
         "sides": {side: list(fields) for side, fields in SIDES.items()},
         "amplitude_of": AMPLITUDE_OF,
         "chosen": CHOSEN,
@@ -98,17 +102,6 @@ def packed() -> dict:
         "rule": gauss_rule(),
         "largest_velocity": LARGEST["velocity"],
         "largest_amplitude": LARGEST["amplitude"],
-    }
-
-
-def _field(field: Field) -> dict:
-    return {
-        "label": field.label,
-        "units": [_unit(name, field.unit) for name in field.units],
-        "example": field.example,
-        "low": 0.0,
-        "low_open": field.low_open,
-        "high": field.high,
     }
 
 

@@ -19,7 +19,7 @@ from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.drift import REST, THRESHOLD, velocity_bands, velocity_bar
 from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.groups import CONTOURS, LABELLED
+from microslip.report.figures.groups import CONTOURS
 from microslip.report.figures.map_panel import fill
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 
@@ -49,7 +49,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         across, bound = "velocity", "bound of the error"
         grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
         grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
-        filled, *_ = fill(left, grid, lines=CONTOURS, labelled=LABELLED)
+        filled, *_ = fill(left, grid, lines=CONTOURS)
         panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
     errors = _show_cells(left, right, dataset, _points(dataset, poisson), across)
     panels.colour_bar(errors, right, BOUND, aspect=20)

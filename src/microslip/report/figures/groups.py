@@ -31,8 +31,7 @@ COLUMNS = {1: 1, 2: 2, 4: 2}
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
 """Height in inches of a row of maps, by the number of columns, and of the margins."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Fewer than on a large map, and fewer with a number, which would hide the others."""
-LABELLED = np.array([0.1, 0.5, 0.9])
+"""Levels of contours, fewer than on a large map."""
 BEYOND = 0.01
 """Friction below 0 or above 1 by more than this is no error of the points."""
 MOST_MAPS = 12
@@ -84,16 +83,13 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     rows = -(-count // columns_)
     width = look.DOUBLE if columns_ > 1 else 0.65 * look.DOUBLE
     figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
-    fills, contours, labelled = levels_of(datasets)
+    fills, contours = levels_of(datasets)
     grid = figure.subplots(rows, columns_, squeeze=False).ravel()
     entries: dict[str, Artist] = {}
     for axes, letter, dataset, title in zip(
         grid, look.letters(count), datasets, titles, strict=False
     ):
-        # Where friction is negative, the contour of 0 is next to that of 0.1, and worth more.
-        spare = 0.1 if float(dataset["mu_macro"].min()) < -BEYOND else None
-        numbered = labelled[labelled != spare]
-        filled, handles, _ = fill(axes, dataset, fills, contours, numbered, look.SMALLEST)
+        filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
         entries |= {str(handle.get_label()): handle for handle in handles}
         axes.set_gid("map")
         panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
@@ -108,8 +104,8 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     return figure
 
 
-def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Levels of bands, of contours, and of contours with a number.
+def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
+    """Levels of bands and of contours.
 
     Bands hold all values: they span 0 to 1, and further where values lie outside.
     """
@@ -119,10 +115,9 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, n
     high = np.ceil(10 * high) if high > 1 + BEYOND else 10.0
     fills = np.linspace(low / 10, high / 10, round(2 * (high - low)) + 1)
     if low == 0:
-        return fills, CONTOURS, LABELLED
+        return fills, CONTOURS
     contours = np.concatenate([-CONTOURS[::-1], [0.0], CONTOURS])
-    contours = contours[contours > fills[0]]
-    return fills, contours, contours[np.isin(contours, [-0.7, -0.3, 0.0, *LABELLED])]
+    return fills, contours[contours > fills[0]]
 
 
 def _label_maps(
@@ -152,7 +147,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     for dataset, title, (color, marker, ls) in zip(datasets, titles, look.LINES, strict=False):
         limited = _limit(axes, dataset, dim, color=color, ls=ls)
         style: look.Ink = {"ls": ls} if limited else {"lw": JOINING}
-        label = look.wrapped(look.shown_in_legend(title), 1.35, 8.0)
+        label = look.wrapped(title, 1.35, 8.0)
         handles.append(Line2D([], [], color=color, marker=marker, ms=4.0, label=label, **style))
         points = dataset.isel(velocity=dataset["velocity"].values > 0)
         if points.sizes["velocity"]:

@@ -35,7 +35,7 @@ def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
     return filled
 
 
-def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: float) -> None:
+def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
     """Write numbers on contours once the panel has its final size.
 
     A number stands where the other contours are farthest away. A contour without enough room for
@@ -43,8 +43,6 @@ def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: 
 
     Parameters
     ----------
-    levels : ndarray
-        Levels of the contours that have a number.
     size : float
         Font size in points.
     """
@@ -54,8 +52,8 @@ def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: 
         lines = [axes.transData.transform(path.vertices) for path in contours.get_paths()]
         low, high = axes.bbox.get_points() + 2.0 * height * np.array([[1.0], [-1.0]])
         places: list[np.ndarray] = []
-        for k in np.flatnonzero(np.isin(contours.levels, levels)):
-            line = lines[k][((lines[k] > low) & (lines[k] < high)).all(axis=1)]
+        for k, vertices in enumerate(lines):
+            line = vertices[((vertices > low) & (vertices < high)).all(axis=1)]
             if not len(line):
                 continue
             room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], low[None]])).query(line)
@@ -66,7 +64,7 @@ def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: 
         if places:
             ink: look.Ink = {"fmt": "%.1f", "fontsize": size, "inline_spacing": 2}
             ink |= {"manual": axes.transData.inverted().transform(places).tolist()}
-            axes.clabel(contours, levels, **ink)
+            axes.clabel(contours, **ink)
 
     panels.after_layout(axes.get_figure(root=True), write)
 
@@ -76,7 +74,6 @@ def fill(
     dataset: xr.Dataset,
     fills: np.ndarray = FILL_LEVELS,
     lines: np.ndarray = LINE_LEVELS,
-    labelled: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, list[Artist], int]:
     """Fill a panel with `mu_macro` over velocity and amplitude, as `microslip.at` interpolates it.
@@ -86,9 +83,8 @@ def fill(
 
     Parameters
     ----------
-    fills, lines, labelled : ndarray
-        Levels of the bands, of the contours (dashed below 0, heavier at 0) and of the contours with
-        a number, ascending.
+    fills, lines : ndarray
+        Levels of the bands and of the contours (dashed below 0, heavier at 0), ascending.
     size : float
         Of the numbers, in points.
 
@@ -118,7 +114,7 @@ def fill(
         linewidths=[1.1 if level == 0 else 0.7 for level in lines],
     )
     contours.set_gid("contours")
-    number_contours(axes, contours, labelled, size)
+    number_contours(axes, contours, size)
     axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
     panels.logarithmic(axes.xaxis)
     panels.ticks_outside(axes)
@@ -135,7 +131,7 @@ def fill(
 
 def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
     """Hatch the cell around every point that is not converged, and count the cells."""
-    x, y = np.exp(_edges(np.log(velocity))), _edges(amplitude)
+    x, y = panels.edges(velocity, True), panels.edges(amplitude, False)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
         for i, j in np.argwhere(~done)
@@ -144,8 +140,3 @@ def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.nda
         PolyCollection(cells, gid="unconverged", zorder=4, **HATCHED), autolim=False
     )
     return len(cells)
-
-
-def _edges(points: np.ndarray) -> np.ndarray:
-    """Edges half-way between the points; the outer ones at the outermost points."""
-    return np.concatenate(([points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]))

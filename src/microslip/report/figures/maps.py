@@ -13,7 +13,7 @@ from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_each_poisson, columns, curve, limit, require, sweep
-from microslip.report.figures.map_panel import LINE_LEVELS, fill
+from microslip.report.figures.map_panel import fill
 from microslip.theory.catalogue import FORMS, STATIC
 
 MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
@@ -70,8 +70,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
     for axes, letter, (part, poisson) in zip(maps, letters, shown, strict=False):
-        numbered = LINE_LEVELS if alone else LINE_LEVELS[::2]
-        filled, handles, hatched = fill(axes, part, labelled=numbered)
+        filled, handles, hatched = fill(axes, part)
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
         panels.letter(axes, letter, ratio)
         axes.set_xlabel(labels[0])

@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 from scipy import ndimage
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
+from microslip.datasets.query.interpolation import Axis
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 
@@ -48,8 +49,8 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
     velocity, amplitude = (dataset[f"{motion}_{n}"] for n in ("velocity", "amplitude"))
     shown = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
     codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in shown])
-    logarithmic = _is_logarithmic(amplitude.values)
-    x, y = _edges(velocity.values, True), _edges(amplitude.values, logarithmic)
+    logarithmic = Axis(amplitude.values).logarithmic
+    x, y = panels.edges(velocity.values, True), panels.edges(amplitude.values, logarithmic)
     axes.set(xscale="log", yscale="log" if logarithmic else "linear")
     colours = ListedColormap([_pale(name) for name in models] or [(1.0, 1.0, 1.0)])
     # Coloured edges: no hairlines between the cells in a PDF.
@@ -84,26 +85,6 @@ def _centres(inside: np.ndarray) -> list[np.ndarray]:
         away = np.hypot(*(deepest - deepest.mean(axis=0)).T)
         centres.append(deepest[np.argmin(away)])
     return centres
-
-
-def _edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Edges half-way between the points, by their ratios or their differences.
-
-    The outer edges are as far from the points as the inner ones.
-    """
-    if logarithmic:
-        return np.exp(_edges(np.log(points), False))
-    between = (points[1:] + points[:-1]) / 2 if points.size > 1 else points + 0.5
-    return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
-
-
-def _is_logarithmic(points: np.ndarray) -> bool:
-    """Whether the ratios of the points are more even than their differences."""
-    if points.size < 3 or points[0] <= 0.0:
-        return False
-    steps = np.diff(points), np.diff(np.log(points))
-    plain, ratios = (float(np.ptp(step) / step.mean()) for step in steps)
-    return ratios < plain
 
 
 def _pale(model: str) -> tuple[float, float, float]:

@@ -92,6 +92,18 @@ def logarithmic(axis: Axis) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.6g}"))
 
 
+def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
+    """Edges of cells around points, half-way between them by their ratios or their differences.
+
+    points: ascending, shape (n,). Returns an array of shape (n + 1,); the outer edges are as far
+    from the points as the inner ones.
+    """
+    if logarithmic:
+        return np.exp(edges(np.log(points), False))
+    between = (points[1:] + points[:-1]) / 2 if points.size > 1 else points + 0.5
+    return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
+
+
 def unit_range(axes: Axes, low: float = 0.0) -> None:
     """Set the vertical range, with a margin, of a panel that shows shares from `low` to 1."""
     margin = 0.04 * (1.0 - low)

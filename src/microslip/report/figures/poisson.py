@@ -69,7 +69,7 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
             *grid, supported, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1
         )
         if index == 0:
-            number_contours(axes, lines, LEVELS, look.SMALLEST)
+            number_contours(axes, lines, look.SMALLEST)
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
         axes.plot([], [], color=color, ls=ls, label=label)
     key = "title" if "group" in shown.attrs else "motion"

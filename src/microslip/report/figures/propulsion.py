@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 
 from microslip.report.figures import panels
@@ -46,20 +45,18 @@ def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
     for k, (color, marker, ls) in zip(range(dataset.sizes["line"]), look.LINES, strict=False):
         one = dataset.isel(line=k)
         face = color if bool(one["converged"]) else "white"
-        ink: look.Ink = {"color": color, "marker": marker, "ms": 3.2, "mfc": face, "ls": ls}
-        ink |= {"lw": 1.0}
+        ink: look.Ink = {"marker": marker, "ms": 3.2, "mfc": face, "ls": ls, "lw": 1.0}
+        ink |= {"mew": 0.7}
         x, y, error = map(finite_or_nan, columns(one, "velocity", variable, f"{variable}_error"))
-        title = look.shown_in_legend(look.literal(one["title"].values))
-        ink |= {"label": look.wrapped(title, WIDTH - 0.9, 7.5), "gid": variable, "ms": 3.2}
-        axes.errorbar(x, y, yerr=error, **ink, **look.ERROR_BARS)
+        label = look.wrapped(look.literal(one["title"].values), WIDTH - 0.9, 7.5)
+        axes.errorbar(x, y, yerr=error, fmt="none", ecolor=color, **look.ERROR_BARS)
+        axes.plot(x, y, color=color, label=label, gid=variable, **ink)
 
 
 def _legend(axes: Axes) -> None:
     """The lines of a column, below it, where their names hide no data."""
-    containers = axes.get_legend_handles_labels()[0]
     axes.legend(
-        handles=[bars.lines[0] for bars in containers if isinstance(bars, ErrorbarContainer)],
-        labels=[bars.get_label() for bars in containers],
+        handles=[line for line in axes.get_lines() if line.get_gid() == "efficiency"],
         loc="upper left",
         bbox_to_anchor=(0.0, -0.2),
         fontsize=7.5,

@@ -165,11 +165,6 @@ def literal(text: str) -> str:
     return plain.replace("$", r"\$")
 
 
-def shown_in_legend(text: str) -> str:
-    """A label, changed so that a legend shows it also if it begins with an underscore."""
-    return rf"$\_${text[1:]}" if text.startswith("_") else text
-
-
 def width(text: str, size: float) -> float:
     """The width in inches of a text, with mathtext, set in `size` points."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
