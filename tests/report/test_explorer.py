@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
+from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
@@ -90,6 +91,94 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
             assert reason == "none to be found"
             has[i, j] = True
         assert (has == moves.values).all()
+
+
+PLACES = [("transverse", 0.02, 0.6), ("transverse", 0.1, 1.2), ("bore", 0.1, 0.6), ("bore", 1, 1.2)]
+
+
+def chosen(name, dataset, velocity, amplitude):
+    """JavaScript that selects a map and a point of it."""
+    row, column = (
+        int(np.flatnonzero(dataset[dim] == value)[0])
+        for dim, value in (("amplitude", amplitude), ("velocity", velocity))
+    )
+    tab = f"element('tabs').children[{explorer.MAPS.index(name)}].fire('click')"
+    return f"{tab}, selectAndMark({row}, {column})"
+
+
+@needs_node
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
+def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, velocity, amplitude):
+    datasets, records, content = made
+    dataset, wanted = datasets[name], (f"{amplitude:g}", f"{velocity:g}")
+    (result,) = (one["result"] for one in records[name] if stub.place(one) == wanted)
+    _, value, certificate, angle, radius, frames, history, loop = page_says(
+        content,
+        chosen(name, dataset, velocity, amplitude),
+        "element('value').text",
+        "element('certificate').text",
+        "sectorAngles(STATE.map)",
+        "STATE.period.radius",
+        "STATE.period.phase.map((_, k) => cellsOf(STATE.period, k))",
+        "element('history').data.map((trace) => [trace.x, trace.y])",
+        "[element('loop').data[1].x, element('loop').data[1].y]",
+    )
+    point = dataset.sel(velocity=velocity, amplitude=amplitude)
+    shown = re.search(r"mu_macro (-?[\d.]+) ± ([\d.e-]+)", value)
+    assert float(shown[1]) == pytest.approx(float(point.mu_macro), abs=5.1e-6)
+    assert float(shown[2]) == pytest.approx(float(point.mu_macro_error), rel=0.06)
+    assert f"velocity {velocity:g}, amplitude {amplitude:g}" in certificate
+    assert history[2][1] == pytest.approx([float(point.mu_macro)] * 2)
+    mean = stub.mean_over(np.radians(history[3][0]), np.array(history[3][1]))
+    assert mean == pytest.approx(result["mu_macro"], abs=1e-3)
+    other = {"transverse": "force_lateral", "bore": "torque"}[name]
+    assert loop[0] == pytest.approx(result[other], abs=1e-4)
+    assert loop[1] == pytest.approx(result["force_forward"], abs=1e-4)
+    truth = unpacked(result)
+    lateral = np.outer(np.cos(angle), radius).ravel()
+    assert lateral == pytest.approx(truth["lateral_position"], abs=2e-5)
+    for k, cells in enumerate(frames):
+        at = k % (len(frames) - 1)
+        # the frame half a period on is drawn as the mirror image of the first
+        off = 2e-2 if at == len(frames) // 2 else 1e-9
+        for way in ("forward", "lateral"):
+            share = truth[f"traction_{way}"][at] / truth["bound"]
+            assert cells[way] == pytest.approx(share, abs=off), (k, way)
+        assert np.mean(np.array(cells["slips"]) != truth["slips"][at]) < off, k
+
+
+@needs_node
+@pytest.mark.slow
+def test_unconverged_points_missing_periods_and_hidden_limits(made):
+    datasets, _, content = made
+    run, transverse = "element('run').text", datasets["transverse"]
+    box = "element('limits').children[0].children[0]"
+    seen = "element('along-amplitude').data.find((t) => t.name === STATE.map.limits[0].label).visible"
+    _, certificate, _, nearest, _, still, _, rest, _, bad, _, hidden, _, drawn = page_says(
+        content,
+        chosen("transverse", transverse, 1, 0.6),
+        "element('certificate').text",
+        chosen("transverse", transverse, 1, 1.2),
+        run,
+        chosen("transverse", transverse, 0, 1.2),
+        run,
+        chosen("transverse", transverse, 0, 0),
+        run,
+        chosen("bore", datasets["bore"], 0.02, 1.2),
+        run,
+        chosen("transverse", transverse, 1, 1.2)
+        + f", {box}.checked = false, {box}.fire('change'), selectAndMark(1, 1)",
+        seen,
+        f"{box}.checked = true, {box}.fire('change')",
+        seen,
+    )
+    assert "not converged: made up" in certificate
+    assert nearest.startswith("No period was found: none to be found Drawn below: the nearest")
+    assert nearest.endswith("at velocity 1, amplitude 0.6.")
+    assert "static limit" in still and "Nothing oscillates here" in rest
+    assert "It did not converge: none to be found" in bad
+    assert (hidden, drawn) == (False, True)
 
 
 @pytest.mark.long
