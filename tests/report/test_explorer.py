@@ -154,7 +154,9 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
     datasets, _, content = made
     run, transverse = "element('run').text", datasets["transverse"]
     box = "element('limits').children[0].children[0]"
-    seen = "element('along-amplitude').data.find((t) => t.name === STATE.map.limits[0].label).visible"
+    seen = (
+        "element('along-amplitude').data.find((t) => t.name === STATE.map.limits[0].label).visible"
+    )
     _, certificate, _, nearest, _, still, _, rest, _, bad, _, hidden, _, drawn = page_says(
         content,
         chosen("transverse", transverse, 1, 0.6),

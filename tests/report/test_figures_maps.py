@@ -8,7 +8,6 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.legend import Legend
 from matplotlib.text import Text
@@ -213,17 +212,6 @@ def test_friction_below_zero_widens_the_scale_of_all():
     (lines,) = artists(figure.axes[0], "contours")
     dashes = [style[1] is not None for style in lines.get_linestyle()]
     assert dashes == [level < 0 for level in lines.levels]
-
-
-def test_points_that_are_not_converged_are_hatched_with_one_legend():
-    data = stub.motions(2)
-    for dataset in data.values():
-        dataset["converged"][2:4, 1] = 0
-        dataset["mu_macro"][2, 1] = np.nan
-    figure = drawing.draw("extended_motions", data)
-    hatched = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
-    assert [len(cells.get_paths()) for cells in hatched] == [2, 2]
-    assert words(figure).count("not converged") == 1
 
 
 def test_all_of_poissons_ratios_of_a_group_are_drawn():

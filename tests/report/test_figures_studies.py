@@ -212,15 +212,3 @@ def test_the_fills_of_the_atlas_differ_in_grey():
     assert all(a - b > 0.1 for a, b in zip(shades, shades[1:], strict=False))
     for shade, (_, _, _, ink, _) in zip(shades, atlas.OUTCOMES.values(), strict=True):
         assert abs(np.dot(weights, to_rgb(ink)) - shade) > 0.4
-
-
-def test_a_stability_dataset_that_contradicts_itself_is_refused(stability):
-    stray, odd = stability.copy(deep=True), stability.copy(deep=True)
-    stray["case_axis"] = "case", ["nowhere", *stray["case_axis"].values[1:]]
-    odd["outcome"][0, 0] = 7
-    for data, message in (
-        (stray, "'nowhere' is not on the dimension 'axis'"),
-        (odd, "outcome 7 is none of 0 to 4"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            drawing.draw("stability_atlas", {"stability": data})

@@ -34,8 +34,6 @@ CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Levels of contours, fewer than on a large map."""
 BEYOND = 0.01
 """Friction below 0 or above 1 by more than this is no error of the points."""
-MOST_MAPS = 12
-"""Maps that a figure has room for, as `load.MOST_PANELS`."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
 """Limits from theory at Poisson's ratio 0, by the axis of the lines."""
 JOINING = 0.5
@@ -46,7 +44,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw maps if every dataset has two amplitudes and two velocities above 0, lines if none has.
 
     Every Poisson's ratio of every dataset is drawn: by its effect where there is room, else with a
-    map or a line of its own. Raises ValueError for a mixture of maps and lines.
+    map or a line of its own.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
@@ -60,14 +58,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
             shown.append(part)
             at = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
             titles.append(look.literal(title) + at)
-    spans = [_spans_a_map(dataset) for dataset in shown]
-    if any(spans) and not all(spans):
-        odd = shown[spans.index(False)].attrs.get("title")
-        raise ValueError(f"figure {name}: {odd!r} spans no map, as others of its group do")
-    what, most = ("maps", MOST_MAPS) if all(spans) else ("sweeps", len(look.LINES))
-    if len(shown) > most:
-        raise ValueError(f"figure {name}: {len(shown)} {what}; allowed: up to {most}")
-    return (_maps if all(spans) else _lines)(shown, titles)
+    return (_maps if _spans_a_map(shown[0]) else _lines)(shown, titles)
 
 
 def _spans_a_map(dataset: xr.Dataset) -> bool:
@@ -129,9 +120,9 @@ def _label_maps(
         write = figure.supxlabel if dim == "velocity" else figure.supylabel
         write(f"{quantity}  {texts[0]}".strip(), fontsize=look.RC["axes.labelsize"])
         return
-    spec = panels.place_of(grid[0]).get_gridspec()
     width, height = figure.get_size_inches()
-    room = width / spec.ncols - 0.7 if dim == "velocity" else height / spec.nrows - 0.5
+    across = COLUMNS.get(len(grid), 3)
+    room = width / across - 0.7 if dim == "velocity" else height / -(-len(grid) // across) - 0.5
     for axes, text in zip(grid, texts, strict=True):
         axis = axes.xaxis if dim == "velocity" else axes.yaxis
         axis.set_label_text(look.wrapped(text or quantity, room, 7.5), fontsize=7.5)

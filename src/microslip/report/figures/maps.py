@@ -45,6 +45,8 @@ POISSONS = (
     (look.ORANGE, "P"),
 )
 """Colour and marker of the points at each Poisson's ratio, ascending."""
+ACROSS = 3
+"""Maps in a row."""
 ROW = {2: 2.9, 3: 2.4}
 """Height in inches of a row of maps, by the number of maps in it."""
 
@@ -69,10 +71,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     letters, alone = look.letters(len(shown) + 2), len(shown) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
-    for axes, letter, (part, poisson) in zip(maps, letters, shown, strict=False):
+    for index, (axes, (part, poisson)) in enumerate(zip(maps, shown, strict=True)):
         filled, handles, hatched = fill(axes, part)
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
-        panels.letter(axes, letter, ratio)
+        panels.letter(axes, letters[index], ratio)
         axes.set_xlabel(labels[0])
         if handles:
             if hatched:
@@ -80,7 +82,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             above: look.Ink = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
             above |= {"borderaxespad": 0.2}
             axes.legend(handles=handles, **above)
-        if panels.place_of(axes).is_first_col():
+        if index % ACROSS == 0:
             axes.set_ylabel(labels[1])
     friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
     panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
@@ -95,7 +97,7 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
         figure = look.new_figure(look.DOUBLE, 4.2)
         left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
         return figure, [left.subplots()], *right.subplots(2, 1)
-    across = min(count, 3)
+    across = min(count, ACROSS)
     rows = -(-count // across)
     heights = rows * ROW[across], 2.7
     figure = look.new_figure(look.DOUBLE, sum(heights))

@@ -12,7 +12,6 @@ from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from microslip.report.figures import style as look
@@ -54,13 +53,6 @@ def legend_of_figure(
         columns = ncols or len(handles)
         place: look.Ink = {"loc": f"outside {where}", "ncols": columns}
         figure.legend(handles=handles, columnspacing=1.6, **place)
-
-
-def place_of(axes: Axes) -> SubplotSpec:
-    """The place of a panel in its grid."""
-    spec = axes.get_subplotspec()
-    assert spec is not None  # every panel of the figures is in a grid
-    return spec
 
 
 def colour_bar(

@@ -27,9 +27,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         row[0].set_ylabel(label)
         for axes, panel in zip(row, names, strict=True):
             chosen = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
-            if (count := chosen.sizes["line"]) > len(look.LINES):
-                allowed = f"allowed: up to {len(look.LINES)}"
-                raise ValueError(f"figure {name}: {count} lines in {panel}; {allowed}")
             _lines(axes, chosen, variable)
             note = look.literal(panel) if variable == "force" else ""
             panels.letter(axes, next(letters), note, WIDTH - 0.5)
