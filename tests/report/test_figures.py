@@ -156,7 +156,7 @@ PAPER = {"transverse": stub.fake_transverse(5)}
     ("name", "data", "message"),
     [
         ("fig7", BORE, r"unknown figure 'fig7'.*fig6_bore_map"),
-        ("fig6_bore_map", {}, "fig6_bore_map needs the dataset 'bore'; given: none"),
+        ("fig6_bore_map", {}, "fig6_bore_map needs the dataset 'bore'; datasets: none"),
         ("fig6_bore_map", {"bore": BORE["bore"].isel(amplitude=[0])}, "two amplitudes"),
         ("fig6_bore_map", {"bore": BORE["bore"].assign_attrs(motion="a")}, "is of 'a'; allowed"),
         ("extended_loops", stub.motions(1), "unknown figure 'extended_loops'"),

@@ -1,7 +1,6 @@
-"""The page about the dataset claims: verdicts, the numbers behind them, and the runs to repeat.
+"""The page of the study `claims`: verdicts, their numbers, and the commands that repeat each run.
 
-One HTML file that needs nothing beside it, written with the template claims.html. All its content
-is in the dataset.
+The page is one self-contained HTML file, made from the dataset and the template claims.html.
 """
 
 from __future__ import annotations
@@ -24,16 +23,16 @@ MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of the xarray.Dataset; lines: those of its report.
+    """Write the page of a dataset to a file; lines: log of collecting it.
 
-    Raises CacheError as `files.writing_beside` does.
+    Raises CacheError if the file cannot be written.
     """
     with writing_beside(path) as beside:
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """The page as text; it depends on its arguments alone."""
+    """The text of the page. It depends on the arguments only."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = {"number": _number, "with_error": _with_error, "is_finite": np.isfinite}
     environment.filters.update(filters)
@@ -58,8 +57,10 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """The entries of a dimension: its coordinate as `name`, and its variables by their names
-    without a prefix, by default the name of the dimension."""
+    """Entries along a dimension: the coordinate as `name`, and variables without a prefix.
+
+    prefix: removed from the names of variables, by default the name of the dimension.
+    """
     columns = {
         name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
         for name in map(str, dataset.variables)
@@ -70,7 +71,7 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """The runs by their names, with a row on the page and a description."""
+    """Runs by name, with their row on the page and a description."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row
@@ -85,7 +86,7 @@ def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
 
 
 def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[SimpleNamespace]:
-    """The parts of all claims with their checks and the check that shows each best."""
+    """Parts of all claims, each with its checks and the decisive one."""
     checks, parts = _records(dataset, "check"), _records(dataset, "part")
     for check in checks:
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)
@@ -96,7 +97,7 @@ def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[Simple
 
 
 def _decisive(checks: list[SimpleNamespace]) -> SimpleNamespace | None:
-    """The clearest check against a part, else the closest one for it."""
+    """The clearest check against a part, else the narrowest check in favour of it."""
     for outcome in ("fails", "holds"):
         deciding = [check for check in checks if OUTCOMES[check.outcome] == outcome]
         if deciding:
@@ -109,7 +110,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """A number and its error, with the digits that the error leaves."""
+    """A number and its error estimate, with the significant digits."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):
@@ -120,7 +121,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
-    """The table of the static limit: its rows over the amplitude, and gaps of the formulas."""
+    """The table of the static limit: rows by amplitude, and excess of the formulas."""
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     gaps = [
         (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))

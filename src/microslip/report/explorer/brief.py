@@ -1,7 +1,8 @@
-"""Data of sweeps without periods on the page: maps and lines, with a value and an error per point.
+"""Data of sweeps without stored periods: maps and lines, with a value and an error for each point.
 
-A sweep over velocities and amplitudes is a map, one for each Poisson's ratio.  Any other sweep, and
-a sweep with a drive, is lines over its longest axis, a line for each place on the other axes.
+A sweep over velocities and amplitudes is shown as a map for each Poisson's ratio. Other sweeps, and
+sweeps with a drive, are shown as lines over their longest axis, one for each combination of the
+other axes.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from microslip.theory.catalogue import FORMS, ClosedForm
 
 POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
-"""Axes that a dataset may have besides Poisson's ratio."""
+"""Possible axes of a dataset besides Poisson's ratio."""
 DRIVE = "drive"
-"""Attribute of the dataset of a contact with a drive."""
+"""Attribute of datasets with a drive."""
 SPARE_COLOURS = (style.SKY, style.GREY)
 NAMES = {
     name: form
@@ -33,20 +34,20 @@ NAMES = {
     for name, form in forms.items()
     if not name.startswith("mu_torque")
 }
-"""A form of every name that a limit of the friction may have."""
+"""A closed form for each name of a friction limit."""
 
 
 def is_map(dataset: xr.Dataset) -> bool:
-    """Whether the dataset of a sweep is shown as maps."""
+    """Whether a dataset is shown as maps instead of lines."""
     if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
         return False
     return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """A map at each Poisson's ratio, as values that JSON can hold.
+    """The maps at all Poisson's ratios, as values for JSON.
 
-    Raises ValueError where the dataset lacks what is shown.
+    Raises ValueError if a variable is missing.
     """
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS])
     return [_map(name, part) for part in at_each_poisson(dataset)]
@@ -66,7 +67,9 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Lines at each Poisson's ratio, likewise."""
+    """The lines at all Poisson's ratios, as values for JSON.
+
+    Raises ValueError if a variable is missing."""
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
@@ -113,7 +116,7 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
 
 
 def _torque(shown: xr.Dataset, along: str) -> list[dict]:
-    """The torque of a steady bore, which its chart does not draw: its values and closed form."""
+    """Values and closed form of the torque of a steady bore, which the chart does not show."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]
@@ -128,7 +131,7 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
-    """Description of a map or a set of lines; the group of the paper's sweeps is None."""
+    """Description of a map or of lines. The group of the paper's sweeps is None."""
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,
@@ -142,17 +145,17 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
 
 
 def axis_label(dataset: xr.Dataset, dim: str) -> str:
-    """Name and formula of an axis, in the markup that plotly knows."""
+    """Name and formula of an axis, in plotly's HTML."""
     said = dataset[dim].attrs
     text = said.get("long_name", dim).split(",")[0]
     return f"{text}  {html(said.get('formula', ''))}".strip()
 
 
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
-    """The limits that a dataset at one of Poisson's ratios holds, on the axes of its points, and as
-    a curve on its fine axis where it has one of its own.
+    """Theoretical limits of a dataset at one Poisson's ratio.
 
-    The curve of one that depends on both axes belongs to a single amplitude and is left out.
+    Each limit has values at the points. A limit with a fine axis also has a curve, unless it
+    depends on both axes.
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})

@@ -1,8 +1,8 @@
-"""Data of the page: maps, lines, limits and periods as one value that JSON can hold.
+"""Data of the page as one value for JSON: maps, lines, limits and periods.
 
-Numbers of datasets are kept as they are. Those of periods are whole numbers of steps in base64:
-tractions in steps of bound/127, phases in steps of 2 pi/65535, radii and bounds in steps of
-1/65535, forces in steps of the largest one over 32767. So each is off by half a step at most.
+Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64:
+tractions to bound/127, phases to 2 pi/65535, radii and bounds to 1/65535, and forces to the largest
+force over 32767.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ OTHER_FORCES = {
     "transverse": ("force_lateral", "lateral force / (<i>μF<sub>z</sub></i>)"),
     "bore": ("torque", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>"),
 }
-"""The force drawn beside the forward force: its name in a period and its label for plotly."""
+"""The second force component of each map: its name in a period and its label for plotly."""
 ERRORS = {
     "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
@@ -43,21 +43,26 @@ POINTS += ("steps_per_period", "model", "reason")
 
 
 def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
-    """All that the page shows, as a dict.
+    """Pack all data of the page.
 
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        By the names of sweeps, see `explorer`.
+        Datasets by the names of their sweeps, see `explorer`.
     periods : dict of list
-        Records of periods, of the sweeps that have some: a map each.
+        Records of periods by the names of the sweeps with stored periods.
     certified : sequence of xarray.Dataset
-        Certified maps, which the form for a real contact is answered from.
+        Certified maps for the form for a real contact.
+
+    Returns
+    -------
+    dict
+        Values for JSON.
 
     Raises
     ------
     ValueError
-        Where a dataset lacks what the page shows, or a period belongs to no point of its map.
+        If a variable is missing, or a period belongs to no point of its map.
     """
     found: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
@@ -78,7 +83,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
 
 
 def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
-    """Maps at all of Poisson's ratios; that next to 0 has the periods and all of the errors."""
+    """Maps at all Poisson's ratios. The map at the ratio nearest 0 has periods and all errors."""
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
@@ -94,7 +99,7 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
-    """Periods of the points of a map, one after another in the order of `index`."""
+    """Periods of a map, and their positions by point; -1 means that a point has none."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
@@ -118,14 +123,14 @@ def _packed(results: list[dict], force: str) -> dict:
     if not results:
         return {"count": 0}
     halves = [unpacked_half(result) for result in results]
-    # the frame half a period later is the mirror image of the first one
+    # The frame half a period later is the mirror image of the first one and is omitted.
     shares = np.array([half[0][:-1] for half in halves])
     slips = np.array([half[1][:-1] for half in halves])
     forces = np.array([[r["force_forward"], r[force]] for r in results])
     step = float(np.abs(forces).max()) / SIGNED
     count, frames, _, angles, cells = shares.shape
     phases = np.array([r["phase"] for r in results])
-    start = float(phases[0, 0])  # the turning point that periods begin at
+    start = float(phases[0, 0])  # phase of the turning point at which periods begin
     return {
         "count": count,
         "frames": 2 * frames,
@@ -151,7 +156,7 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
 
 
 def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
-    """Provenance of a map and its periods, as a list of pairs of texts."""
+    """Provenance of a map and its periods: pairs of name and text."""
     found = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
     if "configuration" in found:
         found["configuration"] = json.dumps(json.loads(found["configuration"]), indent=1)

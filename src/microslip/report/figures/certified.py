@@ -1,6 +1,6 @@
-"""A certified map: friction with the cells that answer and their points, and their errors.
+"""Figure of a certified map: friction, its cells and points, and the error bounds of the cells.
 
-A map of drift shows the velocity under a force in the place of friction.
+A certified map of drift has the velocity under a force instead of friction.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 BOUND = "bound of the error,\nthousandths  (dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
-"""Velocities and amplitudes at which the map is evaluated for the figure: of a map, of a line."""
+"""Number of coordinates along an axis at which a map, or a line, is evaluated."""
 SIDE = np.linspace(0.0, 1.0, 17)
-"""Places along a side of a cell, which is no straight line on the map."""
+"""Positions along a side of a cell. The side is curved on the map."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the map with its cells and points, and beside it the bound of the error in each cell.
+    """Draw the map with its cells and points, and the error bound of each cell.
 
-    A map that spans Poisson's ratios is shown at the smallest one. A map of the static limit is a
-    line.
+    A map over several Poisson's ratios is drawn at the smallest one. A map of the static limit is
+    drawn as a line.
     """
     if is_static(dataset) and not certified_map.is_of_drift(dataset):
         return _lines(dataset)
@@ -64,9 +64,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
-    """The velocity over force and amplitude; grey where the contact stays."""
+    """Draw the velocity over force and amplitude, grey where the contact stays at rest."""
     coordinates = certified_map.coordinates_in(dataset)
-    assert isinstance(coordinates, DriftCoordinates)  # as of all maps of drift
+    assert isinstance(coordinates, DriftCoordinates)  # maps of drift have these coordinates
     force = np.linspace(0.0, coordinates.force, NODES)
     grid = Drift(dataset).on_grid(force, NODES)
     amplitude = grid["amplitude"].values
@@ -82,9 +82,9 @@ def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
 def _show_cells(
     left: Axes, right: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str
 ) -> PolyCollection:
-    """Outlines and the points of `at` on one panel; the bounds, which are returned, on the other.
+    """Draw cells and points on the left panel, and error bounds on the right one.
 
-    across: the variable along the abscissa.
+    at: dataset of the points; across: variable of the abscissa. Returns the artist of the bounds.
     """
     outlines, errors = _cells(dataset)
     left.add_collection(LineCollection(outlines, colors=look.VERMILLION, lw=0.7, gid="cells"))
@@ -97,8 +97,10 @@ def _show_cells(
 
 
 def _lines(dataset: xr.Dataset) -> Figure:
-    """The static limit over the amplitude at the smallest and the largest Poisson's ratio, and the
-    bound of its error there."""
+    """Draw the static limit over the amplitude, and its error bound.
+
+    The lines belong to the smallest and the largest Poisson's ratio.
+    """
     figure = look.new_figure(look.DOUBLE, 2.6)
     left, right = figure.subplots(1, 2, sharex=True)
     ends = np.unique([float(dataset["poisson"].min()), float(dataset["poisson"].max())])
@@ -124,18 +126,18 @@ def _points_of(dataset: xr.Dataset) -> str:
 
 
 def _is_deep(dataset: xr.Dataset) -> bool:
-    """Whether Poisson's ratio is a direction of the map."""
+    """Whether the map has several Poisson's ratios."""
     return dataset["poisson"].ndim > 0
 
 
 def _points(dataset: xr.Dataset, poisson: float) -> xr.Dataset:
-    """The points of the map at a Poisson's ratio."""
+    """Select the points of the map at a Poisson's ratio."""
     here = dataset["poisson"].values == poisson
     return dataset.isel(point=here) if _is_deep(dataset) else dataset
 
 
 def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
-    """Outlines on the map, shape (n, 2) each, and bounds of the cells at the smallest ratio."""
+    """Outlines, shape (n, 2) each, and error bounds of the cells at the smallest ratio."""
     coordinates = certified_map.coordinates_in(dataset)
     ends = [
         [dataset[name].values for name in certified_map.BORDERS[direction]]
@@ -154,6 +156,6 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
 
 
 def _axis(dataset: xr.Dataset, dim: str) -> str:
-    """Label of an axis."""
+    """The label of an axis with its formula."""
     quantity = {"velocity": "forward velocity"}.get(dim, dim)
     return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"

@@ -1,4 +1,4 @@
-"""The figure of a group of sweeps in `extended`: a map of each, or a line of each on one panel."""
+"""Figure of a group of sweeps in `extended`: a panel with a map, or a line, for each sweep."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Columns of maps by their number; other numbers have three."""
+"""Number of columns by the number of maps, else 3."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height in inches of a row of maps, by the number of columns, and of the margins."""
+"""Height in inches of a row of maps by the number of columns, and height of both margins."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Levels of contours, fewer than on a large map."""
 BEYOND = 0.01
-"""Friction below 0 or above 1 by more than this is no error of the points."""
+"""Excess below 0 or above 1 that is attributed to the errors of the points."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
-"""Limits from theory at Poisson's ratio 0, by the axis of the lines."""
+"""Closed forms that are drawn at Poisson's ratio 0, by the horizontal axis."""
 JOINING = 0.5
-"""Width of lines that only join marks."""
+"""Width in points of lines between markers."""
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw maps if every dataset has two amplitudes and two velocities above 0, lines if none has.
 
-    Every Poisson's ratio of every dataset is drawn: by its effect where there is room, else with a
-    map or a line of its own.
+    Every Poisson's ratio of a dataset has a map or a line. If there is room, `poisson.draw` shows
+    the effect of the ratio instead.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
@@ -62,13 +62,13 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 
 def _spans_a_map(dataset: xr.Dataset) -> bool:
-    """Whether there is an area to draw."""
+    """Whether the dataset has two amplitudes and two velocities above 0."""
     positive = int((dataset["velocity"] > 0).sum())
     return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
 
 
 def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """A map of each dataset, headed by its title, with one scale of colours."""
+    """Draw a map of each dataset with its title, on a common colour scale."""
     count = len(datasets)
     columns_ = COLUMNS.get(count, 3)
     rows = -(-count // columns_)
@@ -98,7 +98,7 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
     """Levels of bands and of contours.
 
-    Bands hold all values: they span 0 to 1, and further where values lie outside.
+    The bands span 0 to 1, extended to the smallest and the largest value.
     """
     low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
     high = max(float(dataset["mu_macro"].max()) for dataset in datasets)
@@ -114,7 +114,7 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
 def _label_maps(
     figure: Figure, grid: Sequence[Axes], dim: str, quantity: str, datasets: Sequence[xr.Dataset]
 ) -> None:
-    """Name an axis once where all panels have the same, else at each panel."""
+    """Label an axis once for all panels if they share it, else on each panel."""
     texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
     if len(set(texts)) == 1:
         write = figure.supxlabel if dim == "velocity" else figure.supylabel
@@ -129,7 +129,7 @@ def _label_maps(
 
 
 def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """A line of each dataset: static friction over amplitude, or friction over velocity."""
+    """Draw a line for each dataset: static friction over amplitude, or friction over velocity."""
     (dim,) = {"amplitude" if d.sizes.get("amplitude", 0) > 1 else "velocity" for d in datasets}
     figure = look.new_figure(5.2, 3.3)
     axes = figure.subplots()
@@ -161,7 +161,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
-    """Draw the limit for vanishing velocity, or a closed form; whether the dataset has one."""
+    """Draw a closed form or the computed static limit; returns whether the dataset has one."""
     known = [variable for variable in THEORY[dim] if variable in dataset]
     if known and float(dataset["poisson"]) == 0.0:
         line = limit(dataset, known[0])
@@ -176,7 +176,7 @@ def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
 
 
 def _marks(axes: Axes, points: xr.Dataset, dim: str, color: str, marker: str) -> None:
-    """Computed points with their errors, joined by a thin line; hollow where not converged."""
+    """Draw computed points with errors, joined by a thin line; unconverged ones are hollow."""
     x, y, error = map(finite_or_nan, columns(points, dim, "mu_macro", "mu_macro_error"))
     axes.plot(x, y, color=color, lw=JOINING, alpha=0.6, zorder=1.5)
     done = points["converged"].values != 0

@@ -1,4 +1,4 @@
-"""Figure 1: the forces over the first periods of a transverse oscillation."""
+"""Figure 1: forces over the first periods of a transverse oscillation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from microslip.report.figures.data import at_one_poisson, columns
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the forward force with its mean over the last period, and below it the lateral force."""
+    """Draw the forward force with its mean over the last period, and the lateral force."""
     dataset, _ = at_one_poisson(dataset)
     periods = dataset["history_phase"].values / (2.0 * np.pi)
     forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")

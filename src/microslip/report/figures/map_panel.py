@@ -1,4 +1,4 @@
-"""One panel with a map: bands, contours, and hatched cells where a point is not converged."""
+"""A panel with a map: bands, contours, and hatched cells around unconverged points."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from microslip.report.figures.data import columns
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
 FEW = len(LINE_LEVELS)
-"""Points along an axis below which they are drawn: more than one contour may pass between two."""
+"""Number of points along an axis below which the points are drawn."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 
 
 def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
-    """Filled contours without white hairlines between the bands in a PDF."""
+    """Draw filled contours without white hairlines between the bands in a PDF."""
     filled = axes.contourf(*table, **settings)
     filled.set(edgecolor="face", linewidth=0.3)
     return filled
@@ -38,8 +38,8 @@ def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
 def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
     """Write numbers on contours once the panel has its final size.
 
-    A number stands where the other contours are farthest away. A contour without enough room for
-    its number has none.
+    A number is placed where the other contours are farthest away. A contour without enough space
+    has no number.
 
     Parameters
     ----------
@@ -76,32 +76,32 @@ def fill(
     lines: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, list[Artist], int]:
-    """Fill a panel with `mu_macro` over velocity and amplitude, as `microslip.at` interpolates it.
+    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as by `microslip.at`.
 
-    Contours end where the points do not support them. There, and on coarse maps, the points are
-    drawn.
+    Contours end where the interpolation is too uncertain, see `Surface.supported`. Then, and on
+    coarse maps, the computed points are drawn as well.
 
     Parameters
     ----------
     fills, lines : ndarray
         Levels of the bands and of the contours (dashed below 0, heavier at 0), ascending.
     size : float
-        Of the numbers, in points.
+        Font size of the numbers in points.
 
     Returns
     -------
     tuple
-        The bands, for a colour bar; entries of a legend; the number of hatched cells.
+        The bands, for a colour bar; the legend entries; the number of hatched cells.
     """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
     if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
-        raise ValueError("a map needs two amplitudes and two positive velocities at least")
+        raise ValueError("a map needs at least two amplitudes and two positive velocities")
     shown = shown.transpose("amplitude", "velocity", ...)
     velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
     surface = Surface(velocity, amplitude, mu)
     grid = surface.velocity, surface.amplitude
     colours, norm = signed.scale(fills)
-    # Rounding at the ends must leave no white holes.
+    # Values outside the levels due to rounding would be white.
     inside = np.clip(surface.values, fills[0], fills[-1])
     filled = bands(axes, *grid, inside, levels=fills, cmap=colours, norm=norm)
     supported = surface.supported(lines)
@@ -130,7 +130,7 @@ def fill(
 
 
 def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
-    """Hatch the cell around every point that is not converged, and count the cells."""
+    """Hatch the cell around every unconverged point and return the number of cells."""
     x, y = panels.edges(velocity, True), panels.edges(amplitude, False)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]

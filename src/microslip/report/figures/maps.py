@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,7 +20,7 @@ from microslip.theory.catalogue import FORMS, STATIC
 MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
 """Motion of each figure."""
 LARGE = "mu_large_amplitude"
-CURVES = {
+CURVES: dict[str, dict[str, tuple[str, Any]]] = {
     "transverse": {
         "mu_static_slider": (look.ORANGE, look.DASHDOT),
         "mu_static_stick_zone": (look.GREEN, look.DASHED),
@@ -57,8 +58,8 @@ Cut = list[tuple[xr.Dataset, float]]
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map `name` with the cuts at the smallest velocity and at the largest amplitude.
 
-    Each Poisson's ratio has a map of its own; the cuts show all of them. A dataset with more ratios
-    than `POISSONS` has looks is drawn at as many, evenly chosen, and a title says so.
+    There is one map for each Poisson's ratio; the cuts show all ratios. If the dataset has more
+    ratios than `POISSONS` has entries, an evenly spaced selection is drawn and the title says so.
     """
     motion, every = MOTIONS[name], at_each_poisson(dataset)
     require(name, motion, dataset, ("amplitude", "velocity"))
@@ -92,7 +93,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
-    """A figure, panels for `count` maps, and panels for the two cuts."""
+    """A new figure, its panels for `count` maps, and its panels for the two cuts."""
     if count == 1:
         figure = look.new_figure(look.DOUBLE, 4.2)
         left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
@@ -122,7 +123,7 @@ def _static_cut(axes: Axes, shown: Cut, motion: str, letter: str) -> None:
 
 
 def _where_not_zero(axes: Axes) -> tuple[float, float]:
-    """The horizontal range in which any line drawn is above zero, and half as much again."""
+    """The horizontal range in which a line is above `NOTHING`, extended by half its length."""
     x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
     last = x[y > NOTHING].max(initial=x.min())
     following = x[x > last].min(initial=x.max())
@@ -143,17 +144,17 @@ def _large_cut(axes: Axes, shown: Cut, motion: str, letter: str) -> None:
 
 
 def _curve(axes: Axes, shown: Cut, motion: str, name: str, **at: float) -> None:
-    """Draw a closed form as the dataset holds it."""
+    """Draw a closed form from its variable in the dataset."""
     form, (color, ls) = FORMS[motion][name], CURVES[motion][name]
     label = form.label
     if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in shown):
-        label = r"limit at $\nu = 0$"  # for which alone it is exact
+        label = r"limit at $\nu = 0$"  # it is exact for this ratio only
     x, y = curve(limit(shown[0][0], name), **at)
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 
 def _points(axes: Axes, cut: Cut, dim: str) -> None:
-    """Draw the computed points of a cut and give its panel the common vertical axis."""
+    """Draw the computed points of a cut and set its vertical axis."""
     for (line, poisson), (color, marker) in zip(cut, POISSONS, strict=False):
         ratio = rf", $\nu = {look.number(poisson)}$" if len(cut) > 1 else ""
         points = columns(line, dim, "mu_macro", "mu_macro_error", "converged")

@@ -1,4 +1,4 @@
-"""Which model is the cheapest that is accurate enough, over velocity and amplitude."""
+"""Map of the cheapest model that is accurate enough, over velocity and amplitude."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BORDER: look.Ink = {"color": look.BLACK, "lw": 0.8, "capstyle": "projecting", "z
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw one row of panels a motion, one column a tolerance."""
+    """Draw a row of panels for each motion and a column for each tolerance."""
     tolerances = dataset["map_tolerance"].values
     names = {str(n) for motion in MOTIONS for n in dataset[f"{motion}_cheapest"].values.ravel()}
     models = look.in_order(names - {""})
@@ -45,7 +45,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> None:
-    """Colour every cell by its model, outline the regions and write the model into each."""
+    """Colour every cell by its model, outline the regions and label them."""
     velocity, amplitude = (dataset[f"{motion}_{n}"] for n in ("velocity", "amplitude"))
     shown = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
     codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in shown])
@@ -53,7 +53,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
     x, y = panels.edges(velocity.values, True), panels.edges(amplitude.values, logarithmic)
     axes.set(xscale="log", yscale="log" if logarithmic else "linear")
     colours = ListedColormap([_pale(name) for name in models] or [(1.0, 1.0, 1.0)])
-    # Coloured edges: no hairlines between the cells in a PDF.
+    # Coloured edges prevent hairlines between the cells in a PDF.
     ink: look.Ink = {"cmap": colours, "vmin": -0.5, "vmax": max(len(models), 1) - 0.5}
     ink |= {"edgecolors": "face"}
     axes.pcolormesh(x, y, np.ma.masked_less(codes, 0), lw=0.3, gid="cheapest", **ink)
@@ -75,12 +75,12 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
 
 
 def _centres(inside: np.ndarray) -> list[np.ndarray]:
-    """The cell of every connected region that is farthest from its border."""
+    """Indices of the cell of every connected region that is farthest from the border."""
     regions, count = ndimage.label(inside)
     centres = []
     for region in range(1, count + 1):
         depth = ndimage.distance_transform_cdt(np.pad(regions == region, 1))[1:-1, 1:-1]
-        # Of equally deep cells the one nearest the middle of them.
+        # Among cells of equal depth, choose the one nearest their centroid.
         deepest = np.argwhere(depth == depth.max())
         away = np.hypot(*(deepest - deepest.mean(axis=0)).T)
         centres.append(deepest[np.argmin(away)])
@@ -88,6 +88,6 @@ def _centres(inside: np.ndarray) -> list[np.ndarray]:
 
 
 def _pale(model: str) -> tuple[float, float, float]:
-    """The colour of a model, pale enough for black letters on it."""
+    """The colour of a model, lightened for black letters on it."""
     red, green, blue = (1.0 - 0.5 * (1.0 - part) for part in to_rgb(look.model(model)[0]))
     return red, green, blue

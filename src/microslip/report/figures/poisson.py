@@ -1,4 +1,4 @@
-"""Effect of Poisson's ratio: maps at several of its values, and their differences."""
+"""Effect of Poisson's ratio: contours of friction at several ratios, and differences."""
 
 from __future__ import annotations
 
@@ -26,22 +26,24 @@ LOOKS = (
 )
 """Colour and line style at each Poisson's ratio, ascending."""
 MOST = 3
-"""Datasets that a figure has room for."""
+"""Maximum number of datasets in a figure."""
 MOST_LEVELS = 12
-"""Levels on one side of 0 from which on the two inner ones have no room for labels."""
+"""Number of levels on each side of 0 from which the labels of the two inner ones would overlap."""
 DIVERGING = "PuOr"
-"""Pale in the middle, and evenly darker on both sides."""
+"""Colour map of differences, pale in the middle."""
 
 
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:
-    """Whether all datasets have differences between Poisson's ratios, and a figure has room."""
+    """Whether all datasets have differences between Poisson's ratios and fit into one figure."""
     ratios = [d.sizes.get("poisson", 1) if "mu_macro_change" in d else 1 for d in datasets]
     return len(datasets) <= MOST and min(ratios) > 1 and max(ratios) <= len(LOOKS)
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw a row of panels for each dataset: contours at every Poisson's ratio, and beside them the
-    effect of the largest one."""
+    """Draw a row of panels for each dataset: contours at every ratio, effect of the largest one.
+
+    Raises ValueError if the datasets do not fit, see `has_room`.
+    """
     if not has_room(datasets):
         allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} of Poisson's ratios"
         raise ValueError(f"figure {name}: no room for the datasets; allowed: {allowed}")
@@ -59,7 +61,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 
 def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """Contours of friction at each Poisson's ratio; those at the smallest one have numbers."""
+    """Draw contours of friction at each Poisson's ratio, with numbers at the smallest one."""
     for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
         surface = Surface(*columns(one, "velocity", "amplitude", "mu_macro"))
@@ -78,18 +80,20 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 
 
 def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """The effect of the largest ratio. Changes within twice the tolerance, which the errors of the
-    points leave open, are pale."""
+    """Draw the difference between the largest and the smallest Poisson's ratio.
+
+    Differences within twice the tolerance are not significant and have the palest colour.
+    """
     last = shown.isel(poisson=-1)
     surface = Surface(*columns(last, "velocity", "amplitude", "mu_macro_change"))
     grid = surface.velocity, surface.amplitude
     step = 2.0 * float(shown.attrs["tolerance"])
-    if not step > 0.0:  # no tolerance was requested: the largest error estimate
+    if not step > 0.0:  # without a tolerance: the largest error estimate
         step = 2.0 * max(float(shown["mu_macro_error"].max()), 1e-3)
     count = max(2, int(np.ceil(np.abs(surface.values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
     filled = bands(axes, *grid, surface.values, levels=levels, cmap=DIVERGING)
-    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else their labels would meet
+    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else the labels would overlap
     ends = (levels[0], *inner, levels[-1])
     first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
     label = rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$"

@@ -18,7 +18,7 @@ VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw a column for each panel of the dataset: force above, efficiency below."""
+    """Draw a column of two panels for each panel name of the dataset: force and efficiency."""
     names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)
@@ -37,7 +37,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
-    """The lines of one panel; hollow marks where not all of a line converged."""
+    """Draw the lines of a panel. A line with an unconverged point has hollow markers."""
     axes.axhline(0.0, color=look.PALE, lw=0.7, zorder=0.5)
     for k, (color, marker, ls) in zip(range(dataset.sizes["line"]), look.LINES, strict=False):
         one = dataset.isel(line=k)
@@ -51,7 +51,7 @@ def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
 
 
 def _legend(axes: Axes) -> None:
-    """The lines of a column, below it, where their names hide no data."""
+    """Add the legend of a column below it."""
     axes.legend(
         handles=[line for line in axes.get_lines() if line.get_gid() == "efficiency"],
         loc="upper left",

@@ -1,10 +1,9 @@
-"""Accuracy against cost: the error of every trial over its time, or over its effort.
+"""Work-precision diagrams: error of each trial over its CPU time or its effort.
 
-One panel a point. All panels share their axes: further down and to the left is better in every one.
-Models with the shipped method have a look each; runs by other methods are small grey marks of one
-kind, which the profile tells apart. Trials without a place on the axes are drawn at their ends:
-errors too small to judge at the bottom, trials without a result at the top, costs of zero at the
-left.
+There is a panel for each point; all panels have the same axes. Each model with the default method
+has a colour and a marker. Runs of other methods are small grey dots; the figure `accuracy_profile`
+compares them. Trials outside the axes are drawn in strips at the ends: errors below the error of
+the reference at the bottom, trials without a result at the top, costs of zero at the left.
 """
 
 from __future__ import annotations
@@ -31,14 +30,13 @@ COSTS = {
     "accuracy_vs_cost": ("seconds", "CPU time of a run  $t$ (s)"),
     "accuracy_vs_work": ("effort", "effort: iterations $\\times$ unknowns\n(dimensionless)"),
 }
-"""Abscissa of each figure: its variable and its label."""
+"""Abscissa of each figure: variable and label."""
 COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
-"""Panels side by side; in inches: width of a panel, height of a row, and of a line of
-the legend."""
+"""Number of panels in a row; width of a panel, height of a row and of a legend line in inches."""
 BELOW_REFERENCE = 3.0
-"""Errors so many times smaller than the error of any reference are drawn at the bottom."""
+"""Errors smaller than the error of the reference divided by this are drawn at the bottom."""
 MOST = 1e6
-"""The largest ratio of errors on the axis."""
+"""Largest ratio of the ends of the axis of errors."""
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
@@ -52,14 +50,15 @@ CROSS |= {"zorder": 9}
 ARROW: look.Ink = {"color": look.BLACK, "ls": "none", "ms": 3.6, "zorder": 9}
 ARROW |= {"clip_on": False, "marker": CARETDOWN}
 AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7))
-"""Directions from a point in which its label may stand."""
+"""Directions from a point to its label, tried in this order."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A logarithmic axis from low to high, and a strip beyond each end that has a name.
+    """A logarithmic axis from `low` to `high`, with optional labelled strips at its ends.
 
-    Values below `low` are drawn in the strip `below`, values that are not finite in `above`.
+    Values below `low` are drawn in the strip labelled `below`, values that are not finite in the
+    strip labelled `above`. An empty label omits a strip.
     """
 
     low: float
@@ -69,20 +68,20 @@ class Scale:
 
     @property
     def strip(self) -> float:
-        """Ratio of the ends of a strip."""
+        """Ratio of the upper to the lower end of a strip."""
         return (self.high / self.low) ** 0.1
 
     def shown(self, values: np.ndarray) -> np.ndarray:
-        """Where values are drawn."""
+        """Coordinates at which values are drawn."""
         inside = np.where(values < self.low, self.low / self.strip**0.5, values)
         return np.where(np.isfinite(values), inside, self.high * self.strip**0.5)
 
     def on(self, axes: Axes, axis: Axis) -> None:
-        """Set the ends of an axis, its ticks, and a line where a strip begins."""
+        """Set the limits and ticks of an axis, and draw a line where a strip begins."""
         first = self.low / (self.strip if self.below else 1.0)
         last = self.high * (self.strip if self.above else 1.0)
         decades = np.arange(np.ceil(np.log10(self.low)), np.floor(np.log10(self.high)) + 1)
-        # Labels at the ends would meet those of the next panel.
+        # Labels at the ends would overlap those of the next panel.
         span = np.log10(last / first)
         inner = np.abs(decades - np.log10(first * last) / 2) < 0.44 * span
         decades = decades[inner][:: max(1, -(-inner.sum() // 5))]
@@ -138,7 +137,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
-    """A scale that spans all costs above zero."""
+    """A scale for all costs above zero."""
     counted = costs[np.isfinite(costs) & (costs > 0)]
     low, high = (counted.min(), counted.max()) if counted.size else (1.0, 10.0)
     margin = max((high / low) ** 0.05, 1.2)
@@ -147,7 +146,7 @@ def _scale_of_costs(costs: np.ndarray) -> Scale:
 
 
 def _scale_of_errors(dataset: xr.Dataset) -> Scale:
-    """A scale from just below what can be judged to the largest error."""
+    """A scale from just below the smallest significant error to the largest error."""
     errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
     counted = np.isfinite(errors) & (errors > 0)
     lows = []
@@ -162,7 +161,7 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
 
 
 def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
-    """Write the letter of a panel, the title of its point, and the point's numbers."""
+    """Write the letter of a panel, and title and parameters of its point."""
     motion = str(point["point_motion"].item())
     known = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
     symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
@@ -175,14 +174,14 @@ def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
 
 
 def _reference(axes: Axes, known: float) -> None:
-    """Hatch the errors within that of the reference; an unknown one is NaN."""
+    """Hatch the errors below the error of the reference, unless that is NaN."""
     bottom, top = axes.get_ylim()
     if known > bottom:
         axes.axhspan(bottom, min(known, top), gid="reference", zorder=0.5, **UNKNOWN)
 
 
 def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
-    """Draw every trial of a point: curves over the levels, one a model, and marks of others."""
+    """Draw every trial of a point: a curve for each model, and markers for other methods."""
     raw_x, raw_y, front = columns(rows, cost, "error", f"front_{cost}")
     x, y, done = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
     model, method = (rows[f"trial_{n}"].values.astype(str) for n in ("model", "method"))
@@ -213,7 +212,7 @@ def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale)
 
 
 def _ink(model: str, method: str) -> look.Ink:
-    """The look of the trials of a model by a method."""
+    """Colour, marker and line of the trials of a model by a method."""
     if method == "paper":
         return PAPER
     if model == "auto":
@@ -223,9 +222,9 @@ def _ink(model: str, method: str) -> look.Ink:
 
 
 def _label(axes: Axes, texts: list[str], labelled: np.ndarray, marks: np.ndarray) -> None:
-    """Write texts beside the marks that are labelled where they hide nothing, else leave them out.
+    """Write labels beside markers. A label that would overlap a marker or a line is omitted.
 
-    marks: shape (n, 2), in data coordinates.
+    texts: labels, one for each true value in `labelled`; marks: shape (n, 2), data coordinates.
     """
     pixels, scale = axes.transData.transform(marks), look.DPI / 72.0
     line = pixels[labelled]
@@ -248,7 +247,7 @@ def _label(axes: Axes, texts: list[str], labelled: np.ndarray, marks: np.ndarray
 
 
 def _legends(figure: SubFigure, models: list[str], others: bool) -> None:
-    """Two lists side by side: the models, and the marks."""
+    """Add two legends side by side: models and markers."""
     shipped: list[Artist] = [
         Line2D([], [], label=model, **_ink(model, "shipped")) for model in models
     ]
