@@ -1,4 +1,4 @@
-"""The page about the claims: what it names, and that it can be repeated."""
+"""The page of the study `claims`: verdicts, numbers, and commands that repeat each run."""
 
 import ast
 import html
@@ -45,7 +45,7 @@ def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
         assert "<code>" in section.partition("<details>")[0]
 
 
-def test_links_lead_somewhere_and_nothing_lies_outside(page):
+def test_links_have_targets_on_the_page_and_nothing_is_external(page):
     links = set(re.findall(r'href="([^"]*)"', page))
     assert links
     for link in links:
@@ -64,7 +64,7 @@ def test_numbers_and_runs_are_those_of_the_dataset(page, data):
 
 
 @pytest.mark.parametrize("request_", [r for r in requests() if r["kind"] == "point"][::7], ids=str)
-def test_the_line_for_a_point_asks_for_that_point(request_):
+def test_the_command_of_a_point_requests_that_point(request_):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
     options = cli.build_parser("point").parse_args(words)
@@ -80,7 +80,7 @@ def test_the_line_for_a_point_asks_for_that_point(request_):
 
 
 @pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
-def test_other_lines_call_what_is_there_with_what_was_asked(kind):
+def test_other_commands_call_public_functions_with_the_request(kind):
     request_ = next(r for r in requests() if r["kind"] == kind)
     python, dash, code = shlex.split(command(request_))
     assert (python, dash) == ("python", "-c")
@@ -101,7 +101,7 @@ def test_other_lines_call_what_is_there_with_what_was_asked(kind):
         assert bound[name] == (float(value) if numeric else value)
 
 
-def test_text_of_a_dataset_is_no_markup(data):
+def test_text_of_a_dataset_is_escaped(data):
     sly = data.assign(statement=("claim", ["<b>&" for _ in data["claim"]]))
     page = claims_page.page(sly, ["<i>"])
     assert "<b>" not in page

@@ -1,4 +1,4 @@
-"""The explorer's page: what it holds, how large it is, that it needs no network; its rule."""
+"""The explorer's page: contents, size, independence of the network, and its Snakemake rule."""
 
 import json
 import re
@@ -19,7 +19,7 @@ from microslip.theory.catalogue import FORMS
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Datasets and periods by the names of maps, and what the page holds of them."""
+    """Datasets and periods by the names of maps, and the contents of their page."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
     return datasets, records, payload.build(datasets, records)
@@ -49,7 +49,7 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", explorer.MAPS)
-def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
+def test_stored_periods_are_accurate_to_their_rounding(made, name):
     _, records, content = made
     packed = map_of(content, name)["periods"]
     count, shape = packed["count"], (packed["frames"] // 2, packed["angles"], packed["cells"])
@@ -81,7 +81,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
 
 
 @pytest.mark.slow
-def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
+def test_every_sliding_and_oscillating_point_has_a_period_or_a_reason(made):
     for name in explorer.MAPS:
         dataset, packed = made[0][name], map_of(made[2], name)["periods"]
         moves = (dataset.amplitude > 0) & (dataset.velocity > 0)
@@ -140,7 +140,7 @@ def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, v
     assert lateral == pytest.approx(truth["lateral_position"], abs=2e-5)
     for k, cells in enumerate(frames):
         at = k % (len(frames) - 1)
-        # the frame half a period on is drawn as the mirror image of the first
+        # the frame half a period later is the mirror image of the first one
         off = 2e-2 if at == len(frames) // 2 else 1e-9
         for way in ("forward", "lateral"):
             share = truth[f"traction_{way}"][at] / truth["bound"]
@@ -185,7 +185,7 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
 
 @pytest.mark.long
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
-    """With every sweep of it; certified maps take 25 kB each."""
+    """The page has every sweep. A certified map would take 25 kB more."""
     default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)
     left_out = set(explorer.sweeps_of(default, explorer.PAGE_OF_ALL)) - set(datasets)
@@ -195,7 +195,7 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
     page.write(tmp_path / "explorer_all.html", datasets, records)
     size = (tmp_path / "explorer_all.html").stat().st_size
-    assert size < 14e6  # of 15: a made-up number may be shorter than a computed one
+    assert size < 14e6  # 15 MB are allowed, but computed numbers may be longer
     few = {name: datasets[name] for name in explorer.sweeps_of(default, explorer.PAGE)}
     page.write(tmp_path / "explorer.html", few, records)
     assert (tmp_path / "explorer.html").stat().st_size < 13e6
@@ -210,7 +210,7 @@ def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     assert len({request["amplitude"] for request in asked}) == 17
 
 
-def test_of_several_certified_maps_the_most_exact_one_answers():
+def test_the_most_accurate_of_several_certified_maps_is_used():
     exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
     axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
     extended = axes | {"motion": "transverse", "group": "motions"}
@@ -226,7 +226,7 @@ def test_of_several_certified_maps_the_most_exact_one_answers():
     assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
 
 
-def test_the_default_configuration_answers_for_all_of_poissons_ratios():
+def test_the_default_configuration_has_maps_over_all_poissons_ratios():
     default = load.load(ROOT / "config" / "config.yaml")
     chosen = explorer.certified_of(default)
     assert chosen == ["certified_poisson_transverse", "certified_poisson_bore"]
@@ -259,10 +259,10 @@ def test_a_configuration_without_a_map_or_with_too_many_points_is_refused(
     assert explorer.refusal(load.from_mapping(configuration), wanted) == refusal
 
 
-def test_the_page_asks_for_nothing_outside(made, monkeypatch):
+def test_the_page_needs_no_network(made, monkeypatch):
     monkeypatch.setattr(page, "get_plotlyjs", lambda: "// the library")
     text = page.page(made[2])
-    # The addresses in it are names: of SVG, and of the paper in what made the datasets.
+    # The only address is the name space of SVG.
     addresses = set(re.findall(r"\w+://[^\s\"'<>]+", text))
     assert addresses == {"http://www.w3.org/2000/svg"}
     assert not re.search(
@@ -285,7 +285,7 @@ def test_a_period_that_belongs_to_no_point_is_refused(made):
         payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
 
 
-def test_a_dataset_without_what_is_shown_is_refused(made):
+def test_a_dataset_with_a_missing_variable_is_refused(made):
     datasets, records, _ = made
     with pytest.raises(ValueError, match="explorer: dataset 'bore' has no variable 'mu_static'"):
         payload.build({"bore": datasets["bore"].drop_vars("mu_static")}, records)
@@ -297,7 +297,7 @@ def test_the_log_names_periods_that_did_not_converge(made):
     assert "  not converged: amplitude 1.2, velocity 0.02: none to be found" in lines
 
 
-# The rule
+# The Snakemake rule
 
 
 @pytest.mark.long

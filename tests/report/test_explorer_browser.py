@@ -1,4 +1,4 @@
-"""The explorer's page in a real browser, without a network: what is drawn is what is stored."""
+"""The explorer's page in a real browser without a network: layout and gestures."""
 
 import re
 import shutil
@@ -21,7 +21,7 @@ FLAGS += ["--disable-component-update", "--disable-sync"]
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """The page's path, and the datasets and periods that it was made from."""
+    """The path of the page, and its datasets and periods."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
     write(folder / "explorer.html", datasets, records)
@@ -46,7 +46,7 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def opened(made, browser):
-    """The page, opened once, with what it says to the console and what it asks for."""
+    """The open page, its console messages, and its network requests."""
     page, heard, asked = browser.new_page(), [], []
     page.on("console", lambda message: heard.append(message.text))
     page.on("pageerror", lambda error: heard.append(str(error)))
@@ -58,7 +58,7 @@ def opened(made, browser):
 
 @pytest.fixture
 def page(made, opened):
-    """The page as the test before has left it. It has to say nothing, and to ask for nothing."""
+    """The open page. A test must cause no console message and no network request."""
     page, heard, asked = opened
     page.set_viewport_size({"width": 1280, "height": 800})
     yield page
@@ -67,7 +67,7 @@ def page(made, opened):
 
 
 def click_on_map(page, velocity, amplitude):
-    """Press the mouse on a point of the map, by the coordinates of the screen."""
+    """Click on a point of the map."""
     x, y = page.evaluate(
         """([velocity, amplitude]) => {
           const chart = element("map"), box = chart.getBoundingClientRect();
@@ -122,7 +122,7 @@ def test_sliders_move_by_keyboard_and_the_animation_plays(page):
 
 @pytest.fixture
 def phone(made, browser):
-    """The page on a small screen."""
+    """The page on a screen of 400 x 800 pixels."""
     page = browser.new_page()
     page.set_viewport_size({"width": 400, "height": 800})
     page.goto(made[0].as_uri())
@@ -150,7 +150,7 @@ def test_a_phone_shows_one_column_and_scrolls_in_one_direction(phone):
     bottoms = [bottom for *_, bottom in boxes[:-1]]
     tops = [top for _, _, top, _ in boxes[1:]]
     assert all(bottom <= top for bottom, top in zip(bottoms, tops, strict=True))
-    # labels of axes are on the screen, too
+    # labels of axes are on the screen
     for left, right, *_ in phone.evaluate(BOXES, ".plot .infolayer text"):
         assert left >= -0.5 and right <= 400.5
 
@@ -174,7 +174,7 @@ def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
         assert fixed[:2] == [True, True]
         assert phone.evaluate("(id) => element(id)._fullLayout.dragmode", chart) is False
     assert not phone.locator(".modebar-btn").count()
-    click_on_map(phone, 0.1, 1.2)  # a tap still chooses a point
+    click_on_map(phone, 0.1, 1.2)  # a tap selects a point
     assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
 
 
@@ -212,6 +212,6 @@ def test_buttons_of_the_charts_cover_no_data(page, width):
         page.locator(f"#{chart}").hover()
         (bar,) = page.evaluate(BOXES, f"#{chart} .modebar-group")
         (area,) = page.evaluate(BOXES, f"#{chart} .bglayer .bg, #{chart} .nsewdrag")[:1]
-        assert bar[3] <= area[2], chart  # it ends above the area of the data
+        assert bar[3] <= area[2], chart  # the buttons end above the plot area
         for _left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
             assert right <= bar[0] or bottom <= bar[2] or top >= bar[3], chart

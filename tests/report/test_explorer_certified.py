@@ -32,7 +32,10 @@ FRICTION = {"transverse": sideways, "bore": boring}
 
 
 def made(map_, friction, failed=None):
-    """The dataset of a certified map of a made-up friction; failed(*place): is unconverged."""
+    """The dataset of a certified map with a made-up friction.
+
+    friction, failed: functions of velocity, amplitude and, if the map has several, Poisson's
+    ratio; `failed` is true at unconverged points."""
 
     def answered(request):
         place = float(request["velocity"]), float(request["amplitude"])

@@ -1,4 +1,4 @@
-"""Questions about real contacts: what the page answers is what predict and solve answer."""
+"""The form for a real contact: its answers, warnings and messages equal those of predict."""
 
 import itertools
 import math
@@ -28,7 +28,7 @@ RELATIVE = 1e-12
 
 
 def texts(motion, **given):
-    """What the form holds, with something else typed in some fields: (text, unit) or a choice."""
+    """Contents of the form: defaults, replaced by (text, unit) or a choice."""
     found = dict(si_form.CHOSEN) | {"motion": motion}
     for name, field in si_form.FIELDS.items():
         found |= {name: field.example, f"{name}_unit": field.units[0]}
@@ -39,7 +39,7 @@ def texts(motion, **given):
 
 
 def asked_of_predict(typed):
-    """The arguments of microslip.predict for what the form holds."""
+    """Arguments of microslip.predict for the contents of the form."""
 
     def quantity(name):
         return f"{typed[name]} {typed[f'{name}_unit']}".strip()
@@ -57,7 +57,9 @@ def asked_of_predict(typed):
 
 
 def drawn(rng, motion, spread, *, at_ratio_0=False):
-    """A random question, around those whose amplitude is that of full slip; spread: decades."""
+    """Random contents of the form, whose amplitude is near that of full slip.
+
+    spread: range of the quantities in decades."""
     decades = rng.uniform(-spread, spread, 5)
     given = {
         "radius": (f"{5 * 10 ** decades[0]:.6g}", "mm"),
@@ -85,7 +87,7 @@ def page(maps, questions):
 
 
 def rises(velocity, amplitude):
-    """A made-up friction, smooth, 1 where nothing oscillates, rising with the velocity."""
+    """A smooth made-up friction that rises with the velocity and is 1 without oscillation."""
     return (0.1 + velocity) / (0.1 + velocity + amplitude / (1 + amplitude))
 
 
@@ -109,13 +111,13 @@ MAPS = {
 
 @cache
 def map_of(motion, which):
-    """A certified map of a made-up friction."""
+    """A certified map with a made-up friction."""
     return made(certified_stub.configured(motion, **MAPS[which]), made_up)
 
 
 @pytest.fixture
 def predicted(monkeypatch):
-    """microslip.predict with a map in the place of the solver."""
+    """A function that makes microslip.predict use a map instead of the solver."""
 
     def by(dataset):
         def solve(name, velocity, amplitude, *, poisson, **_):
@@ -184,7 +186,7 @@ def test_the_page_answers_as_predict_does_on_the_same_map(
         try:
             truth = predict(motion, **asked_of_predict(typed))
         except InputError as error:
-            # one body is too small for the contact, or the amplitude too large
+            # The sphere is too small for the contact, or the amplitude is too large.
             assert error.argument in ("radius", "amplitude") and "refused" in said
             refused += 1
             continue
@@ -231,7 +233,7 @@ NO_NUMBERS = {
 }
 
 
-def test_what_is_no_number_is_refused_in_one_line():
+def test_texts_that_are_not_numbers_are_refused_in_one_line():
     questions = [texts("transverse", radius=text) for text in NO_NUMBERS]
     for said, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
         assert said["refused"].startswith("radius of the sphere = "), text
@@ -239,7 +241,7 @@ def test_what_is_no_number_is_refused_in_one_line():
         assert "\n" not in said["refused"]
 
 
-def test_what_no_contact_can_have_is_refused():
+def test_impossible_contacts_are_refused():
     rigid = {"material": "rigid", "counterbody": "rigid"}
     numbers = {"material": si_form.OF_NUMBERS}
     cases = (
@@ -258,7 +260,7 @@ def test_what_no_contact_can_have_is_refused():
 
 
 def test_units_of_the_form_are_those_of_predict():
-    """Every unit of every field, by itself, against what Python reads."""
+    """Every unit of every field has the same factor as in Python."""
     units = [(name, one) for name, field in si_form.FIELDS.items() for one in field.units]
     numbers = ["0.3", "1.7e-1", ".25", "+0.125", "00.31"]
     calls = [[name, text, unit] for (name, unit), text in itertools.product(units, numbers)]
@@ -269,7 +271,7 @@ def test_units_of_the_form_are_those_of_predict():
         assert value == pytest.approx(truth, rel=4e-16, abs=0), (name, text, unit)
 
 
-def test_numbers_in_sentences_are_written_as_python_writes_them():
+def test_numbers_in_messages_have_the_format_of_python():
     rng = np.random.default_rng(23)
     values = [*(10 ** rng.uniform(-12, 12, 300)), 0.125, 2.5, 1.125, 99.5, 9.995, 1e-5, 1e15, 0.0]
     calls = [[float(value), count] for value in values for count in (1, 2, 3, 6)]

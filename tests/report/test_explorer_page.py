@@ -1,4 +1,4 @@
-"""The whole page in node: sweeps and Poisson's ratios to choose from, and the form that answers."""
+"""The whole page in node: selection of sweeps and Poisson's ratios, and the form."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ RATIOS = [0, 0.3, 0.5]
 
 
 def configured():
-    """Sweeps of every shape: maps with and without periods, lines, several Poisson's ratios."""
+    """A configuration with maps with and without periods, lines, and several Poisson's ratios."""
     extended = {
         "along": MAP | {"motion": "longitudinal", "group": "motions", "title": "to and fro"},
         "ratios": MAP | {"motion": "bore", "group": "poisson", "poisson": RATIOS},
@@ -54,7 +54,7 @@ def smooth(request):
 
 @pytest.fixture(scope="module")
 def certified():
-    """A certified map of transverse oscillation, of a made-up friction."""
+    """A certified map of transverse oscillation with a made-up friction."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
     map_ = certified_stub.configured("transverse", **axes)
     return certified_map.build(map_, certified_stub.played(map_, smooth))
@@ -62,7 +62,7 @@ def certified():
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, certified):
-    """Datasets by the names of sweeps, and the page's content."""
+    """Datasets by the names of sweeps, and the contents of their page."""
     datasets, periods = stub.made_up(tmp_path_factory.mktemp("page"), configured())
     return datasets, payload.build(datasets, periods, [certified])
 
@@ -71,7 +71,7 @@ def entries(content, kind, name):
     return [one for one in content[kind] if one["name"] == name]
 
 
-# What the page holds
+# Contents of the page
 
 
 @pytest.mark.long
@@ -96,7 +96,7 @@ def test_maps_at_every_ratio_hold_the_points_of_the_dataset(made, name):
         part = dataset.sel(poisson=one["poisson"]).transpose("amplitude", "velocity", ...)
         for key in ("mu_macro", "mu_macro_error"):
             assert np.array_equal(one["points"][key], part[key].values)
-        # the static limit of a transverse oscillation holds for Poisson's ratio 0, and says so
+        # the static limit of a transverse oscillation is exact for Poisson's ratio 0 only
         labels = " ".join(given["label"] for given in one["limits"])
         sideways = name == "transverse" and one["poisson"] > 0
         assert ("exact limit for ν = 0" in labels) == sideways
@@ -116,7 +116,7 @@ def test_lines_run_over_the_longest_axis(made):
         assert one["values"] == datasets["still"].mu_macro.sel(velocity=velocity).values.tolist()
 
 
-def test_what_is_pulled_is_lines_of_what_comes_out(made):
+def test_sweeps_with_a_drive_are_lines_of_the_response(made):
     datasets, content = made
     (drift,), (body,) = (entries(content, "lines", one) for one in ("drift", "body"))
     assert drift["y"]["label"] == "mean velocity"
@@ -130,11 +130,11 @@ def test_what_is_pulled_is_lines_of_what_comes_out(made):
         assert one["values"] == part.values.ravel().tolist()
 
 
-# What the page says
+# Texts on the page
 
 
 def chosen(name):
-    """JavaScript that chooses a sweep of the list."""
+    """JavaScript that selects a sweep in the list."""
     return f"element('others').value = '{name}', element('others').fire('change')"
 
 
@@ -162,13 +162,13 @@ def test_every_sweep_can_be_chosen_and_left_again(made):
         "[element('lines-view').hidden, element('point-view').hidden, element('disc').drawn]",
     )
     assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
-    # a group has its title in a label, which is no text
+    # titles of groups are in labels, not in the text
     assert others == "other sweeps to and fro ratios still drift body"
     assert ready == "yes"
     dataset = made[0]["along"].transpose("amplitude", "velocity", ...)
     hidden, shown, run = said[1]
     assert (hidden, run) == (False, "The page has no periods of this map.")
-    assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # velocity 0 has no place
+    assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # without velocity 0
     limits = len(entries(made[1], "lines", "still")[0]["limits"])
     assert said[3] == [True, 2 + limits]
     assert said[5][0] == "Continuous bore"
@@ -176,7 +176,7 @@ def test_every_sweep_can_be_chosen_and_left_again(made):
     assert said[7] == [True, False, True]
 
 
-def test_the_steady_bore_has_an_answer_at_every_place(made):
+def test_the_steady_bore_has_values_at_every_velocity(made):
     dataset = made[0]["continuous_bore"]
     said = page_says(
         made[1],
@@ -196,7 +196,7 @@ def test_the_steady_bore_has_an_answer_at_every_place(made):
 SLOW = (typed("speed", "0.001"), picked("speed_unit", "um/s"))
 
 
-def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_of_the_form(made):
+def test_a_contact_slower_than_the_map_is_interpolated_from_the_static_limit(made):
     said = page_says(
         made[1],
         ASK,
@@ -228,7 +228,7 @@ def test_the_coefficient_at_vanishing_speed_needs_no_map(made):
     assert still.startswith("Coefficient at vanishing speed: ")
 
 
-def test_the_address_holds_the_state_and_restores_it(made):
+def test_a_link_restores_the_state(made):
     before = page_says(
         made[1],
         "element('tabs').children[1].fire('click')",
@@ -298,7 +298,7 @@ def test_the_form_answers_and_marks_the_point(made, certified):
     assert said[-1] == [True, [], True]
 
 
-def test_the_form_asks_for_what_counts_alone(made):
+def test_the_form_shows_the_necessary_fields_only(made):
     hidden = "['young', 'counter_nu', 'stroke', 'angle'].map((id) => offerContact.rows[id].hidden)"
     said = page_says(
         made[1],
@@ -312,11 +312,11 @@ def test_the_form_asks_for_what_counts_alone(made):
     assert said[1] == [True, True, False, True]
     assert said[4] == [False, True, True, False]
     value, shown = said[5]
-    assert shown == "bore"  # the map of the motion is beside the form
+    assert shown == "bore"  # the map of the motion is drawn beside the form
     assert value == "No certified friction: this page holds no certified map of bore."
 
 
-def test_a_mistake_is_told_and_leaves_no_answer_behind(made):
+def test_bad_input_has_a_message_and_removes_the_answer(made):
     said = page_says(
         made[1],
         ASK,

@@ -1,4 +1,4 @@
-"""The paper's figures draw what their datasets hold; missing data and failed writes are named."""
+"""Figures of the paper show the values of their datasets; messages for bad datasets and files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from stubs.figures_stub import artists
 from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_the_steady_bore_shows_its_curves_histories_and_field(datasets):
     np.testing.assert_allclose(arrows.V[far], (-bound * (x + 0.8) / away)[far], atol=0.03)
 
 
-def test_the_history_has_its_mean_and_counts_periods(datasets):
+def test_the_history_has_its_mean_and_its_phase_in_periods(datasets):
     dataset = datasets["transverse"].copy()
     (mean,) = artists(drawing.draw("fig1_force_history", {"transverse": dataset}), "mean")
     last = dataset["history_force_forward"].values[-101:]
@@ -133,10 +133,10 @@ def test_the_effect_of_poissons_ratio_has_a_scale_from_the_tolerance(datasets):
     figure = drawing.draw("poisson", maps)
     bars = [axes.get_yticks() for axes in figure.axes if "less that" in axes.get_ylabel()]
     assert len(bars) == 2
-    for ticks in bars:  # the change of 0.05 is on the scale
+    for ticks in bars:  # the scale contains the difference of 0.05
         assert 0.05 - 1e-9 <= max(ticks) <= 0.054
     small = {name: dataset.assign_attrs(tolerance=0.01) for name, dataset in maps.items()}
-    bar = drawing.draw("poisson", small).axes[-1]  # twice the tolerance is pale
+    bar = drawing.draw("poisson", small).axes[-1]  # the palest band ends at twice the tolerance
     assert sorted(bar.get_yticks())[1:3] == pytest.approx([-0.02, 0.02])
     count = drawing.MOST_POISSONS + 1
     many = {name: stub.at_ratios(datasets[name], *np.linspace(0, 0.5, count)) for name in maps}
@@ -189,7 +189,7 @@ def test_a_missing_variable_is_named(name, key, variable):
         drawing.draw(name, lacking)
 
 
-def test_a_mistake_in_our_code_is_no_property_of_the_data(monkeypatch):
+def test_an_error_in_the_code_is_not_reported_as_a_missing_variable(monkeypatch):
     from microslip.report.figures import maps
 
     monkeypatch.setattr(maps, "MOTIONS", {})
@@ -197,7 +197,7 @@ def test_a_mistake_in_our_code_is_no_property_of_the_data(monkeypatch):
         drawing.draw("fig6_bore_map", BORE)
 
 
-def test_a_figure_says_what_made_it(datasets, tmp_path):
+def test_a_file_contains_its_provenance(datasets, tmp_path):
     made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
     figure = drawing.draw("fig6_bore_map", {"bore": made})
     with Image.open(drawing.save(figure, tmp_path / "map.png")) as image:
@@ -223,7 +223,7 @@ def test_a_failed_save_leaves_the_old_file(datasets, tmp_path, monkeypatch):
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 
 
-def test_the_users_settings_play_no_part_and_stay(datasets, tmp_path):
+def test_the_users_matplotlib_settings_are_ignored_and_restored(datasets, tmp_path):
     name = "fig5_transients"
     expected = drawing.save(drawing.draw(name, datasets), tmp_path / "a.png").read_bytes()
     with matplotlib.rc_context({"font.size": 20, "savefig.dpi": 50, "lines.linewidth": 9}):

@@ -1,4 +1,4 @@
-"""Maps and groups of sweeps: colours, the surface between points, contours, ticks, lines, texts."""
+"""Maps and groups of sweeps: colours, interpolated surface, contours, ticks, lines, titles."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
 
-pytestmark = pytest.mark.slow  # drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
 def words(figure) -> str:
@@ -49,7 +49,7 @@ def lab(colours):
 
 
 def shown(values, levels=(-1.0, 1.0)):
-    """The colours of values in a figure with these levels."""
+    """Colours of friction values in a figure with these levels."""
     colours, norm = signed.scale(levels)
     return colours(norm(np.asarray(values, float)))[:, :3]
 
@@ -61,7 +61,7 @@ def test_colours_are_even_below_0_and_those_of_figure_2_above_whatever_the_range
     below = lab(shown(-np.linspace(0, 1, 21)))
     steps = np.linalg.norm(np.diff(below, axis=0), axis=1)
     assert steps.max() < 1.3 * steps.min()
-    assert np.all(np.diff(below[:, 0]) > 0)  # away from 0 it gets lighter, as above 0
+    assert np.all(np.diff(below[:, 0]) > 0)  # colours become lighter away from 0
 
 
 def test_lines_stand_out_from_their_bands():
@@ -72,11 +72,11 @@ def test_lines_stand_out_from_their_bands():
             assert abs(behind - line) > 25, level
 
 
-# The surface between the points
+# The interpolated surface
 
 
 def mapped(velocities=9, amplitudes=7):
-    """A map that query can interpolate, far from any limit on its values."""
+    """A smooth map between 0 and 1."""
     velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
     mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return xr.Dataset(
@@ -86,7 +86,7 @@ def mapped(velocities=9, amplitudes=7):
     )
 
 
-def test_the_surface_is_that_of_friction_at():
+def test_the_surface_equals_microslip_at():
     dataset = mapped()
     surface = Surface(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     x, y, fine = surface.velocity, surface.amplitude, surface.values
@@ -94,21 +94,21 @@ def test_the_surface_is_that_of_friction_at():
     said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
     assert np.all(away <= said["mu_macro_error"].values)
-    assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone
+    assert np.median(away) < 1e-12  # values differ where they are clipped
     nodes = np.searchsorted(y, dataset.amplitude.values), np.searchsorted(x, dataset.velocity)
     np.testing.assert_allclose(fine[np.ix_(*nodes)], dataset.mu_macro, atol=1e-12)
 
 
-def test_no_island_is_drawn_that_nobody_computed():
+def test_the_surface_has_no_extrema_between_points():
     steep = np.array([[1.0, 1, 1, 1], [0.9, 1, 1, 1], [0, 0, 1, 1], [0, 0, 0, 1]])
     x, y = np.geomspace(0.01, 10, 4), np.arange(4.0)
     fine = Surface(x, y, steep).values
     assert fine.min() >= 0 and fine.max() <= 1
     rising = np.diff(fine, axis=1)
-    assert rising.min() >= -1e-12  # as the points do
+    assert rising.min() >= -1e-12  # like the points
 
 
-def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
+def test_the_cells_around_an_unknown_point_are_masked():
     values = np.add.outer(np.arange(6.0), np.arange(7.0))
     values[2, 3] = np.nan
     x, y = np.geomspace(1, 64, 7), np.arange(6.0)
@@ -123,7 +123,7 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
 
 
 def contours_of(dataset):
-    """The panel of a map that is drawn alone, and its contours."""
+    """The panel of a single map, and its contours."""
     figure = drawing.draw("extended_motions", {"m": dataset})
     (axes,) = artists(figure, "map")
     (lines,) = artists(axes, "contours")
@@ -137,13 +137,13 @@ def test_a_coarse_map_shows_its_points_and_no_contours_that_they_cannot_support(
     for level, path in zip(lines.levels, lines.get_paths(), strict=True):
         for velocity, amplitude in path.vertices:
             true = float(paper.large_amplitude_transverse(velocity, amplitude))
-            assert abs(true - level) < 0.1  # half the distance of two contours
+            assert abs(true - level) < 0.1  # half the difference of two levels
     steep = mapped(5, 5)
     steep["mu_macro"][:] = np.where(np.add.outer(np.arange(5), np.arange(5)) > 4, 1.0, 0.0)
     assert not any(len(path.vertices) for path in contours_of(steep)[1].get_paths())
 
 
-def test_a_number_stands_on_the_contour_of_its_level_inside_the_frame():
+def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
     axes, lines = contours_of(mapped(25, 25))
     assert not artists(axes, "points")
     assert all(len(path.vertices) for path in lines.get_paths())
@@ -158,6 +158,12 @@ def test_a_number_stands_on_the_contour_of_its_level_inside_the_frame():
         box = text.get_window_extent()
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1
         assert frame.y0 <= box.y0 and box.y1 <= frame.y1
+        height = text.get_fontsize() * axes.figure.dpi / 72
+        at = axes.transData.transform((velocity, amplitude))
+        for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+            if abs(level - float(text.get_text())) > 0.05:
+                away = np.hypot(*(axes.transData.transform(path.vertices) - at).T)
+                assert away.min() > 0.7 * height
 
 
 @pytest.mark.parametrize(
@@ -203,7 +209,7 @@ def test_friction_below_zero_widens_the_scale_of_all():
     fills, contours = groups.levels_of([stub.spanning(), negative])
     assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
     assert 0 in contours
-    fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error
+    fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error of the points
     assert (fills[0], fills[-1]) == (0.0, 1.0)
     figure = drawing.draw("extended_motions", {"a": negative, "b": stub.spanning("b")})
     (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
@@ -229,7 +235,7 @@ def test_all_of_poissons_ratios_of_a_group_are_drawn():
     (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
-    # Up to three maps show the effect of the ratios; more have a map each.
+    # Up to three datasets show the effect of the ratios; more have a map for each ratio.
     for count, differences, drawn in ((2, 2, 4), (4, 0, 8)):
         figure = drawing.draw("extended_motions", {f"m{k}": two for k in range(count)})
         labels = [axes.get_ylabel() for axes in figure.axes]
@@ -245,7 +251,7 @@ def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     loop = stub.static("loop", velocity=(1e-3,))
     loop["converged"][3, 0] = 0
     figure = drawing.draw("extended_static", {"a": slow, "b": loop})
-    (line,) = artists(figure, "limit")  # the loop has none
+    (line,) = artists(figure, "limit")  # the second dataset has no limit
     np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
     first, done, failed = (bars.lines[0] for bars in figure.axes[0].containers)
     np.testing.assert_array_equal(first.get_ydata(), slow["mu_macro"].sel(velocity=1e-3))
@@ -277,20 +283,20 @@ def test_a_steady_motion_is_drawn_over_its_velocity():
     assert figure.axes[0].get_xscale() == "log"
 
 
-# Texts from outside
+# Titles from the configuration
 
 TITLES = ["costs $5", r"$\frac{", r"\frac{1}{2} $x$", "a_b^c {} % # & ~", "_first", "$$"]
 TITLES += ["it ends in \\", r"\$ and $"]
 
 
 def drawn_words(figure):
-    """All texts as they stand on the page: without escapes and formulas, on one line."""
+    """All texts of a figure without escapes, formulas and line breaks."""
     texts = [text.get_text() for text in figure.findobj(Text)]
     plain = [re.sub(r"(?<!\\)\$(?:\\\$|[^$])*(?<!\\)\$", "", text) for text in texts]
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
-def test_titles_are_drawn_as_they_stand(tmp_path):
+def test_titles_are_drawn_verbatim(tmp_path):
     maps = {f"m{k}": stub.spanning(title) for k, title in enumerate(TITLES)}
     figure = drawing.draw("extended_motions", maps)
     assert set(TITLES) <= set(drawn_words(figure))
@@ -302,7 +308,7 @@ def test_titles_are_drawn_as_they_stand(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
+def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
     maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
     figure = drawing.draw("extended_motions", maps)
     drawing.save(figure, tmp_path / "maps.pdf")

@@ -74,8 +74,8 @@ def lines(name: str, dataset: xr.Dataset) -> list[dict]:
 
 
 def _lines(name: str, dataset: xr.Dataset) -> dict:
-    pulled = "force" in dataset.attrs.get(DRIVE, "").split(", ")
-    value = "velocity" if pulled else "mu_macro"
+    has_force = "force" in dataset.attrs.get(DRIVE, "").split(", ")
+    value = "velocity" if has_force else "mu_macro"
     require("explorer", name, dataset, [value, f"{value}_error", "converged"])
     dims = [dim for dim in AXES if dim in dataset[value].dims]
     poisson = float(dataset["poisson"])
@@ -87,8 +87,8 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
     return about(name, dataset, poisson) | {
         "x": {"label": axis_label(shown, along), "values": plain(at), "log": bool(even_ratios)},
         "y": {
-            "label": "mean velocity" if pulled else MU_MACRO.description,
-            "log": pulled,
+            "label": "mean velocity" if has_force else MU_MACRO.description,
+            "log": has_force,
         },
         "series": [
             {
@@ -109,7 +109,7 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
             for place in product(*(range(shown.sizes[dim]) for dim in others))
         ],
         "limits": []
-        if pulled
+        if has_force
         else [one for one in limits_of(shown, poisson) if one["dims"] == [along]],
         "beside": _torque(shown, along),
     }
@@ -120,14 +120,14 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]
-    found = {
+    torque = {
         "label": "torque  M_z/M_z,0",
         "values": plain(shown["mu_torque"].values),
         "errors": plain(shown["mu_torque_error"].values),
     }
     if theory.name in shown:
-        found["theory"] = {"label": theory.label, "values": plain(shown[theory.name].values)}
-    return [found]
+        torque["theory"] = {"label": theory.label, "values": plain(shown[theory.name].values)}
+    return [torque]
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
@@ -159,9 +159,9 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})
-    known = [name for name in NAMES if name in dataset.variables]
-    known.sort(key=lambda name: list(own).index(name) if name in own else len(own))
-    return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in known]
+    names = [name for name in NAMES if name in dataset.variables]
+    names.sort(key=lambda name: list(own).index(name) if name in own else len(own))
+    return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in names]
 
 
 def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:
@@ -170,7 +170,7 @@ def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -
     color, dash = CURVES.get(motion, {}).get(key, spare)
     only_at_0 = poisson > 0 and form.exact and not form.any_poisson
     values = dataset[key]
-    found = {
+    entry = {
         "label": f"{form.label} for ν = 0" if only_at_0 else form.label,
         "long_name": values.attrs["long_name"],
         "color": color,
@@ -180,8 +180,8 @@ def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -
     }
     if len(values.dims) == 1 and f"{key}_curve" in dataset:
         x, y = curve(limit(dataset, key))
-        found["curve"] = [plain(x), plain(y)]
-    return found
+        entry["curve"] = [plain(x), plain(y)]
+    return entry
 
 
 def _dash(linestyle: Any) -> str:

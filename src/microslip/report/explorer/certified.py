@@ -34,8 +34,8 @@ def packed(dataset: xr.Dataset) -> dict:
     InputError
         If the dataset is incomplete.
     """
-    found = cells_of(dataset)
-    table, coordinates = found.cells, found.cells.coordinates
+    source = cells_of(dataset)
+    table, coordinates = source.cells, source.cells.coordinates
     assert isinstance(coordinates, map_coordinates.MapCoordinates)  # of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
@@ -44,7 +44,7 @@ def packed(dataset: xr.Dataset) -> dict:
         "error": float(dataset.attrs["error"]),
         "velocity": list(coordinates.velocity),
         "amplitude": list(coordinates.amplitude),
-        "poisson": [float(found.poisson[0]), float(found.poisson[-1])],
+        "poisson": [float(source.poisson[0]), float(source.poisson[-1])],
         "kink_amplitudes": list(coordinates.kinks.amplitudes),
         "kink_velocity": list(coordinates.kinks.velocity),
         "gathering": {

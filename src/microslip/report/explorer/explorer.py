@@ -44,15 +44,15 @@ def certified_of(configuration: Configuration) -> list[str]:
 
     A map over a wider range of Poisson's ratios is preferred, then a more accurate map.
     """
-    found = []
+    names = []
     for motion in MAPS:
-        known = [
+        candidates = [
             map_
             for map_ in configuration.certified.values()
             if (map_.sweep.motion, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
         ]
-        found += [map_.name for map_ in sorted(known, key=_preference)[:1]]
-    return found
+        names += [map_.name for map_ in sorted(candidates, key=_preference)[:1]]
+    return names
 
 
 def _preference(map_: CertifiedMap) -> tuple[float, float]:
@@ -139,10 +139,10 @@ def report(periods: dict) -> Iterator[str]:
     periods: lists of records by the names of maps.
     """
     for name, records in periods.items():
-        bad = [record for record in records if not record["result"]["converged"]]
-        failed = f"{len(bad)} not converged" if bad else "all converged"
-        yield f"explorer: {name}: {len(records)} periods, {failed}"
-        for record in bad:
+        unconverged = [record for record in records if not record["result"]["converged"]]
+        outcome = f"{len(unconverged)} not converged" if unconverged else "all converged"
+        yield f"explorer: {name}: {len(records)} periods, {outcome}"
+        for record in unconverged:
             where = ", ".join(
                 f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")
             )

@@ -64,15 +64,15 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     ValueError
         If a variable is missing, or a period belongs to no point of its map.
     """
-    found: dict[str, list[dict]] = {"maps": [], "lines": []}
+    content: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
         if name in periods:
-            found["maps"] += _maps(name, dataset, periods[name])
+            content["maps"] += _maps(name, dataset, periods[name])
         elif brief.is_map(dataset):
-            found["maps"] += brief.maps(name, dataset)
+            content["maps"] += brief.maps(name, dataset)
         else:
-            found["lines"] += brief.lines(name, dataset)
-    return found | {
+            content["lines"] += brief.lines(name, dataset)
+    return content | {
         "made": {name: _made(datasets[name], periods.get(name, ())) for name in datasets},
         "certified": [packed(dataset) for dataset in certified],
         "si": si_form.packed(),
@@ -88,14 +88,14 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
     force, label = OTHER_FORCES[name]
-    found = [one | {"title": TITLES[name]} for one in brief.maps(name, dataset)]
-    first = next(one for one in found if one["poisson"] == poisson)
+    maps = [one | {"title": TITLES[name]} for one in brief.maps(name, dataset)]
+    first = next(one for one in maps if one["poisson"] == poisson)
     first |= {
         "labels": [*first["labels"], label],
         "points": {key: plain(shown[key].values) for key in POINTS},
         "periods": _periods(shown, records, force),
     }
-    return [first, *(one for one in found if one is not first)]
+    return [first, *(one for one in maps if one is not first)]
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
@@ -103,8 +103,8 @@ def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
-    failed: list[list] = []
-    kept: list[dict] = []
+    failures: list[list] = []
+    results: list[dict] = []
     for record in records:
         request, result = record["request"], record["result"]
         try:
@@ -112,11 +112,11 @@ def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
         except KeyError as error:
             raise ValueError(f"explorer: a period at {error}, which the map has not") from None
         if "tractions" in result:
-            index[place] = len(kept)
-            kept.append(result)
+            index[place] = len(results)
+            results.append(result)
         else:
-            failed.append([*place, result["reason"]])
-    return {"index": plain(index), "failed": failed} | _packed(kept, force)
+            failures.append([*place, result["reason"]])
+    return {"index": plain(index), "failed": failures} | _packed(results, force)
 
 
 def _packed(results: list[dict], force: str) -> dict:
@@ -157,11 +157,11 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
 
 def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
     """Provenance of a map and its periods: pairs of name and text."""
-    found = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
-    if "configuration" in found:
-        found["configuration"] = json.dumps(json.loads(found["configuration"]), indent=1)
+    provenance = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
+    if "configuration" in provenance:
+        provenance["configuration"] = json.dumps(json.loads(provenance["configuration"]), indent=1)
     if records:
         request = records[0]["request"]
         counts = ", ".join(f"{name} {request[name]}" for name in ("cells", "angles", "steps"))
-        found["periods"] = f"{len(records)} of the polar model: {counts}"
-    return [[key.replace("_", " "), str(value)] for key, value in found.items()]
+        provenance["periods"] = f"{len(records)} of the polar model: {counts}"
+    return [[key.replace("_", " "), str(value)] for key, value in provenance.items()]

@@ -90,15 +90,15 @@ def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
     for index, model in enumerate(dataset["scaling_model"].values.astype(str)):
         of_model = dataset.isel(scaling_model=index).sortby("scaling_unknowns")
         x, y = columns(of_model, "scaling_unknowns", f"scaling_{quantity}")
-        known = np.isfinite(x) & np.isfinite(y)
+        finite = np.isfinite(x) & np.isfinite(y)
         exponent = float(of_model[f"scaling_exponent_{quantity}"])
         growth = rf"  $N^{{{exponent:.2f}}}$" if np.isfinite(exponent) else ""
         color, marker, _ = look.model(model)
         ink: look.Ink = {"color": color, "marker": marker, "ms": 4.0}
         ink |= {"ls": look.LINES[index % 4][2]}
-        axes.plot(x[known], y[known], label=f"{model}{growth}", gid=quantity, **ink)
-        if quantity == "iterations" and known.any():
-            last = np.flatnonzero(known)[-1]
+        axes.plot(x[finite], y[finite], label=f"{model}{growth}", gid=quantity, **ink)
+        if quantity == "iterations" and finite.any():
+            last = np.flatnonzero(finite)[-1]
             size = str(of_model["scaling_label"].values[last])
             text: look.Ink = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom"}
             text |= {"textcoords": "offset points", "gid": "size"}

@@ -143,16 +143,16 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
         [dataset[name].values for name in certified_map.BORDERS[direction]]
         for direction in coordinates.directions
     ]
-    shown = np.flatnonzero(ends[2][0] == 0.0) if _is_deep(dataset) else np.arange(len(ends[0][0]))
+    cells = np.flatnonzero(ends[2][0] == 0.0) if _is_deep(dataset) else np.arange(len(ends[0][0]))
     deep = (0.0,) * (len(ends) - 2)
     outlines = []
-    for cell in shown:
+    for cell in cells:
         (left, right), (low, high) = ([end[cell] for end in pair] for pair in ends[:2])
         x, y = left + (right - left) * SIDE, low + (high - low) * SIDE
         around = [(one, low) for one in x] + [(right, one) for one in y]
         around += [(one, high) for one in x[::-1]] + [(left, one) for one in y[::-1]]
         outlines.append(np.array([coordinates.place((*node, *deep))[:2] for node in around]))
-    return outlines, dataset["cell_error"].values[shown]
+    return outlines, dataset["cell_error"].values[cells]
 
 
 def _axis(dataset: xr.Dataset, dim: str) -> str:

@@ -116,12 +116,12 @@ def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
     lateral, forward, share = columns(at, "patch_lateral", "patch_forward", "patch_share")
     line = np.linspace(-1.0, 1.0, PIXELS)
     x, y = np.meshgrid(line, line)
-    shown = griddata((lateral, forward), share, (x, y), method="nearest")
+    shares = griddata((lateral, forward), share, (x, y), method="nearest")
     half = 0.5 * (line[1] - line[0])
     frame: look.Ink = {"origin": "lower", "extent": 2 * (-1 - half, 1 + half)}
-    slips = (shown >= 1.0) | (np.hypot(x, y) >= 1.0)
+    slips = (shares >= 1.0) | (np.hypot(x, y) >= 1.0)
     scale: look.Ink = {"cmap": look.COLOURMAP, "vmin": 0.0, "vmax": 1.0, "interpolation": "nearest"}
-    shade = axes.imshow(np.ma.masked_where(slips, shown), gid="sticks", **scale, **frame)
+    shade = axes.imshow(np.ma.masked_where(slips, shares), gid="sticks", **scale, **frame)
     axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
     edge = columns(at, "patch_edge_lateral", "patch_edge_forward")
     axes.plot(*edge, color=look.VERMILLION, ls=look.DASHED, gid="theory")

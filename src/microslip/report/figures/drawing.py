@@ -178,8 +178,8 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
     """Provenance of datasets as JSON: a list of their attributes in `PROVENANCE`."""
-    found = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
-    return json.dumps(found, sort_keys=True)
+    attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
+    return json.dumps(attributes, sort_keys=True)
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:

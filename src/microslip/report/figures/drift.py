@@ -33,17 +33,17 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw the velocity over force and amplitude for transverse oscillation and for bore."""
     figure = look.new_figure(look.DOUBLE, 3.3)
     grid = figure.subplots(1, len(datasets))
-    marked = False
+    any_unconverged = False
     for axes, letter, dataset in zip(grid, "ab", datasets, strict=True):
         filled, has_marks = _map(axes, dataset, letter)
-        marked |= has_marks
+        any_unconverged |= has_marks
     velocity_bar(filled, list(grid))
     handles: list[Artist] = [
         Line2D([], [], label="static limit: threshold", **THRESHOLD),
         Patch(label="comes to rest", **REST),
         Line2D([], [], label="rigid contact, at the same velocities", **RIGID_LINE),
     ]
-    if marked:
+    if any_unconverged:
         handles.append(Line2D([], [], label="not converged", **UNCONVERGED))
     panels.legend_of_figure(figure, handles)
     return figure

@@ -110,9 +110,9 @@ def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", 
 def _force(axes: Axes, dataset: xr.Dataset) -> None:
     """Draw constant forces over the mean velocities of contacts that move."""
     moving = dataset.isel(force=(dataset["velocity"].values > 0.0))
-    velocity, force, done = columns(moving, "velocity", "force", "converged")
+    velocity, force, converged = columns(moving, "velocity", "force", "converged")
     label, exact = "constant force", np.zeros(force.size)
-    panels.computed(axes, velocity, force, exact, done, label=label, color=look.VERMILLION)
+    panels.computed(axes, velocity, force, exact, converged, label=label, color=look.VERMILLION)
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:

@@ -79,7 +79,7 @@ def lattice(
     line = SPACING * np.arange(-count, count + 1)
     nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
     values = griddata(np.column_stack((x, y)), np.column_stack(fields), nodes)
-    shown = np.isfinite(values).all(axis=1)
-    shown &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
-    shown &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
-    return (*nodes[shown].T, *values[shown].T)
+    visible = np.isfinite(values).all(axis=1)
+    visible &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
+    visible &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
+    return (*nodes[visible].T, *values[visible].T)

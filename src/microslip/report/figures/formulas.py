@@ -24,7 +24,7 @@ def mathtext(formula: str) -> str:
     A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
     u_lim, phi_lk. Other sequences of letters are words.
     """
-    if any(not _symbol(found) for found in _WORD.finditer(formula)):
+    if any(not _symbol(match) for match in _WORD.finditer(formula)):
         return _WORD.sub(_in_words, formula)
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
     text = re.sub(r"\s+", r"\\,", text)
@@ -34,8 +34,8 @@ def mathtext(formula: str) -> str:
 def html(formula: str) -> str:
     """A formula as HTML, with italic letters and subscripts."""
 
-    def symbol(found: re.Match[str]) -> str:
-        letters, number, index = found.groups()
+    def symbol(match: re.Match[str]) -> str:
+        letters, number, index = match.groups()
         below = number + (index or "")
         letter = LETTERS.get(letters, letters)
         return f"<i>{letter}</i>" + (f"<sub>{below}</sub>" if below else "")
@@ -44,9 +44,9 @@ def html(formula: str) -> str:
     return text.replace("</sub> <i>", "</sub><i>").replace("</i> <i>", " ")
 
 
-def _symbol(found: re.Match[str]) -> str:
+def _symbol(match: re.Match[str]) -> str:
     """The LaTeX symbol of a match of _WORD, "" for a word."""
-    letters, number, index = found.groups()
+    letters, number, index = match.groups()
     if letters not in GREEK and len(letters) > 1:
         return ""
     base = GREEK.get(letters, letters)
@@ -54,7 +54,7 @@ def _symbol(found: re.Match[str]) -> str:
     return f"{base}_{{{below}}}" if below else base
 
 
-def _in_words(found: re.Match[str]) -> str:
+def _in_words(match: re.Match[str]) -> str:
     # A single letter may be a word, such as an article.
-    plain = len(found[0]) == 1 or not _symbol(found)
-    return found[0] if plain else f"${_symbol(found)}$"
+    plain = len(match[0]) == 1 or not _symbol(match)
+    return match[0] if plain else f"${_symbol(match)}$"

@@ -136,8 +136,8 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     velocities: set[float] = set()
     handles = []
     for dataset, title, (color, marker, ls) in zip(datasets, titles, look.LINES, strict=False):
-        limited = _limit(axes, dataset, dim, color=color, ls=ls)
-        style: look.Ink = {"ls": ls} if limited else {"lw": JOINING}
+        has_limit = _limit(axes, dataset, dim, color=color, ls=ls)
+        style: look.Ink = {"ls": ls} if has_limit else {"lw": JOINING}
         label = look.wrapped(title, 1.35, 8.0)
         handles.append(Line2D([], [], color=color, marker=marker, ms=4.0, label=label, **style))
         points = dataset.isel(velocity=dataset["velocity"].values > 0)
@@ -162,9 +162,9 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
     """Draw a closed form or the computed static limit; returns whether the dataset has one."""
-    known = [variable for variable in THEORY[dim] if variable in dataset]
-    if known and float(dataset["poisson"]) == 0.0:
-        line = limit(dataset, known[0])
+    forms = [variable for variable in THEORY[dim] if variable in dataset]
+    if forms and float(dataset["poisson"]) == 0.0:
+        line = limit(dataset, forms[0])
         if line.ndim == 1:
             axes.plot(line[line.dims[0]], line, gid="limit", **ink)
             return True
@@ -179,8 +179,8 @@ def _marks(axes: Axes, points: xr.Dataset, dim: str, color: str, marker: str) ->
     """Draw computed points with errors, joined by a thin line; unconverged ones are hollow."""
     x, y, error = map(finite_or_nan, columns(points, dim, "mu_macro", "mu_macro_error"))
     axes.plot(x, y, color=color, lw=JOINING, alpha=0.6, zorder=1.5)
-    done = points["converged"].values != 0
-    for part, face, gid in ((done, color, "computed"), (~done, "white", "unconverged")):
+    converged = points["converged"].values != 0
+    for part, face, gid in ((converged, color, "computed"), (~converged, "white", "unconverged")):
         if part.any():
             ink: look.Ink = {"color": color, "mfc": face, "gid": gid, **look.ERROR_BARS}
             axes.errorbar(x[part], y[part], yerr=error[part], fmt=marker, ms=4.0, **ink)

@@ -129,12 +129,12 @@ def fill(
     return filled, handles, hatched
 
 
-def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
+def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, converged: np.ndarray) -> int:
     """Hatch the cell around every unconverged point and return the number of cells."""
     x, y = panels.edges(velocity, True), panels.edges(amplitude, False)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
-        for i, j in np.argwhere(~done)
+        for i, j in np.argwhere(~converged)
     ]
     axes.add_collection(
         PolyCollection(cells, gid="unconverged", zorder=4, **HATCHED), autolim=False

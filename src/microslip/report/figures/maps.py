@@ -63,23 +63,23 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     """
     motion, every = MOTIONS[name], at_each_poisson(dataset)
     require(name, motion, dataset, ("amplitude", "velocity"))
-    chosen = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
-    shown = [sweep(every[k], ("amplitude", "velocity")) for k in chosen]
-    figure, maps, static_cut, large_cut = _page(len(shown))
-    if len(shown) < len(every):
-        some = f"{len(shown)} of the {len(every)} of Poisson's ratios in the dataset"
+    indices = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
+    parts = [sweep(every[k], ("amplitude", "velocity")) for k in indices]
+    figure, maps, static_cut, large_cut = _page(len(parts))
+    if len(parts) < len(every):
+        some = f"{len(parts)} of the {len(every)} of Poisson's ratios in the dataset"
         figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
-    letters, alone = look.letters(len(shown) + 2), len(shown) == 1
+    letters, alone = look.letters(len(parts) + 2), len(parts) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
-    for index, (axes, (part, poisson)) in enumerate(zip(maps, shown, strict=True)):
-        filled, handles, hatched = fill(axes, part)
+    for index, (axes, (part, poisson)) in enumerate(zip(maps, parts, strict=True)):
+        filled, handles, unconverged = fill(axes, part)
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
         panels.letter(axes, letters[index], ratio)
         axes.set_xlabel(labels[0])
         if handles:
-            if hatched:
-                handles[-1].set_label(f"not converged ({hatched} of {part['mu_macro'].size})")
+            if unconverged:
+                handles[-1].set_label(f"not converged ({unconverged} of {part['mu_macro'].size})")
             above: look.Ink = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
             above |= {"borderaxespad": 0.2}
             axes.legend(handles=handles, **above)
@@ -87,8 +87,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             axes.set_ylabel(labels[1])
     friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
     panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
-    _static_cut(static_cut, shown, motion, letters[-2])
-    _large_cut(large_cut, shown, motion, letters[-1])
+    _static_cut(static_cut, parts, motion, letters[-2])
+    _large_cut(large_cut, parts, motion, letters[-1])
     return figure
 
 
@@ -109,13 +109,13 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     return figure, maps[:count], *lower.subplots(1, 2)
 
 
-def _static_cut(axes: Axes, shown: Cut, motion: str, letter: str) -> None:
+def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
     """Draw mu_macro over amplitude at the smallest velocity, with the static limits."""
-    velocity = float(shown[0][0]["velocity"][0])
+    velocity = float(parts[0][0]["velocity"][0])
     for name in CURVES[motion]:
         if name != LARGE:
-            _curve(axes, shown, motion, name, velocity=velocity)
-    _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in shown], "amplitude")
+            _curve(axes, parts, motion, name, velocity=velocity)
+    _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in parts], "amplitude")
     where = "left edge" if velocity > 0 else "static limit"
     at = look.conditions([(VELOCITY[motion].latex, velocity)])
     panels.legend_above(axes, letter, f"{where}, {at}")
@@ -130,26 +130,26 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
     return x.min(), min(max(1.5 * last, following), x.max())
 
 
-def _large_cut(axes: Axes, shown: Cut, motion: str, letter: str) -> None:
+def _large_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
     """Draw mu_macro over velocity at the largest amplitude, with its limit."""
-    amplitude = float(shown[0][0]["amplitude"][-1])
-    _curve(axes, shown, motion, LARGE, amplitude=amplitude)
-    _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in shown], "velocity")
+    amplitude = float(parts[0][0]["amplitude"][-1])
+    _curve(axes, parts, motion, LARGE, amplitude=amplitude)
+    _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in parts], "velocity")
     at = look.conditions([(AMPLITUDE[motion].latex, amplitude)])
     panels.legend_above(axes, letter, f"top edge, {at}")
-    velocity = shown[0][0]["velocity"].values
+    velocity = parts[0][0]["velocity"].values
     axes.set(xscale="log", xlim=(velocity[velocity > 0][0], velocity[-1]))
     axes.set_xlabel(look.axis(VELOCITY[motion]))
     panels.logarithmic(axes.xaxis)
 
 
-def _curve(axes: Axes, shown: Cut, motion: str, name: str, **at: float) -> None:
+def _curve(axes: Axes, parts: Cut, motion: str, name: str, **at: float) -> None:
     """Draw a closed form from its variable in the dataset."""
     form, (color, ls) = FORMS[motion][name], CURVES[motion][name]
     label = form.label
-    if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in shown):
+    if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in parts):
         label = r"limit at $\nu = 0$"  # it is exact for this ratio only
-    x, y = curve(limit(shown[0][0], name), **at)
+    x, y = curve(limit(parts[0][0], name), **at)
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 

@@ -47,8 +47,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> None:
     """Colour every cell by its model, outline the regions and label them."""
     velocity, amplitude = (dataset[f"{motion}_{n}"] for n in ("velocity", "amplitude"))
-    shown = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
-    codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in shown])
+    names = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
+    codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in names])
     logarithmic = Axis(amplitude.values).logarithmic
     x, y = panels.edges(velocity.values, True), panels.edges(amplitude.values, logarithmic)
     axes.set(xscale="log", yscale="log" if logarithmic else "linear")

@@ -108,16 +108,16 @@ def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink:
 
     columns: values, error estimates, and nonzero numbers for converged points.
     """
-    values, errors, done = columns[0], finite_or_nan(columns[1]), columns[2] != 0
+    values, errors, converged = columns[0], finite_or_nan(columns[1]), columns[2] != 0
     ink = {"color": look.BLACK, **look.COMPUTED, **ink}
     if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR:
         band: look.Ink = {"color": look.PALE, "lw": 0, "zorder": 1, "gid": "error-band"}
         once = _once(axes, "error estimate")
         axes.fill_between(x, values - errors, values + errors, label=once, **band)
-    axes.plot(x[done], values[done], label=label, gid="computed", **ink)
-    if not done.all():
+    axes.plot(x[converged], values[converged], label=label, gid="computed", **ink)
+    if not converged.all():
         ink |= {"mfc": "white", "label": _once(axes, "not converged"), "gid": "unconverged"}
-        axes.plot(x[~done], values[~done], **ink)
+        axes.plot(x[~converged], values[~converged], **ink)
 
 
 def _once(axes: Axes, label: str) -> str:

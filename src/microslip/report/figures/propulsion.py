@@ -26,8 +26,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for row, (variable, label) in zip(grid, ROWS.items(), strict=True):
         row[0].set_ylabel(label)
         for axes, panel in zip(row, names, strict=True):
-            chosen = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
-            _lines(axes, chosen, variable)
+            lines = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
+            _lines(axes, lines, variable)
             note = look.literal(panel) if variable == "force" else ""
             panels.letter(axes, next(letters), note, WIDTH - 0.5)
     for axes in grid[-1]:

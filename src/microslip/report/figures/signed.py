@@ -40,5 +40,5 @@ def inks(levels: np.ndarray, fills: np.ndarray) -> list[str]:
     """Colours of lines at `levels` with enough contrast to the bands between `fills`."""
     colours, norm = scale(fills)
     weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
-    shown = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]
-    return ["white" if luminance < DARK else "black" for luminance in shown]
+    luminances = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]
+    return ["white" if luminance < DARK else "black" for luminance in luminances]

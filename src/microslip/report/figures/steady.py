@@ -63,11 +63,11 @@ def transients(name: str, dataset: xr.Dataset) -> Figure:
             QUANTITIES, MARKERS, strict=True
         ):
             travel, values = columns(at, "transient_displacement", history)
-            known = np.isfinite(travel) & np.isfinite(values)  # shorter runs end in NaN
+            finite = np.isfinite(travel) & np.isfinite(values)  # shorter runs end in NaN
             marks: look.Ink = {"marker": marker, "ms": 3.4, "markevery": (0.06, 0.12)}
             marks |= {"gid": history}
             label, theory = f"{what}, computed", f"transient_{what}_theory"
-            axes.plot(travel[known], values[known], color=color, label=label, **marks)
+            axes.plot(travel[finite], values[finite], color=color, label=label, **marks)
             ink: look.Ink = {"color": color, "ls": look.DASHED, "lw": 1.0, "zorder": 1.5}
             ink |= {"gid": theory}
             axes.axhline(float(at[theory]), label=f"{what}, {equation}", **ink)

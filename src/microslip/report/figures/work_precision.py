@@ -138,8 +138,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
     """A scale for all costs above zero."""
-    counted = costs[np.isfinite(costs) & (costs > 0)]
-    low, high = (counted.min(), counted.max()) if counted.size else (1.0, 10.0)
+    positive = costs[np.isfinite(costs) & (costs > 0)]
+    low, high = (positive.min(), positive.max()) if positive.size else (1.0, 10.0)
     margin = max((high / low) ** 0.05, 1.2)
     below, above = (costs <= 0).any(), not np.isfinite(costs).all()
     return Scale(low / margin, high * margin, "0" * bool(below), "none" * bool(above))
@@ -148,13 +148,13 @@ def _scale_of_costs(costs: np.ndarray) -> Scale:
 def _scale_of_errors(dataset: xr.Dataset) -> Scale:
     """A scale from just below the smallest significant error to the largest error."""
     errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
-    counted = np.isfinite(errors) & (errors > 0)
+    positive = np.isfinite(errors) & (errors > 0)
     lows = []
-    for point, known in zip(*columns(dataset, "point", "reference_error"), strict=True):
-        smallest = errors[counted & (of_point == str(point))].min(initial=np.inf) / 1.5
-        known = known / BELOW_REFERENCE if np.isfinite(known) else 0.0
-        lows.append(max(known, smallest) if np.isfinite(smallest) else known or np.inf)
-    high = 1.5 * errors[counted].max(initial=1e-3)
+    for point, limit in zip(*columns(dataset, "point", "reference_error"), strict=True):
+        smallest = errors[positive & (of_point == str(point))].min(initial=np.inf) / 1.5
+        limit = limit / BELOW_REFERENCE if np.isfinite(limit) else 0.0
+        lows.append(max(limit, smallest) if np.isfinite(smallest) else limit or np.inf)
+    high = 1.5 * errors[positive].max(initial=1e-3)
     low = max(min(*lows, high / 100.0), high / MOST)
     below, above = (errors < low).any(), not np.isfinite(errors).all()
     return Scale(low, high, "below" * bool(below), "none" * bool(above))
@@ -163,8 +163,8 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
 def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
     """Write the letter of a panel, and title and parameters of its point."""
     motion = str(point["point_motion"].item())
-    known = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
-    symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
+    quantities = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
+    symbols = [one.latex if one else plain for one, plain in zip(quantities, "vA", strict=True)]
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
     pairs = zip((*symbols, r"\nu"), values, strict=True)
     numbers = look.conditions((symbol, value) for symbol, value in pairs if np.isfinite(value))
@@ -173,31 +173,31 @@ def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
     axes.set_title(head, loc="left", pad=4, fontsize=look.HEADING, linespacing=1.15)
 
 
-def _reference(axes: Axes, known: float) -> None:
+def _reference(axes: Axes, error: float) -> None:
     """Hatch the errors below the error of the reference, unless that is NaN."""
     bottom, top = axes.get_ylim()
-    if known > bottom:
-        axes.axhspan(bottom, min(known, top), gid="reference", zorder=0.5, **UNKNOWN)
+    if error > bottom:
+        axes.axhspan(bottom, min(error, top), gid="reference", zorder=0.5, **UNKNOWN)
 
 
 def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
     """Draw every trial of a point: a curve for each model, and markers for other methods."""
     raw_x, raw_y, front = columns(rows, cost, "error", f"front_{cost}")
-    x, y, done = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
+    x, y, converged = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
     model, method = (rows[f"trial_{n}"].values.astype(str) for n in ("model", "method"))
     best = np.flatnonzero(front)
     best = best[np.lexsort((-y[best], x[best]))]
     axes.plot(x[best], y[best], drawstyle="steps-post", gid="front", **FRONT)
-    failed = ~(np.isfinite(raw_y) & done)
+    unconverged = ~(np.isfinite(raw_y) & converged)
     for pair in dict.fromkeys(zip(model, method, strict=True)):
         own = (model == pair[0]) & (method == pair[1])
         ink = _ink(*pair)
-        joined = own & np.isfinite(raw_y)
-        axes.plot(x[joined], y[joined], gid=" ".join(pair), **ink)
+        finite = own & np.isfinite(raw_y)
+        axes.plot(x[finite], y[finite], gid=" ".join(pair), **ink)
         if ink is not OTHER:
             hollow: look.Ink = ink | {"ls": "none", "mfc": "white", "gid": "hollow"}
-            axes.plot(x[own & failed], y[own & failed], **hollow)
-    axes.plot(x[failed], y[failed], gid="not converged", **CROSS)
+            axes.plot(x[own & unconverged], y[own & unconverged], **hollow)
+    axes.plot(x[unconverged], y[unconverged], gid="not converged", **CROSS)
     low, left = raw_y < errors.low, raw_x < costs.low
     if low.any():
         bottom = np.full(low.sum(), axes.get_ylim()[0])
@@ -221,28 +221,28 @@ def _ink(model: str, method: str) -> look.Ink:
     return SHIPPED | {"color": color, "marker": marker} if method == "shipped" else OTHER
 
 
-def _label(axes: Axes, texts: list[str], labelled: np.ndarray, marks: np.ndarray) -> None:
+def _label(axes: Axes, texts: list[str], has_label: np.ndarray, marks: np.ndarray) -> None:
     """Write labels beside markers. A label that would overlap a marker or a line is omitted.
 
     texts: labels, one for each true value in `labelled`; marks: shape (n, 2), data coordinates.
     """
     pixels, scale = axes.transData.transform(marks), look.DPI / 72.0
-    line = pixels[labelled]
-    taken = np.concatenate([pixels, *np.linspace(line[:-1], line[1:], 20)])
-    for text, place in zip(texts, pixels[labelled], strict=True):
+    line = pixels[has_label]
+    obstacles = np.concatenate([pixels, *np.linspace(line[:-1], line[1:], 20)])
+    for text, place in zip(texts, pixels[has_label], strict=True):
         size = np.array([look.width(text, look.SMALLEST) * 72.0, look.SMALLEST]) * scale
         for way in np.array(AROUND):
             middle = place + way * (size / 2 + 5.0 * scale)
             low, high = middle - size / 2, middle + size / 2
-            hidden = ((taken > low - scale) & (taken < high + scale)).all(axis=1)
-            if not hidden.any() and axes.bbox.contains(*low) and axes.bbox.contains(*high):
+            overlaps = ((obstacles > low - scale) & (obstacles < high + scale)).all(axis=1)
+            if not overlaps.any() and axes.bbox.contains(*low) and axes.bbox.contains(*high):
                 white = [patheffects.withStroke(linewidth=1.5, foreground="white")]
                 at = axes.transData.inverted().transform(middle)
                 ink: look.Ink = {"fontsize": look.SMALLEST, "ha": "center", "va": "center"}
                 ink |= {"zorder": 10, "path_effects": white, "gid": "label"}
                 axes.text(at[0], at[1], text, **ink)
                 corners = np.stack(np.meshgrid(*np.linspace(low, high, 5).T), axis=-1)
-                taken = np.concatenate([taken, corners.reshape(-1, 2)])
+                obstacles = np.concatenate([obstacles, corners.reshape(-1, 2)])
                 break
 
 
