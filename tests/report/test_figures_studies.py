@@ -195,7 +195,7 @@ def test_the_atlas_shows_every_outcome(stability):
         assert methods[0] == "shipped" and "jacobi" not in methods
         expected = (
             cases["outcome"].sel({"method": methods}).values
-        )  # a keyword `method` would be an option of sel
+        )  # not a keyword: sel has its own
         (mesh,) = artists(axes, "outcome")
         np.testing.assert_array_equal(mesh.get_array().filled(0), expected)
         signs = {text.get_position()[::-1]: text.get_text() for text in axes.texts}
