@@ -70,13 +70,13 @@ def test_the_command_of_a_point_requests_that_point(request_):
     options = cli.build_parser("point").parse_args(words)
     assert options.motion == request_["motion"]
     amplitude = getattr(options, "amplitude", None)
-    given = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
-    given["amplitude"] = None if amplitude is None else number(float(amplitude))
-    given["model"] = options.model
+    parsed = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
+    parsed["amplitude"] = None if amplitude is None else number(float(amplitude))
+    parsed["model"] = options.model
     for name in ("cells", "steps"):
         text = getattr(options, name)
-        given[name] = None if text is None else int(text)
-    assert given == {name: request_[name] for name in given}
+        parsed[name] = None if text is None else int(text)
+    assert parsed == {name: request_[name] for name in parsed}
 
 
 @pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])

@@ -26,25 +26,25 @@ def made(tmp_path_factory):
 
 
 def map_of(content, name):
-    (found,) = (given for given in content["maps"] if given["name"] == name)
-    return found
+    (entry,) = (one for one in content["maps"] if one["name"] == name)
+    return entry
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", explorer.MAPS)
 def test_points_and_limits_are_those_of_the_dataset(made, name):
-    dataset, found = made[0][name], map_of(made[2], name)
-    assert found["velocity"] == list(dataset.velocity.values)
-    for key, values in found["points"].items():
+    dataset, entry = made[0][name], map_of(made[2], name)
+    assert entry["velocity"] == list(dataset.velocity.values)
+    for key, values in entry["points"].items():
         if dataset[key].dtype.kind == "f":
             values = np.array(values, float)
         assert np.array_equal(values, dataset[key].values), key
-    assert len(found["limits"]) == len(FORMS[name])
-    for given, key in zip(found["limits"], FORMS[name], strict=True):
-        assert np.array_equal(given["values"], dataset[key].values)
-        assert given["long_name"] == dataset[key].long_name
-        if len(given["dims"]) == 1:
-            assert np.array_equal(given["curve"][1], dataset[f"{key}_curve"].values)
+    assert len(entry["limits"]) == len(FORMS[name])
+    for limit, key in zip(entry["limits"], FORMS[name], strict=True):
+        assert np.array_equal(limit["values"], dataset[key].values)
+        assert limit["long_name"] == dataset[key].long_name
+        if len(limit["dims"]) == 1:
+            assert np.array_equal(limit["curve"][1], dataset[f"{key}_curve"].values)
 
 
 @pytest.mark.slow
@@ -53,8 +53,8 @@ def test_stored_periods_are_accurate_to_their_rounding(made, name):
     _, records, content = made
     packed = map_of(content, name)["periods"]
     count, shape = packed["count"], (packed["frames"] // 2, packed["angles"], packed["cells"])
-    kept = [record["result"] for record in records[name] if "tractions" in record["result"]]
-    assert count == len(kept)
+    results = [record["result"] for record in records[name] if "tractions" in record["result"]]
+    assert count == len(results)
 
     def values(key, kind, *shape):
         return period_codec.values_of(packed[key], kind).reshape(count, *shape)
@@ -64,7 +64,7 @@ def test_stored_periods_are_accurate_to_their_rounding(made, name):
     forces = packed["force_step"] * values("forces", np.int16, 2, -1)
     phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
     other = {"transverse": "force_lateral", "bore": "torque"}[name]
-    for k, result in enumerate(kept):
+    for k, result in enumerate(results):
         truth = unpacked(result)
         half = truth["bound"].size // 2
         for c, way in enumerate(("forward", "lateral")):
@@ -75,8 +75,8 @@ def test_stored_periods_are_accurate_to_their_rounding(made, name):
         assert forces[k, 1] == pytest.approx(truth[other], abs=packed["force_step"])
         assert phases[k] == pytest.approx(truth["phase"], abs=5e-5)
         for key in ("radius", "bound"):
-            kept_in = values({"radius": "radii", "bound": "bounds"}[key], np.uint16, -1)[k]
-            assert kept_in / 65535 == pytest.approx(result[key], abs=8e-6)
+            step_values = values({"radius": "radii", "bound": "bounds"}[key], np.uint16, -1)[k]
+            assert step_values / 65535 == pytest.approx(result[key], abs=8e-6)
     assert packed["force_step"] < 5e-5
 
 
@@ -111,8 +111,8 @@ def chosen(name, dataset, velocity, amplitude):
 @pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
 def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, velocity, amplitude):
     datasets, records, content = made
-    dataset, wanted = datasets[name], (f"{amplitude:g}", f"{velocity:g}")
-    (result,) = (one["result"] for one in records[name] if stub.place(one) == wanted)
+    dataset, place = datasets[name], (f"{amplitude:g}", f"{velocity:g}")
+    (result,) = (one["result"] for one in records[name] if stub.place(one) == place)
     _, value, certificate, angle, radius, frames, history, loop = page_says(
         content,
         chosen(name, dataset, velocity, amplitude),
@@ -204,17 +204,17 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
 def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
     configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
-    asked = explorer.period_requests(configuration, "bore")
-    assert 300 < len(asked) <= 625
-    assert len({request["velocity"] for request in asked}) == 34
-    assert len({request["amplitude"] for request in asked}) == 17
+    requests = explorer.period_requests(configuration, "bore")
+    assert 300 < len(requests) <= 625
+    assert len({request["velocity"] for request in requests}) == 34
+    assert len({request["amplitude"] for request in requests}) == 17
 
 
 def test_the_most_accurate_of_several_certified_maps_is_used():
     exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
     axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
     extended = axes | {"motion": "transverse", "group": "motions"}
-    given = {
+    configuration = {
         "sweeps": {"transverse": axes | rough},
         "extended": {
             "again": extended | exact,
@@ -222,7 +222,7 @@ def test_the_most_accurate_of_several_certified_maps_is_used():
             "cone": extended | exact | {"pressure": "power:exponent=1"},
         },
     }
-    assert explorer.certified_of(load.from_mapping(given)) == ["certified_again"]
+    assert explorer.certified_of(load.from_mapping(configuration)) == ["certified_again"]
     assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
 
 
@@ -239,7 +239,7 @@ LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "gro
 
 
 @pytest.mark.parametrize(
-    ("configuration", "wanted", "refusal"),
+    ("configuration", "page_name", "refusal"),
     [
         ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
         ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
@@ -254,9 +254,9 @@ LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "gro
     ],
 )  # fmt: skip
 def test_a_configuration_without_a_map_or_with_too_many_points_is_refused(
-    configuration, wanted, refusal
+    configuration, page_name, refusal
 ):
-    assert explorer.refusal(load.from_mapping(configuration), wanted) == refusal
+    assert explorer.refusal(load.from_mapping(configuration), page_name) == refusal
 
 
 def test_the_page_needs_no_network(made, monkeypatch):
@@ -273,9 +273,9 @@ def test_the_page_needs_no_network(made, monkeypatch):
 
 
 def test_text_in_a_dataset_cannot_end_the_script(made):
-    held = json.loads(json.dumps(made[2]))
-    held["made"]["bore"].append(["title", "</script><script>alert(1)"])
-    assert page.page(held).count("</script>") == page.page(made[2]).count("</script>")
+    content = json.loads(json.dumps(made[2]))
+    content["made"]["bore"].append(["title", "</script><script>alert(1)"])
+    assert page.page(content).count("</script>") == page.page(made[2]).count("</script>")
 
 
 def test_a_period_that_belongs_to_no_point_is_refused(made):

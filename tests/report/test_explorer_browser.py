@@ -47,23 +47,23 @@ def browser(tmp_path_factory):
 @pytest.fixture(scope="module")
 def opened(made, browser):
     """The open page, its console messages, and its network requests."""
-    page, heard, asked = browser.new_page(), [], []
-    page.on("console", lambda message: heard.append(message.text))
-    page.on("pageerror", lambda error: heard.append(str(error)))
-    page.on("request", lambda request: asked.append(request.url))
+    page, messages, requests = browser.new_page(), [], []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("request", lambda request: requests.append(request.url))
     page.goto(made[0].as_uri())
     page.locator("body[data-ready]").wait_for()
-    return page, heard, asked
+    return page, messages, requests
 
 
 @pytest.fixture
 def page(made, opened):
     """The open page. A test must cause no console message and no network request."""
-    page, heard, asked = opened
+    page, messages, requests = opened
     page.set_viewport_size({"width": 1280, "height": 800})
     yield page
-    assert heard == []
-    assert asked == [made[0].as_uri()]
+    assert messages == []
+    assert requests == [made[0].as_uri()]
 
 
 def click_on_map(page, velocity, amplitude):

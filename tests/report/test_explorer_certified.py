@@ -49,20 +49,20 @@ def made(map_, friction, failed=None):
     return certified_map.build(map_, certified_stub.played(map_, answered))
 
 
-def asked(dataset, velocity, amplitude, poisson=None):
+def both_answers(dataset, velocity, amplitude, poisson=None):
     """The answers of the page and of microslip.at at points."""
     places = np.column_stack((velocity, amplitude, np.full(len(velocity), poisson or 0.0)))
-    answered = answers(SCRIPTS, "frictionAt", certified.packed(dataset), places.tolist())
+    page_answers = answers(SCRIPTS, "frictionAt", certified.packed(dataset), places.tolist())
     velocity, amplitude = (xr.DataArray(part, dims="n") for part in (velocity, amplitude))
-    return answered, dataset.microslip.at(velocity, amplitude, poisson=poisson)
+    return page_answers, dataset.microslip.at(velocity, amplitude, poisson=poisson)
 
 
-def compare(answered, truth):
-    assert not [one for one in answered if "refused" in one]
+def compare(page_answers, truth):
+    assert not [one for one in page_answers if "refused" in one]
     for name, key in (("mu_macro", "value"), ("mu_macro_error", "error")):
-        values = np.array([float(one[key]) for one in answered])
+        values = np.array([float(one[key]) for one in page_answers])
         assert values == pytest.approx(truth[name].values, abs=TOLERANCE, rel=0, nan_ok=True), name
-    assert [one["source"] for one in answered] == [SOURCES[k] for k in truth["source"].values]
+    assert [one["source"] for one in page_answers] == [SOURCES[k] for k in truth["source"].values]
 
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
@@ -91,9 +91,9 @@ def test_answers_on_a_map_and_beyond_it_are_those_of_at(motion, axes, sources):
     velocity, amplitude = (
         np.append(part, corner) for part, corner in zip((velocity, amplitude), corners, strict=True)
     )
-    answered, truth = asked(dataset, velocity, amplitude)
-    compare(answered, truth)
-    assert {one["source"] for one in answered} >= sources
+    page_answers, truth = both_answers(dataset, velocity, amplitude)
+    compare(page_answers, truth)
+    assert {one["source"] for one in page_answers} >= sources
 
 
 @pytest.mark.parametrize("motion", ["transverse", "bore"])
@@ -105,7 +105,7 @@ def test_maps_over_poissons_ratio_answer_as_at(motion):
     velocity, amplitude = 10 ** rng.uniform(-5, 2, 60), rng.uniform(0, 3, 60)
     velocity[:5] = 0.0
     for poisson in (0.0, 0.17, 0.3, 0.5):
-        compare(*asked(dataset, velocity, amplitude, poisson))
+        compare(*both_answers(dataset, velocity, amplitude, poisson))
     packed = certified.packed(dataset)
     (apart,) = answers(SCRIPTS, "frictionAt", packed, [[1.0, 1.0, 0.6]])
     assert apart["refused"] == "poisson = 0.6: allowed is 0 to 0.5; microslip.solve computes any"
@@ -131,17 +131,17 @@ def test_next_to_an_unconverged_point_both_answers_are_unknown():
     map_ = certified_stub.configured("bore", **axes)
     dataset = made(map_, boring, failed=lambda v, a: v < 0.02 and a < 0.3)
     velocity = 10 ** np.random.default_rng(10).uniform(-2.5, 0.5, 60)
-    answered, truth = asked(dataset, np.fmax(velocity, 0.01), np.linspace(0.1, 0.8, 60))
+    page_answers, truth = both_answers(dataset, np.fmax(velocity, 0.01), np.linspace(0.1, 0.8, 60))
     assert truth.mu_macro.isnull().any()
-    compare(answered, truth)
+    compare(page_answers, truth)
 
 
 def test_bad_arguments_are_refused_in_the_words_of_at():
     axes = {"velocity": [0.01, 1], "amplitude": [0, 1], "adaptive": {"error": 0.05}}
     dataset = made(certified_stub.configured("transverse", **axes), sideways)
     questions = [(-1.0, 1.0, 0.0), (1.0, -0.5, 0.0), (1.0, 1.0, 0.3), (1.0, 1.0, -0.1)]
-    answered = answers(SCRIPTS, "frictionAt", certified.packed(dataset), questions)
-    for (velocity, amplitude, poisson), one in zip(questions, answered, strict=True):
+    page_answers = answers(SCRIPTS, "frictionAt", certified.packed(dataset), questions)
+    for (velocity, amplitude, poisson), one in zip(questions, page_answers, strict=True):
         with pytest.raises(InputError) as error:
             dataset.microslip.at(velocity, amplitude, poisson=poisson)
         refused, allowed = one["refused"].split(": ", 1)
@@ -155,11 +155,11 @@ def test_a_motion_without_limits_is_refused_outside_its_map_in_the_words_of_at()
     paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
     map_ = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}}).certified
     dataset = made(*map_.values(), lambda v, a: float(masing.longitudinal(v, a)))
-    compare(*asked(dataset, np.array([0.02, 0.2, 0.9]), np.array([0.15, 0.5, 0.85])))
+    compare(*both_answers(dataset, np.array([0.02, 0.2, 0.9]), np.array([0.15, 0.5, 0.85])))
     questions = [(2.0, 0.5), (0.0, 0.5), (0.5, 0.95)]
     packed = certified.packed(dataset)
-    answered = answers(SCRIPTS, "frictionAt", packed, [[*place, 0.0] for place in questions])
-    for place, one in zip(questions, answered, strict=True):
+    page_answers = answers(SCRIPTS, "frictionAt", packed, [[*place, 0.0] for place in questions])
+    for place, one in zip(questions, page_answers, strict=True):
         with pytest.raises(ValueError) as error:
             dataset.microslip.at(*place)
         assert one["refused"] == str(error.value)

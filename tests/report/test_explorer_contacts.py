@@ -27,41 +27,41 @@ COUNT = 100
 RELATIVE = 1e-12
 
 
-def texts(motion, **given):
+def texts(motion, **changes):
     """Contents of the form: defaults, replaced by (text, unit) or a choice."""
-    found = dict(si_form.CHOSEN) | {"motion": motion}
+    contents = dict(si_form.CHOSEN) | {"motion": motion}
     for name, field in si_form.FIELDS.items():
-        found |= {name: field.example, f"{name}_unit": field.units[0]}
-    for name, value in given.items():
+        contents |= {name: field.example, f"{name}_unit": field.units[0]}
+    for name, value in changes.items():
         text, *unit = [value] if isinstance(value, str) else value
-        found |= {name: text} | ({f"{name}_unit": unit[0]} if unit else {})
-    return found
+        contents |= {name: text} | ({f"{name}_unit": unit[0]} if unit else {})
+    return contents
 
 
-def asked_of_predict(typed):
+def arguments_of_predict(contents):
     """Arguments of microslip.predict for the contents of the form."""
 
     def quantity(name):
-        return f"{typed[name]} {typed[f'{name}_unit']}".strip()
+        return f"{contents[name]} {contents[f'{name}_unit']}".strip()
 
-    found = {name: quantity(name) for name in ("radius", "load", "mu", "speed", "frequency")}
-    found["amplitude"] = quantity(si_form.AMPLITUDE_OF[typed["motion"]])
-    if typed["material"] == si_form.OF_NUMBERS:
-        found |= {"young": quantity("young"), "nu": quantity("nu")}
+    arguments = {name: quantity(name) for name in ("radius", "load", "mu", "speed", "frequency")}
+    arguments["amplitude"] = quantity(si_form.AMPLITUDE_OF[contents["motion"]])
+    if contents["material"] == si_form.OF_NUMBERS:
+        arguments |= {"young": quantity("young"), "nu": quantity("nu")}
     else:
-        found["material"] = typed["material"]
-    other = typed["counterbody"]
+        arguments["material"] = contents["material"]
+    other = contents["counterbody"]
     if other == si_form.OF_NUMBERS:
         other = f"{quantity('counter_young')}, {quantity('counter_nu')}"
-    return found | {"counterbody": other}
+    return arguments | {"counterbody": other}
 
 
-def drawn(rng, motion, spread, *, at_ratio_0=False):
+def random_contents(rng, motion, spread, *, at_ratio_0=False):
     """Random contents of the form, whose amplitude is near that of full slip.
 
     spread: range of the quantities in decades."""
     decades = rng.uniform(-spread, spread, 5)
-    given = {
+    contents = {
         "radius": (f"{5 * 10 ** decades[0]:.6g}", "mm"),
         "load": (f"{10 * 10 ** decades[1]:.6g}", "N"),
         "mu": (f"{rng.uniform(0.05, 1.3):.4g}", ""),
@@ -76,14 +76,14 @@ def drawn(rng, motion, spread, *, at_ratio_0=False):
     }
     names = [si_form.OF_NUMBERS, *([] if at_ratio_0 else MATERIALS)]
     while True:
-        given["material"], given["counterbody"] = rng.choice(names, 2).tolist()
-        if (given["material"], given["counterbody"]) != ("rigid", "rigid"):
-            return texts(motion, **given)
+        contents["material"], contents["counterbody"] = rng.choice(names, 2).tolist()
+        if (contents["material"], contents["counterbody"]) != ("rigid", "rigid"):
+            return texts(motion, **contents)
 
 
 def page(maps, questions):
-    given = {"si": si_form.packed(), "maps": [certified.packed(one) for one in maps]}
-    return answers(SCRIPTS, ANSWER, given, [[one] for one in questions])
+    data = {"si": si_form.packed(), "maps": [certified.packed(one) for one in maps]}
+    return answers(SCRIPTS, ANSWER, data, [[one] for one in questions])
 
 
 def rises(velocity, amplitude):
@@ -122,15 +122,15 @@ def predicted(monkeypatch):
     def by(dataset):
         def solve(name, velocity, amplitude, *, poisson, **_):
             try:
-                found = Friction(dataset).at(velocity, amplitude, poisson=poisson)
+                answer = Friction(dataset).at(velocity, amplitude, poisson=poisson)
             except ValueError as error:
                 pair, reason = (math.nan, math.inf), str(error)
             else:
-                pair, reason = (float(found.mu_macro), float(found.mu_macro_error)), ""
-            found = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
+                pair, reason = (float(answer.mu_macro), float(answer.mu_macro_error)), ""
+            answer = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
             rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
             friction = Estimate(pair[0], {"model": pair[1]})
-            return SimpleNamespace(**found, friction=friction, **rest)
+            return SimpleNamespace(**answer, friction=friction, **rest)
 
         monkeypatch.setattr("microslip.si.request.solve", solve)
         return microslip.predict
@@ -150,18 +150,18 @@ PLACES = {
 }
 
 
-def compare(said, truth):
+def compare(answer, truth):
     for name, field in PLACES.items():
         value = getattr(truth, field)
-        assert said[name] == pytest.approx(value, rel=RELATIVE, abs=1e-300), name
-    assert said["warnings"] == list(truth.warnings)
-    assert said["not_checked"] == list(truth.not_checked)
+        assert answer[name] == pytest.approx(value, rel=RELATIVE, abs=1e-300), name
+    assert answer["warnings"] == list(truth.warnings)
+    assert answer["not_checked"] == list(truth.not_checked)
     if math.isnan(truth.mu_macro):
-        assert said["friction"] is None and said["refused"]
+        assert answer["friction"] is None and answer["refused"]
         return
-    for name, found in (("value", truth.mu_macro), ("error", truth.mu_macro_error)):
-        assert said["friction"][name] == pytest.approx(found, abs=1e-12, rel=0), name
-    static = said["static_friction"]
+    for name, expected in (("value", truth.mu_macro), ("error", truth.mu_macro_error)):
+        assert answer["friction"][name] == pytest.approx(expected, abs=1e-12, rel=0), name
+    static = answer["static_friction"]
     if static is not None:
         assert static["value"] == pytest.approx(truth.mu_static, abs=1e-12, rel=0)
 
@@ -180,18 +180,18 @@ def test_the_page_answers_as_predict_does_on_the_same_map(
 ):
     dataset, rng = map_of(motion, which), np.random.default_rng(21)
     predict = predicted(dataset)
-    questions = [drawn(rng, motion, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
+    questions = [random_contents(rng, motion, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
     warned, answered, refused = set(), 0, 0
-    for typed, said in zip(questions, page([dataset], questions), strict=True):
+    for contents, answer in zip(questions, page([dataset], questions), strict=True):
         try:
-            truth = predict(motion, **asked_of_predict(typed))
+            truth = predict(motion, **arguments_of_predict(contents))
         except InputError as error:
             # The sphere is too small for the contact, or the amplitude is too large.
-            assert error.argument in ("radius", "amplitude") and "refused" in said
+            assert error.argument in ("radius", "amplitude") and "refused" in answer
             refused += 1
             continue
-        answered += said["friction"] is not None
-        compare(said, truth)
+        answered += answer["friction"] is not None
+        compare(answer, truth)
         warned |= {text.split(",")[0][:20] for text in truth.warnings}
     assert answered >= least_answered * COUNT and refused < 0.3 * COUNT
     assert len(warned) >= least_warnings
@@ -199,21 +199,21 @@ def test_the_page_answers_as_predict_does_on_the_same_map(
 
 def test_at_another_poissons_ratio_the_answer_at_the_nearest_is_shown():
     coarse = map_of("bore", "one ratio")
-    (said,) = page([coarse], [texts("bore")])
-    assert said["friction"] is None
+    (answer,) = page([coarse], [texts("bore")])
+    assert answer["friction"] is None
     assert (
-        said["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
+        answer["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
         "microslip.solve computes any"
     )
-    near = Friction(coarse).at(said["velocity"], said["amplitude"])
-    assert said["near"]["poisson"] == 0
-    assert said["near"]["value"] == pytest.approx(float(near.mu_macro), abs=1e-12)
+    near = Friction(coarse).at(answer["velocity"], answer["amplitude"])
+    assert answer["near"]["poisson"] == 0
+    assert answer["near"]["value"] == pytest.approx(float(near.mu_macro), abs=1e-12)
 
 
 def test_a_motion_without_a_map_still_has_its_contact():
-    (said,) = page([map_of("bore", "one ratio")], [texts("transverse")])
-    assert said["refused"] == "this page holds no certified map of transverse"
-    assert said["contact_radius"] > 0
+    (answer,) = page([map_of("bore", "one ratio")], [texts("transverse")])
+    assert answer["refused"] == "this page holds no certified map of transverse"
+    assert answer["contact_radius"] > 0
 
 
 NO_NUMBERS = {
@@ -235,10 +235,10 @@ NO_NUMBERS = {
 
 def test_texts_that_are_not_numbers_are_refused_in_one_line():
     questions = [texts("transverse", radius=text) for text in NO_NUMBERS]
-    for said, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
-        assert said["refused"].startswith("radius of the sphere = "), text
-        assert problem in said["refused"], text
-        assert "\n" not in said["refused"]
+    for answer, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
+        assert answer["refused"].startswith("radius of the sphere = "), text
+        assert problem in answer["refused"], text
+        assert "\n" not in answer["refused"]
 
 
 def test_impossible_contacts_are_refused():
@@ -254,8 +254,8 @@ def test_impossible_contacts_are_refused():
         ({"load": ("1e9", "N")}, "by Hertz's theory, which is for contacts much smaller"),
         ({"stroke": ("1", "m"), "radius": ("1", "um"), "load": ("1e-3", "uN")}, "at most 1e+06"),
     )
-    said = page([], [texts("transverse", **given) for given, _ in cases])
-    for one, (_, problem) in zip(said, cases, strict=True):
+    page_answers = page([], [texts("transverse", **changes) for changes, _ in cases])
+    for one, (_, problem) in zip(page_answers, cases, strict=True):
         assert problem in one["refused"]
 
 
@@ -265,8 +265,8 @@ def test_units_of_the_form_are_those_of_predict():
     numbers = ["0.3", "1.7e-1", ".25", "+0.125", "00.31"]
     calls = [[name, text, unit] for (name, unit), text in itertools.product(units, numbers)]
     call = "(si, name, text, unit) => siValue(si.fields[name], text, unit)"
-    said = answers(SCRIPTS, call, si_form.packed(), calls)
-    for (name, text, unit), value in zip(calls, said, strict=True):
+    values = answers(SCRIPTS, call, si_form.packed(), calls)
+    for (name, text, unit), value in zip(calls, values, strict=True):
         truth = read(name, f"{text} {unit}", si_form.FIELDS[name].unit).si
         assert value == pytest.approx(truth, rel=4e-16, abs=0), (name, text, unit)
 
@@ -275,5 +275,5 @@ def test_numbers_in_messages_have_the_format_of_python():
     rng = np.random.default_rng(23)
     values = [*(10 ** rng.uniform(-12, 12, 300)), 0.125, 2.5, 1.125, 99.5, 9.995, 1e-5, 1e15, 0.0]
     calls = [[float(value), count] for value in values for count in (1, 2, 3, 6)]
-    said = answers(SCRIPTS, "(_, value, count) => general(value, count)", None, calls)
-    assert said == [f"{value:.{count}g}" for value, count in calls]
+    values = answers(SCRIPTS, "(_, value, count) => general(value, count)", None, calls)
+    assert values == [f"{value:.{count}g}" for value, count in calls]

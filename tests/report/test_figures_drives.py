@@ -18,8 +18,8 @@ def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
     figure = drawing.draw("drift_maps", datasets)
     for axes, dataset in zip(figure.axes, datasets.values(), strict=False):
         (line,) = by_gid(axes, "mu_static")
-        held, across = line.get_data()
-        assert np.array_equal(held, dataset["mu_static_curve"])
+        force, across = line.get_data()
+        assert np.array_equal(force, dataset["mu_static_curve"])
         assert np.array_equal(across, dataset["amplitude_curve"])
         assert by_gid(axes, "stays")
         computed, rigid = by_gid(axes, "contours")[0], by_gid(axes, "velocity_large_amplitude")[0]
@@ -65,9 +65,9 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
     assert stiff.get_label() == "constant velocity"
     (line,) = by_gid(right, "antiphase")
-    velocity, held = line.get_data()
+    velocity, force = line.get_data()
     # (2/pi) P^(2/3) at amplitude 1
-    assert velocity == pytest.approx(2.0 / np.pi * held ** (2 / 3))
+    assert velocity == pytest.approx(2.0 / np.pi * force ** (2 / 3))
     on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
 

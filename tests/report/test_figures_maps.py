@@ -91,9 +91,9 @@ def test_the_surface_equals_microslip_at():
     surface = Surface(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     x, y, fine = surface.velocity, surface.amplitude, surface.values
     assert min(fine.shape) > 150
-    said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
-    away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
-    assert np.all(away <= said["mu_macro_error"].values)
+    expected = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    away = np.abs(fine.filled(np.inf) - expected["mu_macro"].values)
+    assert np.all(away <= expected["mu_macro_error"].values)
     assert np.median(away) < 1e-12  # values differ where they are clipped
     nodes = np.searchsorted(y, dataset.amplitude.values), np.searchsorted(x, dataset.velocity)
     np.testing.assert_allclose(fine[np.ix_(*nodes)], dataset.mu_macro, atol=1e-12)

@@ -97,8 +97,8 @@ def test_labels_of_tolerances_hide_no_markers(accuracy):
 
 @pytest.mark.parametrize("points", [1, 3])
 def test_any_number_of_points_has_room_for_panels_and_legends(points, accuracy):
-    kept = accuracy["point"].values[:points]
-    data = accuracy.isel(trial=np.isin(accuracy["trial_point"], kept)).sel(point=kept)
+    names = accuracy["point"].values[:points]
+    data = accuracy.isel(trial=np.isin(accuracy["trial_point"], names)).sel(point=names)
     figure = drawing.draw("accuracy_vs_work", {"accuracy_cost": data})
     panels = [axes.get_window_extent() for axes in figure.axes if axes.axison]
     legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
@@ -175,9 +175,9 @@ def test_scaling_shows_the_sizes_and_the_exponents(accuracy):
     for axes, what in zip(figure.axes, ("iterations", "seconds", "memory"), strict=True):
         for index, line in enumerate(artists(axes, what)):
             x, y = (data[f"scaling_{n}"].values[index] for n in ("unknowns", what))
-            known = np.isfinite(x) & np.isfinite(y)
-            np.testing.assert_array_equal(np.sort(line.get_xdata()), np.sort(x[known]))
-            np.testing.assert_array_equal(np.sort(line.get_ydata()), np.sort(y[known]))
+            finite = np.isfinite(x) & np.isfinite(y)
+            np.testing.assert_array_equal(np.sort(line.get_xdata()), np.sort(x[finite]))
+            np.testing.assert_array_equal(np.sort(line.get_ydata()), np.sort(y[finite]))
             exponent = float(data[f"scaling_exponent_{what}"][index])
             assert (f"{exponent:.2f}" in line.get_label()) == np.isfinite(exponent)
 
