@@ -281,7 +281,7 @@ def test_text_in_a_dataset_cannot_end_the_script(made):
 def test_a_period_that_belongs_to_no_point_is_refused(made):
     datasets, records, _ = made
     stray = records["bore"][0] | {"request": records["bore"][0]["request"] | {"velocity": "7"}}
-    with pytest.raises(ValueError, match="a period at '7', which the map has not"):
+    with pytest.raises(ValueError, match="a period at '7', which is not on the map"):
         payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
 
 

@@ -110,7 +110,7 @@ def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
         try:
             place = rows[request["amplitude"]], columns[request["velocity"]]
         except KeyError as error:
-            raise ValueError(f"explorer: a period at {error}, which the map has not") from None
+            raise ValueError(f"explorer: a period at {error}, which is not on the map") from None
         if "tractions" in result:
             index[place] = len(results)
             results.append(result)

@@ -86,7 +86,7 @@ def curve(variable: xr.DataArray, **at: float) -> Curve:
     """
     line = variable.sel({dim: value for dim, value in at.items() if dim in variable.dims})
     if line.ndim != 1:
-        raise ValueError(f"variable {variable.name!r} has dims {variable.dims}; one expected")
+        raise ValueError(f"variable {variable.name!r} has dims {variable.dims}; allowed: one")
     return np.asarray(line[line.dims[0]].values), np.asarray(line.values, dtype=float)
 
 

@@ -171,7 +171,7 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
     if not keys:
         raise ValueError(
             f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}, and extended_GROUP for "
-            "the group of datasets that are given"
+            "a group of these datasets"
         )
     return keys
 

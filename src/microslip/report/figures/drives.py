@@ -134,5 +134,5 @@ def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
     """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
     same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
     if not same.size:
-        raise ValueError(f"the sweep transverse has no {dim} {value:g}, as the drives have")
+        raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")
     return dataset.isel({dim: same[0]})

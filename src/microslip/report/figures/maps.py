@@ -67,7 +67,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     parts = [sweep(every[k], ("amplitude", "velocity")) for k in indices]
     figure, maps, static_cut, large_cut = _page(len(parts))
     if len(parts) < len(every):
-        some = f"{len(parts)} of the {len(every)} of Poisson's ratios in the dataset"
+        some = f"{len(parts)} of the {len(every)} Poisson's ratios in the dataset"
         figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
     letters, alone = look.letters(len(parts) + 2), len(parts) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]

@@ -45,7 +45,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     Raises ValueError if the datasets do not fit, see `has_room`.
     """
     if not has_room(datasets):
-        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} of Poisson's ratios"
+        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} Poisson's ratios"
         raise ValueError(f"figure {name}: no room for the datasets; allowed: {allowed}")
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
     grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
