@@ -35,7 +35,8 @@ def made(map_, friction, failed=None):
     """The dataset of a certified map with a made-up friction.
 
     friction, failed: functions of velocity, amplitude and, if the map has several, Poisson's
-    ratio; `failed` is true at unconverged points."""
+    ratio; `failed` is true at unconverged points.
+    """
 
     def answered(request):
         place = float(request["velocity"]), float(request["amplitude"])

@@ -59,7 +59,8 @@ def arguments_of_predict(contents):
 def random_contents(rng, motion, spread, *, at_ratio_0=False):
     """Random contents of the form, whose amplitude is near that of full slip.
 
-    spread: range of the quantities in decades."""
+    spread: range of the quantities in decades.
+    """
     decades = rng.uniform(-spread, spread, 5)
     contents = {
         "radius": (f"{5 * 10 ** decades[0]:.6g}", "mm"),

@@ -130,7 +130,8 @@ def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy
 def cheapest(names: np.ndarray, amplitude: np.ndarray) -> xr.Dataset:
     """A map of the cheapest models, equal for both motions.
 
-    names: shape (amplitudes, velocities)."""
+    names: shape (amplitudes, velocities).
+    """
     velocity = np.geomspace(1e-3, 10, names.shape[1])
     data = {"map_tolerance": ("map_tolerance", [1e-2])}
     for motion in ("transverse", "bore"):

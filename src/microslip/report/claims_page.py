@@ -13,7 +13,7 @@ import jinja2
 import numpy as np
 import xarray as xr
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 from microslip.report.dataset_page import provenance
 from microslip.studies.claims.static_limits import FORMULAS
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
@@ -27,8 +27,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
     Raises CacheError if the file cannot be written.
     """
-    with writing_beside(path) as beside:
-        beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
+    write_atomically(Path(path), page(dataset, lines).encode())
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:

@@ -6,11 +6,12 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from html import escape
+from pathlib import Path
 
 import xarray as xr
 import yaml
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
 """Variables whose ranges are on the page."""
@@ -25,8 +26,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
     # Snakemake's report shows HTML in place.
     text, title = escape(page(dataset, lines)), escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
-    with writing_beside(path) as beside:
-        beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
+    write_atomically(Path(path), f"{head}\n<pre>{text}</pre></html>\n".encode())
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:

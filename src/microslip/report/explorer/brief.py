@@ -69,7 +69,8 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
     """The lines at all Poisson's ratios, as values for JSON.
 
-    Raises ValueError if a variable is missing."""
+    Raises ValueError if a variable is missing.
+    """
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
@@ -82,35 +83,22 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
     along = max(dims, key=lambda dim: (dataset.sizes[dim], dims.index(dim)))
     others = [dim for dim in dims if dim != along]
     shown = dataset.transpose(*others, along, ...).sortby(along)
+    columns = {"values": value, "errors": f"{value}_error", "converged": "converged"}
+    series = []
+    for place in product(*(range(shown.sizes[dim]) for dim in others)):
+        line = shown.isel(dict(zip(others, place, strict=True)))
+        several = (dim for dim in others if shown.sizes[dim] > 1)
+        label = ", ".join(f"{dim} {number(float(line[dim]))}" for dim in several)
+        entries = {key: plain(line[column].values) for key, column in columns.items()}
+        series.append({"label": label} | entries)
     at = shown[along].values
     even_ratios = at[0] > 0 and Axis(at).logarithmic
+    limits = [] if has_force else limits_of(shown, poisson)
     return about(name, dataset, poisson) | {
         "x": {"label": axis_label(shown, along), "values": plain(at), "log": bool(even_ratios)},
-        "y": {
-            "label": "mean velocity" if has_force else MU_MACRO.description,
-            "log": has_force,
-        },
-        "series": [
-            {
-                "label": ", ".join(
-                    f"{dim} {number(float(shown[dim][k]))}"
-                    for dim, k in zip(others, place, strict=True)
-                    if shown.sizes[dim] > 1
-                ),
-                **{
-                    key: plain(shown[of].values[place])
-                    for key, of in (
-                        ("values", value),
-                        ("errors", f"{value}_error"),
-                        ("converged", "converged"),
-                    )
-                },
-            }
-            for place in product(*(range(shown.sizes[dim]) for dim in others))
-        ],
-        "limits": []
-        if has_force
-        else [one for one in limits_of(shown, poisson) if one["dims"] == [along]],
+        "y": {"label": "mean velocity" if has_force else MU_MACRO.description, "log": has_force},
+        "series": series,
+        "limits": [one for one in limits if one["dims"] == [along]],
         "beside": _torque(shown, along),
     }
 
@@ -159,9 +147,14 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})
-    names = [name for name in NAMES if name in dataset.variables]
-    names.sort(key=lambda name: list(own).index(name) if name in own else len(own))
-    return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in names]
+    forms = {name: form for name, form in own.items() if name in NAMES} | {
+        name: form for name, form in NAMES.items() if name not in own
+    }
+    return [
+        _limit(dataset, motion, form, poisson)
+        for name, form in forms.items()
+        if name in dataset.variables
+    ]
 
 
 def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:

@@ -5,7 +5,7 @@ This module lists the inputs of a page. `payload` packs datasets, periods and ce
 files beside these modules run in the browser; plotly.js draws. The page shows datasets and stored
 periods, and evaluates certified maps.
 
-The workflow imports this module whenever it is parsed, so that it has few imports.
+The workflow imports this module whenever it is parsed. Therefore it has few imports.
 """
 
 from __future__ import annotations

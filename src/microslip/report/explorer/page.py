@@ -9,7 +9,7 @@ from pathlib import Path
 
 from plotly.offline import get_plotlyjs
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 from microslip.report.explorer import payload
 from microslip.report.explorer.explorer import ASSETS
 
@@ -22,9 +22,7 @@ def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Seq
     datasets, periods, certified: arguments of `payload.build`. Raises ValueError if they are
     incomplete, and CacheError if the file cannot be written.
     """
-    text = page(payload.build(datasets, periods, certified))
-    with writing_beside(path) as beside:
-        beside.write_text(text, encoding="utf-8", newline="\n")
+    write_atomically(Path(path), page(payload.build(datasets, periods, certified)).encode())
 
 
 def page(content: dict) -> str:

@@ -18,12 +18,13 @@ from microslip.datasets.query.drift import Drift
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.drift import REST, THRESHOLD, velocity_bands, velocity_bar
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.formulas import axis_label
 from microslip.report.figures.groups import CONTOURS
 from microslip.report.figures.map_panel import fill
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 BOUND = "bound of the error,\nthousandths  (dimensionless)"
+DIMENSIONLESS = "(dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
 """Number of coordinates along an axis at which a map, or a line, is evaluated."""
@@ -56,9 +57,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
     panels.letter(left, "a", f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
     panels.letter(right, "b", bound + ratio)
-    left.set_ylabel(_axis(dataset, "amplitude"))
+    left.set_ylabel(axis_label(dataset, "amplitude", DIMENSIONLESS))
     for axes in (left, right):
-        axes.set_xlabel(_axis(dataset, across))
+        axes.set_xlabel(axis_label(dataset, across, DIMENSIONLESS))
         panels.ticks_outside(axes)
     return figure
 
@@ -117,7 +118,7 @@ def _lines(dataset: xr.Dataset) -> Figure:
     panels.letter(right, "b", f"{len(dataset['cell_error'])} cells")
     right.set_ylim(0.0, 1e3 * float(dataset.attrs["error"]))
     for axes, label in ((left, look.FRICTION), (right, BOUND)):
-        axes.set(xlabel=_axis(dataset, "amplitude"), ylabel=label)
+        axes.set(xlabel=axis_label(dataset, "amplitude", DIMENSIONLESS), ylabel=label)
     return figure
 
 
@@ -153,9 +154,3 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
         around += [(one, high) for one in x[::-1]] + [(left, one) for one in y[::-1]]
         outlines.append(np.array([coordinates.place((*node, *deep))[:2] for node in around]))
     return outlines, dataset["cell_error"].values[cells]
-
-
-def _axis(dataset: xr.Dataset, dim: str) -> str:
-    """The label of an axis with its formula."""
-    quantity = {"velocity": "forward velocity"}.get(dim, dim)
-    return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"

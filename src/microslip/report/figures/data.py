@@ -32,7 +32,8 @@ def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
 def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]) -> None:
     """Raise ValueError unless the dataset has all variables.
 
-    figure, key: names of the figure and of the dataset, for the message."""
+    figure, key: names of the figure and of the dataset, for the message.
+    """
     missing = [name for name in variables if name not in dataset.variables]
     if missing:
         raise ValueError(

@@ -151,7 +151,8 @@ def _missing_variable(
 ) -> KeyError | ValueError:
     """An error that names the dataset without the variable of an xarray KeyError.
 
-    Other errors are returned unchanged."""
+    Other errors are returned unchanged.
+    """
     variable = re.match(r"No variable named '(\w+)'", str(error.args[0]))
     lacking = [k for k, data in datasets.items() if variable and variable[1] not in data.variables]
     if not variable or not lacking:

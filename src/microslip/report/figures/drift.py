@@ -54,7 +54,8 @@ def velocity_bands(
 ) -> tuple[ContourSet, np.ndarray]:
     """Fill a panel with bands of velocity, shape (amplitudes, forces).
 
-    Returns the bands and the decimal logarithms of the velocities, clipped to the bands."""
+    Returns the bands and the decimal logarithms of the velocities, clipped to the bands.
+    """
     clipped = np.clip(np.nan_to_num(velocity), *10.0 ** DECADES[[0, -1]])
     shown, settings = np.log10(clipped), {"levels": DECADES, "cmap": look.COLOURMAP}
     return bands(axes, force, amplitude, shown, extend="both", **settings), shown

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
@@ -29,6 +33,12 @@ def mathtext(formula: str) -> str:
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
     text = re.sub(r"\s+", r"\\,", text)
     return f"${text}$" if text else ""
+
+
+def axis_label(dataset: xr.Dataset, dim: str, default: str = "") -> str:
+    """Name and formula of an axis, or the name and `default` if the axis has no formula."""
+    name = "forward velocity" if dim == "velocity" else dim
+    return f"{name}  {mathtext(dataset[dim].attrs.get('formula', default))}".strip()
 
 
 def html(formula: str) -> str:

@@ -22,7 +22,7 @@ from microslip.report.figures.data import (
     require,
     sweep,
 )
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.formulas import axis_label, mathtext
 from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
@@ -86,8 +86,8 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
         panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
     for axes in grid[count:]:
         axes.remove()
-    for dim, quantity in (("velocity", "forward velocity"), ("amplitude", "amplitude")):
-        _label_maps(figure, list(grid[:count]), dim, quantity, datasets)
+    for dim in ("velocity", "amplitude"):
+        _label_maps(figure, list(grid[:count]), dim, datasets)
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
     shown = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     panels.colour_bar(filled, list(grid[:count]), label, aspect=20 * rows, ticks=shown)
@@ -112,20 +112,21 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _label_maps(
-    figure: Figure, grid: Sequence[Axes], dim: str, quantity: str, datasets: Sequence[xr.Dataset]
+    figure: Figure, grid: Sequence[Axes], dim: str, datasets: Sequence[xr.Dataset]
 ) -> None:
     """Label an axis once for all panels if they share it, else on each panel."""
     texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
     if len(set(texts)) == 1:
         write = figure.supxlabel if dim == "velocity" else figure.supylabel
-        write(f"{quantity}  {texts[0]}".strip(), fontsize=look.RC["axes.labelsize"])
+        write(axis_label(datasets[0], dim), fontsize=look.RC["axes.labelsize"])
         return
     width, height = figure.get_size_inches()
     across = COLUMNS.get(len(grid), 3)
     room = width / across - 0.7 if dim == "velocity" else height / -(-len(grid) // across) - 0.5
-    for axes, text in zip(grid, texts, strict=True):
+    for axes, text, dataset in zip(grid, texts, datasets, strict=True):
         axis = axes.xaxis if dim == "velocity" else axes.yaxis
-        axis.set_label_text(look.wrapped(text or quantity, room, 7.5), fontsize=7.5)
+        label = text or axis_label(dataset, dim)
+        axis.set_label_text(look.wrapped(label, room, 7.5), fontsize=7.5)
 
 
 def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:

@@ -14,7 +14,7 @@ from microslip.datasets.query.surface import Surface
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.formulas import axis_label
 from microslip.report.figures.map_panel import bands, number_contours
 
 LEVELS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
@@ -104,8 +104,6 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 def _axes(axes: Axes, shown: xr.Dataset) -> None:
     velocity, amplitude = columns(shown, "velocity", "amplitude")
     axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
-    units = (mathtext(shown[dim].attrs.get("formula", "")) for dim in ("velocity", "amplitude"))
-    axes.set_xlabel(f"forward velocity  {next(units)}".strip())
-    axes.set_ylabel(f"amplitude  {next(units)}".strip())
+    axes.set(xlabel=axis_label(shown, "velocity"), ylabel=axis_label(shown, "amplitude"))
     panels.logarithmic(axes.xaxis)
     panels.ticks_outside(axes)

@@ -140,7 +140,8 @@ def number(value: float) -> str:
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:
     """Conditions of a panel as mathtext, such as "v = 0.1, A = 2".
 
-    pairs: LaTeX symbols and their values."""
+    pairs: LaTeX symbols and their values.
+    """
     return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
 
 
