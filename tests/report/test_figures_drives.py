@@ -65,9 +65,9 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
     assert stiff.get_label() == "constant velocity"
     (line,) = by_gid(right, "antiphase")
-    velocity, force = line.get_data()
+    velocity, bound = line.get_data()
     # (2/pi) P^(2/3) at amplitude 1
-    assert velocity == pytest.approx(2.0 / np.pi * force ** (2 / 3))
+    assert velocity == pytest.approx(2.0 / np.pi * bound ** (2 / 3))
     on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
 
