@@ -1,57 +1,35 @@
-"""Make the pictures of these pages from figures of the workflow, as PNG of 200 dpi.
+"""Write the images of these pages, as PNG of 200 dpi, from the figures of the workflow.
 
     python docs/make_images.py results [NAME ...]
 
-NAME: names of figures, without .png; by default all figures of the pages that the folder has.
-Figures have 300 dpi, which is more than a page needs. With a palette of 64 colours a picture is
-a quarter as large.
+NAME: names of figures, without .png. By default all images that have a figure in the folder.
+A palette of 256 colours makes a file a quarter as large.
 """
 
 import sys
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
 
 IMAGES = Path(__file__).parent / "images"
-SHARE = 200 / 300
-COLOURS = {Image.Quantize.FASTOCTREE: 48, Image.Quantize.MEDIANCUT: 16}
-
-
-def shrunk(path):
-    """The picture of a figure."""
-    with Image.open(path) as image:
-        size = [round(SHARE * side) for side in image.size]
-        return with_palette(image.convert("RGB").resize(size, Image.Resampling.LANCZOS))
-
-
-def with_palette(image):
-    """The picture with fewer colours; a dither would make it larger and its lines rough.
-
-    An octree keeps rare colours, such as those of lines, the median cut large pale areas.
-    """
-    palette = Image.new("P", (1, 1))
-    colours = [
-        image.quantize(count, method, dither=Image.Dither.NONE).getpalette()[: 3 * count]
-        for method, count in COLOURS.items()
-    ]
-    palette.putpalette(np.concatenate(colours).tolist())
-    picture = image.quantize(palette=palette, dither=Image.Dither.NONE)
-    paper, final = 3 * picture.getpixel((0, 0)), picture.getpalette()
-    picture.putpalette([*final[:paper], 255, 255, 255, *final[paper + 3 :]])
-    return picture
+SCALE = 200 / 300
+"""Resolution of an image over that of a figure."""
 
 
 def main(results, *names):
-    """Write the pictures and say how large they are."""
+    """Write the images and print the size of each."""
     for name in names or sorted(path.stem for path in IMAGES.glob("*.png")):
-        figure = Path(results, "figures", f"{name}.png")
-        if figure.is_file():
-            target = IMAGES / figure.name
-            shrunk(figure).save(target, optimize=True)
-            print(f"{target.name}: {target.stat().st_size / 1e3:.0f} kB")
+        path = Path(results, "figures", f"{name}.png")
+        if path.is_file():
+            with Image.open(path) as figure:
+                size = [round(SCALE * side) for side in figure.size]
+                image = figure.convert("RGB").resize(size, Image.Resampling.LANCZOS)
+            # An octree keeps rare colours, such as those of lines.
+            image = image.quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+            image.save(IMAGES / path.name, optimize=True)
+            print(f"{path.name}: {(IMAGES / path.name).stat().st_size / 1e3:.0f} kB")
         elif names:
-            sys.exit(f"{figure} is not there: run the workflow first")
+            sys.exit(f"{path} does not exist: run the workflow first")
 
 
 if __name__ == "__main__":

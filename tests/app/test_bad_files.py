@@ -225,8 +225,8 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     ("figure", "datasets", "parts"),
     [
         ("fig7", {}, ["unknown figure 'fig7'", "fig1_force_history, "]),
-        ("fig6_bore_map", {}, ["needs the dataset 'bore'", "given: none"]),
-        ("fig6_bore_map", {"bores": data()}, ["needs the dataset 'bore'", "given: 'bores'"]),
+        ("fig6_bore_map", {}, ["needs the dataset 'bore'", "datasets: none"]),
+        ("fig6_bore_map", {"bores": data()}, ["needs the dataset 'bore'", "datasets: 'bores'"]),
         ("fig6_bore_map", {"bore": data()}, ["dataset 'bore' has no variable", "'amplitude'"]),
         ("fig2_transverse_map", {"transverse": data()}, ["is of 'bore'", "allowed: 'transverse'"]),
         (

@@ -1,4 +1,4 @@
-"""Captions of the report, and the pictures of the pages."""
+"""Captions of Snakemake's report, and images of the documentation."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ TITLES = ["`x_ *b* |c|", r"$\frac{", "[1]_ :r:`z` <b>", "..", "plain"]
 
 
 def caption(figure, **settings):
-    """A caption as HTML."""
+    """The caption of a figure as HTML."""
     text = (ROOT / "workflow" / "report" / "figure.rst").read_text(encoding="utf-8")
     wildcards, config = SimpleNamespace(figure=figure), SimpleNamespace(**settings)
-    given = SimpleNamespace(wildcards=wildcards, config=config, input=["a.nc"])
-    written = jinja2.Template(text).render(snakemake=given)
-    return docutils.core.publish_parts(written, writer="html")["body"]
+    snakemake = SimpleNamespace(wildcards=wildcards, config=config, input=["a.nc"])
+    rst = jinja2.Template(text).render(snakemake=snakemake)
+    return docutils.core.publish_parts(rst, writer="html")["body"]
 
 
 @pytest.mark.parametrize("title", TITLES)
-def test_a_caption_shows_a_title_as_it_stands(title):
+def test_a_caption_shows_a_title_verbatim(title):
     sweep = {"title": title, "group": "g", "motion": "bore", "pressure": "hertz", "tolerance": 1}
     shown = caption("extended_g", histories=None, extended={"a": SimpleNamespace(**sweep)})
     assert "system-message" not in shown
@@ -43,7 +43,7 @@ def test_figure_5_starts_from_full_forward_slip():
     assert "lateral slip" not in shown
 
 
-def test_pictures_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
+def test_images_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
     make = runpy.run_path(str(ROOT / "docs" / "make_images.py"))
     figures = tmp_path / "figures"
     figure = drawing.draw("fig2_transverse_map", {"transverse": figures_stub.fake_transverse()})
@@ -54,9 +54,9 @@ def test_pictures_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, m
         assert [round(1.5 * side) for side in image.size] == pytest.approx(full.size, abs=1)
         plain = full.convert("RGB").resize(image.size, Image.Resampling.LANCZOS)
         away = np.abs(np.asarray(image.convert("RGB"), int) - np.asarray(plain, int))
-        assert np.percentile(away, 99) < 20  # a band of the map is 12 from the next
+        assert np.percentile(away, 99) < 20  # neighbouring bands of the map differ by 12
     assert (tmp_path / "fig2.png").stat().st_size < 0.3 * path.stat().st_size
-    with pytest.raises(SystemExit, match="run the workflow first"):
+    with pytest.raises(SystemExit, match="does not exist"):
         make["main"](tmp_path, "fig9")
     pictures = list((ROOT / "docs" / "images").glob("*.png"))
     assert {*drawing.FIGURES} <= {path.stem for path in pictures}

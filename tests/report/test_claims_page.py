@@ -1,4 +1,4 @@
-"""The page about the claims: what it names, and that it can be repeated."""
+"""The page of the study `claims`: verdicts, numbers, and commands that repeat each run."""
 
 import ast
 import html
@@ -45,7 +45,7 @@ def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
         assert "<code>" in section.partition("<details>")[0]
 
 
-def test_links_lead_somewhere_and_nothing_lies_outside(page):
+def test_links_have_targets_on_the_page_and_nothing_is_external(page):
     links = set(re.findall(r'href="([^"]*)"', page))
     assert links
     for link in links:
@@ -54,39 +54,33 @@ def test_links_lead_somewhere_and_nothing_lies_outside(page):
     assert not re.search(r"https?://|<script|<link|<img|@import|url\(", page)
 
 
-def test_every_run_has_its_name_and_the_line_that_repeats_it(page, data):
+def test_numbers_and_runs_are_those_of_the_dataset(page, data):
+    for value in (*data["transverse_paper"].values, *data["bore_paper"].values):
+        assert f"{value:.4f}" in page
     text = html.unescape(page[page.index('id="runs"') :])
     for key, line in zip(data["run"].values, data["run_command"].values, strict=True):
         assert key in text
         assert line in text
 
 
-def test_numbers_are_those_of_the_dataset(page, data):
-    for motion in ("transverse", "bore"):
-        for value in data[f"{motion}_paper"].values:
-            assert f"{value:.4f}" in page
-    assert f"{float(data['bore_gap_zone']):.4f}" in page
-    assert "53.3 % more than the limit" in page
-
-
 @pytest.mark.parametrize("request_", [r for r in requests() if r["kind"] == "point"][::7], ids=str)
-def test_the_line_for_a_point_asks_for_that_point(request_):
+def test_the_command_of_a_point_requests_that_point(request_):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
     options = cli.build_parser("point").parse_args(words)
     assert options.motion == request_["motion"]
     amplitude = getattr(options, "amplitude", None)
-    given = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
-    given["amplitude"] = None if amplitude is None else number(float(amplitude))
-    given["model"] = options.model
+    parsed = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
+    parsed["amplitude"] = None if amplitude is None else number(float(amplitude))
+    parsed["model"] = options.model
     for name in ("cells", "steps"):
         text = getattr(options, name)
-        given[name] = None if text is None else int(text)
-    assert given == {name: request_[name] for name in given}
+        parsed[name] = None if text is None else int(text)
+    assert parsed == {name: request_[name] for name in parsed}
 
 
 @pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
-def test_other_lines_call_what_is_there_with_what_was_asked(kind):
+def test_other_commands_call_public_functions_with_the_request(kind):
     request_ = next(r for r in requests() if r["kind"] == kind)
     python, dash, code = shlex.split(command(request_))
     assert (python, dash) == ("python", "-c")
@@ -107,7 +101,7 @@ def test_other_lines_call_what_is_there_with_what_was_asked(kind):
         assert bound[name] == (float(value) if numeric else value)
 
 
-def test_text_of_a_dataset_is_no_markup(data):
+def test_text_of_a_dataset_is_escaped(data):
     sly = data.assign(statement=("claim", ["<b>&" for _ in data["claim"]]))
     page = claims_page.page(sly, ["<i>"])
     assert "<b>" not in page
@@ -115,12 +109,8 @@ def test_text_of_a_dataset_is_no_markup(data):
     assert "&lt;b&gt;&amp;" in page
 
 
-def test_the_page_is_written_whole(data, tmp_path):
-    path = tmp_path / "claims.html"
-    study_page.write("claims", path, data, ["a line"])
-    assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-
-
-def test_pages_of_other_studies_are_as_they_were(data, tmp_path):
-    study_page.write("stability", tmp_path / "page.html", data, ["a line"])
-    assert "<pre>" in (tmp_path / "page.html").read_text(encoding="utf-8")
+@pytest.mark.parametrize(("study", "tag"), [("claims", "<h2"), ("stability", "<pre>")])
+def test_the_page_of_a_study_is_written_as_html(study, tag, data, tmp_path):
+    study_page.write(study, tmp_path / "page.html", data, ["a line"])
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert text.startswith("<!DOCTYPE html>") and tag in text and "a line" in text

@@ -1,4 +1,4 @@
-"""The explorer's page: what it holds, how large it is, that it needs no network; its rule."""
+"""The explorer's page: contents, size, independence of the network, and its Snakemake rule."""
 
 import json
 import re
@@ -6,81 +6,48 @@ import re
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
+from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
 from microslip.config import load
 from microslip.report.explorer import explorer, page, payload
-from microslip.sweeps import period_codec
 from microslip.sweeps.store import Store
 from microslip.theory.catalogue import FORMS
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Datasets and periods by the names of maps, and what the page holds of them."""
+    """Datasets and periods by the names of maps, and the contents of their page."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
     return datasets, records, payload.build(datasets, records)
 
 
 def map_of(content, name):
-    (found,) = (given for given in content["maps"] if given["name"] == name)
-    return found
+    (entry,) = (one for one in content["maps"] if one["name"] == name)
+    return entry
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", explorer.MAPS)
 def test_points_and_limits_are_those_of_the_dataset(made, name):
-    dataset, found = made[0][name], map_of(made[2], name)
-    assert found["velocity"] == list(dataset.velocity.values)
-    for key, values in found["points"].items():
+    dataset, entry = made[0][name], map_of(made[2], name)
+    assert entry["velocity"] == list(dataset.velocity.values)
+    for key, values in entry["points"].items():
         if dataset[key].dtype.kind == "f":
             values = np.array(values, float)
         assert np.array_equal(values, dataset[key].values), key
-    assert len(found["limits"]) == len(FORMS[name])
-    for given, key in zip(found["limits"], FORMS[name], strict=True):
-        assert np.array_equal(given["values"], dataset[key].values)
-        assert given["long_name"] == dataset[key].long_name
-        if len(given["dims"]) == 1:
-            assert np.array_equal(given["curve"][1], dataset[f"{key}_curve"].values)
+    assert len(entry["limits"]) == len(FORMS[name])
+    for limit, key in zip(entry["limits"], FORMS[name], strict=True):
+        assert np.array_equal(limit["values"], dataset[key].values)
+        assert limit["long_name"] == dataset[key].long_name
+        if len(limit["dims"]) == 1:
+            assert np.array_equal(limit["curve"][1], dataset[f"{key}_curve"].values)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", explorer.MAPS)
-def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
-    _, records, content = made
-    packed = map_of(content, name)["periods"]
-    count, shape = packed["count"], (packed["frames"] // 2, packed["angles"], packed["cells"])
-    kept = [record["result"] for record in records[name] if "tractions" in record["result"]]
-    assert count == len(kept)
-
-    def values(key, kind, *shape):
-        return period_codec.values_of(packed[key], kind).reshape(count, *shape)
-
-    shares = values("tractions", np.int8, shape[0], 2, *shape[1:]) / period_codec.SHARES
-    slips = np.unpackbits(values("slips", np.uint8, -1), axis=1, count=int(np.prod(shape)))
-    forces = packed["force_step"] * values("forces", np.int16, 2, -1)
-    phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
-    other = {"transverse": "force_lateral", "bore": "torque"}[name]
-    for k, result in enumerate(kept):
-        truth = unpacked(result)
-        half = truth["bound"].size // 2
-        for c, way in enumerate(("forward", "lateral")):
-            share = truth[f"traction_{way}"][: shape[0], :half] / truth["bound"][:half]
-            assert shares[k, :, c].reshape(share.shape) == pytest.approx(share, abs=1e-9)
-        assert (slips[k].reshape(shape[0], -1) == truth["slips"][: shape[0], :half]).all()
-        assert forces[k, 0] == pytest.approx(truth["force_forward"], abs=packed["force_step"])
-        assert forces[k, 1] == pytest.approx(truth[other], abs=packed["force_step"])
-        assert phases[k] == pytest.approx(truth["phase"], abs=5e-5)
-        for key in ("radius", "bound"):
-            kept_in = values({"radius": "radii", "bound": "bounds"}[key], np.uint16, -1)[k]
-            assert kept_in / 65535 == pytest.approx(result[key], abs=8e-6)
-    assert packed["force_step"] < 5e-5
-
-
-@pytest.mark.slow
-def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
+def test_every_sliding_and_oscillating_point_has_a_period_or_a_reason(made):
     for name in explorer.MAPS:
         dataset, packed = made[0][name], map_of(made[2], name)["periods"]
         moves = (dataset.amplitude > 0) & (dataset.velocity > 0)
@@ -92,9 +59,102 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
         assert (has == moves.values).all()
 
 
+PLACES = [("transverse", 0.02, 0.6), ("transverse", 0.1, 1.2), ("bore", 0.1, 0.6), ("bore", 1, 1.2)]
+
+
+def chosen(name, dataset, velocity, amplitude):
+    """JavaScript that selects a map and a point of it."""
+    row, column = (
+        int(np.flatnonzero(dataset[dim] == value)[0])
+        for dim, value in (("amplitude", amplitude), ("velocity", velocity))
+    )
+    tab = f"element('tabs').children[{explorer.MAPS.index(name)}].fire('click')"
+    return f"{tab}, selectAndMark({row}, {column})"
+
+
+@needs_node
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
+def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, velocity, amplitude):
+    datasets, records, content = made
+    dataset, place = datasets[name], (f"{amplitude:g}", f"{velocity:g}")
+    (result,) = (one["result"] for one in records[name] if stub.place(one) == place)
+    _, value, certificate, angle, radius, bound, frames, history, loop = page_says(
+        content,
+        chosen(name, dataset, velocity, amplitude),
+        "element('value').text",
+        "element('certificate').text",
+        "sectorAngles(STATE.map)",
+        "STATE.period.radius",
+        "STATE.period.bound",
+        "STATE.period.phase.map((_, k) => cellsOf(STATE.period, k))",
+        "element('history').data.map((trace) => [trace.x, trace.y])",
+        "[element('loop').data[1].x, element('loop').data[1].y]",
+    )
+    point = dataset.sel(velocity=velocity, amplitude=amplitude)
+    shown = re.search(r"mu_macro (-?[\d.]+) ± ([\d.e-]+)", value)
+    assert float(shown[1]) == pytest.approx(float(point.mu_macro), abs=5.1e-6)
+    assert float(shown[2]) == pytest.approx(float(point.mu_macro_error), rel=0.06)
+    assert f"velocity {velocity:g}, amplitude {amplitude:g}" in certificate
+    assert history[2][1] == pytest.approx([float(point.mu_macro)] * 2)
+    mean = stub.mean_over(np.radians(history[3][0]), np.array(history[3][1]))
+    assert mean == pytest.approx(result["mu_macro"], abs=1e-3)
+    other = {"transverse": "force_lateral", "bore": "torque"}[name]
+    assert loop[0] == pytest.approx(result[other], abs=5e-5)
+    assert loop[1] == pytest.approx(result["force_forward"], abs=5e-5)
+    assert np.radians(history[3][0]) == pytest.approx(result["phase"], abs=5e-5)
+    assert bound == pytest.approx(result["bound"], abs=8e-6)
+    truth = unpacked(result)
+    lateral = np.outer(np.cos(angle), radius).ravel()
+    assert lateral == pytest.approx(truth["lateral_position"], abs=2e-5)
+    for k, cells in enumerate(frames):
+        at = k % (len(frames) - 1)
+        # the frame half a period later is the mirror image of the first one
+        off = 2e-2 if at == len(frames) // 2 else 1e-9
+        for way in ("forward", "lateral"):
+            share = truth[f"traction_{way}"][at] / truth["bound"]
+            assert cells[way] == pytest.approx(share, abs=off), (k, way)
+        assert np.mean(np.array(cells["slips"]) != truth["slips"][at]) < off, k
+
+
+@needs_node
+@pytest.mark.slow
+def test_unconverged_points_missing_periods_and_hidden_limits(made):
+    datasets, _, content = made
+    run, transverse = "element('run').text", datasets["transverse"]
+    box = "element('limits').children[0].children[0]"
+    seen = (
+        "element('along-amplitude').data.find((t) => t.name === STATE.map.limits[0].label).visible"
+    )
+    _, certificate, _, nearest, _, still, _, rest, _, bad, _, hidden, _, drawn = page_says(
+        content,
+        chosen("transverse", transverse, 1, 0.6),
+        "element('certificate').text",
+        chosen("transverse", transverse, 1, 1.2),
+        run,
+        chosen("transverse", transverse, 0, 1.2),
+        run,
+        chosen("transverse", transverse, 0, 0),
+        run,
+        chosen("bore", datasets["bore"], 0.02, 1.2),
+        run,
+        chosen("transverse", transverse, 1, 1.2)
+        + f", {box}.checked = false, {box}.fire('change'), selectAndMark(1, 1)",
+        seen,
+        f"{box}.checked = true, {box}.fire('change')",
+        seen,
+    )
+    assert "not converged: made up" in certificate
+    assert nearest.startswith("No period was found: none to be found Drawn below: the nearest")
+    assert nearest.endswith("at velocity 1, amplitude 0.6.")
+    assert "static limit" in still and "Nothing oscillates here" in rest
+    assert "It did not converge: none to be found" in bad
+    assert (hidden, drawn) == (False, True)
+
+
 @pytest.mark.long
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
-    """With every sweep of it; certified maps take 25 kB each."""
+    """The page has every sweep. A certified map would take 25 kB more."""
     default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)
     left_out = set(explorer.sweeps_of(default, explorer.PAGE_OF_ALL)) - set(datasets)
@@ -104,7 +164,7 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
     page.write(tmp_path / "explorer_all.html", datasets, records)
     size = (tmp_path / "explorer_all.html").stat().st_size
-    assert size < 14e6  # of 15: a made-up number may be shorter than a computed one
+    assert size < 14e6  # 15 MB are allowed, but computed numbers may be longer
     few = {name: datasets[name] for name in explorer.sweeps_of(default, explorer.PAGE)}
     page.write(tmp_path / "explorer.html", few, records)
     assert (tmp_path / "explorer.html").stat().st_size < 13e6
@@ -113,17 +173,17 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
 def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
     configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
-    asked = explorer.period_requests(configuration, "bore")
-    assert 300 < len(asked) <= 625
-    assert len({request["velocity"] for request in asked}) == 34
-    assert len({request["amplitude"] for request in asked}) == 17
+    requests = explorer.period_requests(configuration, "bore")
+    assert 300 < len(requests) <= 625
+    assert len({request["velocity"] for request in requests}) == 34
+    assert len({request["amplitude"] for request in requests}) == 17
 
 
-def test_of_several_certified_maps_the_most_exact_one_answers():
+def test_the_most_accurate_of_several_certified_maps_is_used():
     exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
     axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
     extended = axes | {"motion": "transverse", "group": "motions"}
-    given = {
+    configuration = {
         "sweeps": {"transverse": axes | rough},
         "extended": {
             "again": extended | exact,
@@ -131,30 +191,47 @@ def test_of_several_certified_maps_the_most_exact_one_answers():
             "cone": extended | exact | {"pressure": "power:exponent=1"},
         },
     }
-    assert explorer.certified_of(load.from_mapping(given)) == ["certified_again"]
+    assert explorer.certified_of(load.from_mapping(configuration)) == ["certified_again"]
     assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
 
 
-def test_the_default_configuration_answers_for_all_of_poissons_ratios():
+def test_the_default_configuration_has_maps_over_all_poissons_ratios():
     default = load.load(ROOT / "config" / "config.yaml")
     chosen = explorer.certified_of(default)
     assert chosen == ["certified_poisson_transverse", "certified_poisson_bore"]
     assert {default.certified[name].poisson for name in chosen} == {(0, 0.5)}
 
 
-def test_a_map_that_has_no_room_is_refused():
-    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
-    configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
-    assert explorer.refusal(stub.configured()) is None
-    assert explorer.refusal(configuration) == (
-        "sweeps.transverse: 5,151 points have no room in the explorer; allowed: up to 5,000"
-    )
+FINE = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
+SMALL = {"velocity": [0.1, 1], "amplitude": [0, 1]}
+LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
 
 
-def test_the_page_asks_for_nothing_outside(made, monkeypatch):
+@pytest.mark.parametrize(
+    ("configuration", "page_name", "refusal"),
+    [
+        ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
+        ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
+         "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+         "amplitudes and two velocities above 0"),
+        ({"sweeps": {"bore": FINE | {"amplitude": [0, *range(1, 51)]}}}, explorer.PAGE,
+         "sweeps.bore: 5,151 points have no room in the explorer; allowed: up to 5,000"),
+        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE, None),
+        ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE_OF_ALL,
+         "sweeps: 20,305 points have no room in explorer_all.html; allowed: up to 20,000, "
+         "at all of Poisson's ratios together"),
+    ],
+)  # fmt: skip
+def test_a_configuration_without_a_map_or_with_too_many_points_is_refused(
+    configuration, page_name, refusal
+):
+    assert explorer.refusal(load.from_mapping(configuration), page_name) == refusal
+
+
+def test_the_page_needs_no_network(made, monkeypatch):
     monkeypatch.setattr(page, "get_plotlyjs", lambda: "// the library")
     text = page.page(made[2])
-    # The addresses in it are names: of SVG, and of the paper in what made the datasets.
+    # The only address is the name space of SVG.
     addresses = set(re.findall(r"\w+://[^\s\"'<>]+", text))
     assert addresses == {"http://www.w3.org/2000/svg"}
     assert not re.search(
@@ -165,19 +242,19 @@ def test_the_page_asks_for_nothing_outside(made, monkeypatch):
 
 
 def test_text_in_a_dataset_cannot_end_the_script(made):
-    held = json.loads(json.dumps(made[2]))
-    held["made"]["bore"].append(["title", "</script><script>alert(1)"])
-    assert page.page(held).count("</script>") == page.page(made[2]).count("</script>")
+    content = json.loads(json.dumps(made[2]))
+    content["made"]["bore"].append(["title", "</script><script>alert(1)"])
+    assert page.page(content).count("</script>") == page.page(made[2]).count("</script>")
 
 
 def test_a_period_that_belongs_to_no_point_is_refused(made):
     datasets, records, _ = made
     stray = records["bore"][0] | {"request": records["bore"][0]["request"] | {"velocity": "7"}}
-    with pytest.raises(ValueError, match="a period at '7', which the map has not"):
+    with pytest.raises(ValueError, match="a period at '7', which is not on the map"):
         payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
 
 
-def test_a_dataset_without_what_is_shown_is_refused(made):
+def test_a_dataset_with_a_missing_variable_is_refused(made):
     datasets, records, _ = made
     with pytest.raises(ValueError, match="explorer: dataset 'bore' has no variable 'mu_static'"):
         payload.build({"bore": datasets["bore"].drop_vars("mu_static")}, records)
@@ -189,13 +266,7 @@ def test_the_log_names_periods_that_did_not_converge(made):
     assert "  not converged: amplitude 1.2, velocity 0.02: none to be found" in lines
 
 
-def test_all_assets_are_there():
-    assert set(explorer.ASSETS) == {
-        path.name for path in page.FOLDER.iterdir() if path.suffix not in (".py", "")
-    }
-
-
-# The rule
+# The Snakemake rule
 
 
 @pytest.mark.long

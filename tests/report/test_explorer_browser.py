@@ -1,12 +1,10 @@
-"""The explorer's page in a real browser, without a network: what is drawn is what is stored."""
+"""The explorer's page in a real browser without a network: layout and gestures."""
 
 import re
 import shutil
 
-import numpy as np
 import pytest
 from stubs import explorer_stub as stub
-from stubs.unpacked_period import unpacked
 
 from microslip.report.explorer.explorer import MAPS
 from microslip.report.explorer.page import write
@@ -23,7 +21,7 @@ FLAGS += ["--disable-component-update", "--disable-sync"]
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """The page's path, and the datasets and periods that it was made from."""
+    """The path of the page, and its datasets and periods."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
     write(folder / "explorer.html", datasets, records)
@@ -48,28 +46,28 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def opened(made, browser):
-    """The page, opened once, with what it says to the console and what it asks for."""
-    page, heard, asked = browser.new_page(), [], []
-    page.on("console", lambda message: heard.append(message.text))
-    page.on("pageerror", lambda error: heard.append(str(error)))
-    page.on("request", lambda request: asked.append(request.url))
+    """The open page, its console messages, and its network requests."""
+    page, messages, requests = browser.new_page(), [], []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("request", lambda request: requests.append(request.url))
     page.goto(made[0].as_uri())
     page.locator("body[data-ready]").wait_for()
-    return page, heard, asked
+    return page, messages, requests
 
 
 @pytest.fixture
 def page(made, opened):
-    """The page as the test before has left it. It has to say nothing, and to ask for nothing."""
-    page, heard, asked = opened
+    """The open page. A test must cause no console message and no network request."""
+    page, messages, requests = opened
     page.set_viewport_size({"width": 1280, "height": 800})
     yield page
-    assert heard == []
-    assert asked == [made[0].as_uri()]
+    assert messages == []
+    assert requests == [made[0].as_uri()]
 
 
 def click_on_map(page, velocity, amplitude):
-    """Press the mouse on a point of the map, by the coordinates of the screen."""
+    """Click on a point of the map."""
     x, y = page.evaluate(
         """([velocity, amplitude]) => {
           const chart = element("map"), box = chart.getBoundingClientRect();
@@ -87,206 +85,36 @@ def click_on_map(page, velocity, amplitude):
     page.wait_for_timeout(100)
 
 
-def drawn_line(page, chart, trace):
-    """Points of a line as it stands on the screen, in the units of its axes: x, y."""
-    path, sizes = page.evaluate(
-        """([id, trace]) => {
-          const chart = element(id), { xaxis, yaxis } = chart._fullLayout;
-          const uid = chart._fullData[trace].uid;
-          const line = chart.querySelector(`.trace${uid} .js-line`).getAttribute("d");
-          return [line, [xaxis.range, xaxis._length, yaxis.range, yaxis._length]];
-        }""",
-        [chart, trace],
-    )
-    assert set(re.findall("[A-Za-z]", path)) <= set("MLHV")
-    x, y = [], []
-    for command, numbers in re.findall("([MLHV])([^MLHV]*)", path):
-        values = [float(n) for n in re.findall(r"-?[\d.]+(?:e-?\d+)?", numbers)]
-        if command == "V":
-            values = [x[-1], values[0]]
-        if command == "H":
-            values = [values[0], y[-1]]
-        x += values[0::2]
-        y += values[1::2]
-    (left, right), width, (low, high), height = sizes
-    x, y = np.array(x) / width, 1 - np.array(y) / height
-    return left + (right - left) * x, low + (high - low) * y
-
-
 def select(page, name):
     page.get_by_role("button", name=re.compile(name, re.I)).click()
 
 
-def record_at(records, name, velocity, amplitude):
-    wanted = f"{amplitude:g}", f"{velocity:g}"
-    (record,) = (record for record in records[name] if stub.place(record) == wanted)
-    return record["result"]
-
-
-PLACES = [("transverse", 0.02, 0.6), ("transverse", 0.1, 1.2), ("bore", 0.1, 0.6), ("bore", 1, 1.2)]
-
-
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
-def test_a_click_shows_the_points_value_and_its_loop(made, page, name, velocity, amplitude):
-    _, datasets, records = made
-    select(page, name)
-    click_on_map(page, velocity, amplitude)
-    point = datasets[name].sel(velocity=velocity, amplitude=amplitude)
-    mu, error = float(point.mu_macro), float(point.mu_macro_error)
-    shown = re.search(r"mu_macro (-?[\d.]+) ± ([\d.e-]+)", page.inner_text("#value"))
-    assert float(shown[1]) == pytest.approx(mu, abs=5.1e-6)
-    assert float(shown[2]) == pytest.approx(error, rel=0.06)
-    assert f"velocity {velocity:g}, amplitude {amplitude:g}" in page.inner_text("#certificate")
-    # the lines on the screen: the certified mean, and the force, whose mean that is
-    pixel = 1.2 / page.evaluate("element('history')._fullLayout.yaxis._length")
-    assert drawn_line(page, "history", 2)[1] == pytest.approx(mu, abs=pixel)
-    phase, force = drawn_line(page, "history", 3)
-    result = record_at(records, name, velocity, amplitude)
-    mean = stub.mean_over(phase, force)
-    assert mean == pytest.approx(result["mu_macro"], abs=pixel)
-    assert mean == pytest.approx(mu, abs=pixel + error + 0.01)  # a coarse run's own error
-    other, force = drawn_line(page, "loop", 1)
-    wanted = {"transverse": "force_lateral", "bore": "torque"}[name]
-    assert other.max() == pytest.approx(max(result[wanted]), abs=0.02)
-    assert force.min() == pytest.approx(min(result["force_forward"]), abs=pixel)
+def test_a_click_selects_a_point_and_the_page_fits_the_screen(page):
+    for name in MAPS:
+        select(page, name)
+        click_on_map(page, 0.1, 0.6)
+        assert "velocity 0.1, amplitude 0.6" in page.inner_text("#certificate")
+        assert page.locator("#disc").is_visible()
+    size = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    assert page.evaluate(size) == [1280, 800]
 
 
-@pytest.mark.parametrize("name", MAPS)
-def test_every_frame_of_the_contact_is_the_stored_one(made, page, name):
-    select(page, name)
-    click_on_map(page, 0.02, 0.6)
-    truth = unpacked(record_at(made[2], name, 0.02, 0.6))
-    frames = len(truth["phase"])
-    angle = np.array(page.evaluate("sectorAngles(STATE.map)"))
-    radius = np.array(page.evaluate("STATE.period.radius"))
-    lateral = np.outer(np.cos(angle), radius).ravel()
-    assert lateral == pytest.approx(truth["lateral_position"], abs=2e-5)
-    for frame in range(frames):
-        cells = page.evaluate("(frame) => cellsOf(STATE.period, frame)", frame)
-        at = frame % (frames - 1)
-        # the frame half a period on is drawn as the mirror image of the first
-        off = 2e-2 if at == frames // 2 else 1e-9
-        for way in ("forward", "lateral"):
-            share = truth[f"traction_{way}"][at] / truth["bound"]
-            assert cells[way] == pytest.approx(share, abs=off), (frame, way)
-        assert np.mean(cells["slips"] != truth["slips"][at]) < off, frame
-
-
-def test_the_phase_slider_and_the_animation_move_the_contact(made, page):
-    select(page, "bore")
-    click_on_map(page, 0.02, 0.6)
-    truth = unpacked(record_at(made[2], "bore", 0.02, 0.6))
-    drawn = "(k) => element('disc').data[k].x.filter((x) => x === null).length"
-    page.locator("#phase").press("Home")
-    for frame in range(1, 9):
+def test_sliders_move_by_keyboard_and_the_animation_plays(page):
+    select(page, "transverse")
+    page.locator("#velocity").focus()
+    page.keyboard.press("Home")
+    for value in ("0", "0.02", "0.1"):
+        assert page.inner_text("#velocity-value") == value
         page.keyboard.press("ArrowRight")
-        slipping = truth["slips"][frame].sum()
-        assert page.evaluate(drawn, 1) == slipping
-        assert page.evaluate(drawn, 0) == truth["slips"][frame].size - slipping
-    phase = float(page.inner_text("#phase-value").rstrip("°"))
-    assert phase == pytest.approx(np.degrees(truth["phase"][8]), abs=0.6)
+    page.locator("#velocity").press("ArrowLeft")
     before = page.evaluate("STATE.frame")
     page.get_by_role("button", name="Play").click()
-    for _ in range(100):
-        page.wait_for_timeout(50)
-        if page.evaluate("STATE.frame") not in (before, before + 1):
-            break
+    page.wait_for_function(f"STATE.frame !== {before}")
     page.get_by_role("button", name="Pause").click()
-    at = page.evaluate("STATE.frame")
-    assert at != before
-    assert page.evaluate(drawn, 1) == truth["slips"][at % 32].sum()
+    frame = page.evaluate("STATE.frame")
     page.wait_for_timeout(200)
-    assert page.evaluate("STATE.frame") == at
-
-
-def test_sliders_reach_every_point_by_keyboard_and_boxes_switch_limits(made, page):
-    dataset = made[1]["transverse"]
-    select(page, "transverse")
-    for slider, dim in (("amplitude", "amplitude"), ("velocity", "velocity")):
-        page.locator(f"#{slider}").focus()
-        page.keyboard.press("Home")
-        for value in dataset[dim].values:
-            assert float(page.inner_text(f"#{slider}-value")) == pytest.approx(value, rel=1e-3)
-            page.keyboard.press("ArrowRight")
-    assert "velocity 1, amplitude 1.2" in page.inner_text("#certificate")
-    # the cuts go through the selected point
-    for chart, cut in (
-        ("along-velocity", dataset.sel(amplitude=1.2)[{"velocity": slice(1, None)}]),
-        ("along-amplitude", dataset.sel(velocity=1)),
-    ):
-        shown = page.evaluate("(id) => element(id).data.at(-1).y", chart)
-        assert shown == pytest.approx(cut.mu_macro.values, abs=1e-12)
-        lines = page.evaluate("(id) => element(id).data.slice(0, -1).map((t) => t.x.length)", chart)
-        assert len(lines) == 4
-        assert min(lines) >= 2  # level lines too
-    box = page.get_by_label("Eq 7")
-    visible = "element('along-amplitude').data.find((t) => t.name.startsWith('Eq 7')).visible"
-    assert page.evaluate(visible) is True
-    box.uncheck()
-    assert page.evaluate(visible) is False
-    page.locator("#amplitude").press("ArrowLeft")
-    assert page.evaluate(visible) is False
-    box.check()
-    assert page.evaluate(visible) is True
-
-
-def test_what_did_not_converge_says_so(page):
-    select(page, "transverse")
-    click_on_map(page, 1, 0.6)
-    assert "not converged: made up" in page.inner_text("#certificate")
-    assert "not converged (1 of 9)" in page.inner_text("#map")
-    click_on_map(page, 1, 1.2)
-    said = page.inner_text("#run")
-    assert said.startswith("No period was found: none to be found Drawn below: the nearest point")
-    assert said.endswith("at velocity 1, amplitude 0.6.")
-    assert page.locator("#disc").is_visible()  # of the nearest point that has a period
-    page.locator("#velocity").press("Home")
-    assert "static limit" in page.inner_text("#run")
-    page.locator("#amplitude").press("Home")
-    assert "Nothing oscillates here" in page.inner_text("#run")
-    select(page, "bore")
-    click_on_map(page, 0.02, 1.2)
-    assert "It did not converge: none to be found" in page.inner_text("#run")
-    assert page.locator("#disc").is_visible()
-
-
-def test_it_tells_what_made_it_and_fits_the_screen(made, page):
-    page.get_by_text("What made this page").click()
-    text = page.inner_text("#made")
-    for dataset in made[1].values():
-        for key in ("title", "microslip_version", "source_digest"):
-            assert dataset.attrs[key] in text
-    assert '"amplitude"' in text
-    page.get_by_text("What made this page").click()
-    width, height = page.evaluate(
-        "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
-    )
-    assert (width, height) == (1280, 800)
-
-
-def test_the_form_answers_for_a_real_contact_and_a_mistake_is_told(page):
-    """The numbers are compared in node; here what is seen, and that it fits beside the map."""
-    select(page, "transverse")
-    page.get_by_role("button", name="A real contact").click()
-    assert page.locator("#point-view").is_hidden()
-    value = page.locator("#contact-value")
-    assert value.inner_text().startswith("No certified friction: this page holds no certified map")
-    assert "contact radius" in page.inner_text("#contact-facts")
-    page.get_by_label("radius of the sphere", exact=True).fill("5,0")
-    assert "read 5 and stopped at ',0'" in value.inner_text()
-    page.get_by_label("radius of the sphere", exact=True).fill("5")
-    assert page.locator("#si-young").is_hidden()
-    page.get_by_label("sphere", exact=True).select_option("by E and ν")
-    assert page.locator("#si-young").is_visible()
-    page.get_by_label("motion", exact=True).select_option("bore")
-    assert page.locator("#si-angle").is_visible() and page.locator("#si-stroke").is_hidden()
-    assert page.evaluate("STATE.map.name") == "bore"
-    assert page.evaluate("document.documentElement.scrollWidth") <= 1280
-    page.get_by_label("motion", exact=True).select_option("transverse")
-    page.get_by_label("sphere", exact=True).select_option("steel")
-    page.get_by_role("button", name="A real contact").click()
-    assert page.locator("#disc").is_visible()
+    assert page.evaluate("STATE.frame") == frame
 
 
 # On a phone
@@ -294,7 +122,7 @@ def test_the_form_answers_for_a_real_contact_and_a_mistake_is_told(page):
 
 @pytest.fixture
 def phone(made, browser):
-    """The page on a small screen."""
+    """The page on a screen of 400 x 800 pixels."""
     page = browser.new_page()
     page.set_viewport_size({"width": 400, "height": 800})
     page.goto(made[0].as_uri())
@@ -322,7 +150,7 @@ def test_a_phone_shows_one_column_and_scrolls_in_one_direction(phone):
     bottoms = [bottom for *_, bottom in boxes[:-1]]
     tops = [top for _, _, top, _ in boxes[1:]]
     assert all(bottom <= top for bottom, top in zip(bottoms, tops, strict=True))
-    # labels of axes are on the screen, too
+    # labels of axes are on the screen
     for left, right, *_ in phone.evaluate(BOXES, ".plot .infolayer text"):
         assert left >= -0.5 and right <= 400.5
 
@@ -346,52 +174,25 @@ def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
         assert fixed[:2] == [True, True]
         assert phone.evaluate("(id) => element(id)._fullLayout.dragmode", chart) is False
     assert not phone.locator(".modebar-btn").count()
-    click_on_map(phone, 0.1, 1.2)  # a tap still chooses a point
+    click_on_map(phone, 0.1, 1.2)  # a tap selects a point
     assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
 
 
-def test_a_link_reproduces_the_state(made, page, browser):
-    select(page, "bore")
-    click_on_map(page, 0.1, 0.6)
-    page.get_by_label("Eq 29").uncheck()
-    page.get_by_role("button", name="A real contact").click()
-    page.get_by_label("motion", exact=True).select_option("bore")
-    page.get_by_label("normal load", exact=True).fill("7.5")
-    page.wait_for_timeout(600)
-    other = browser.new_page()
-    other.goto(page.url)
-    other.locator("body[data-ready]").wait_for()
-    assert other.input_value("#si-load") == "7.5"
-    state = (
-        "[STATE.shown.id, STATE.row, STATE.column, [...STATE.hidden], STATE.asking, STATE.contact]"
-    )
-    assert other.evaluate(state) == page.evaluate(state)
-    assert other.evaluate("linkOf(STATE)") == page.evaluate("linkOf(STATE)")
-    other.close()
-    page.get_by_label("Eq 29").check()
-    page.get_by_label("normal load", exact=True).fill("10")
-    page.get_by_role("button", name="A real contact").click()
-
-
-def test_the_form_opens_in_view_on_a_phone(phone):
+@pytest.mark.long
+def test_the_form_opens_in_view_and_fits_a_phone(phone):
     phone.set_viewport_size({"width": 375, "height": 700})
     phone.get_by_role("button", name="A real contact").click()
     phone.wait_for_timeout(200)
     ((left, right, top, _),) = phone.evaluate(BOXES, "#contact-form")
     assert 0 <= left < right <= 375
     assert -2 <= top < 350
+    assert phone.locator("#contact-value").inner_text().startswith("No certified friction")
     assert phone.evaluate("document.documentElement.scrollWidth") <= 375
-
-
-@pytest.mark.long
-def test_the_form_fits_a_phone(phone):
-    phone.get_by_role("button", name="A real contact").click()
-    assert phone.evaluate("document.documentElement.scrollWidth") <= 400
     for selector in (".field input", ".field select", "#ask"):
         boxes = [box for box in phone.evaluate(BOXES, selector) if box[1] > box[0]]
         assert boxes
         for left, right, top, bottom in boxes:
-            assert bottom - top >= 44 and left >= 0 and right <= 400, selector
+            assert bottom - top >= 44 and left >= 0 and right <= 375, selector
 
 
 @pytest.mark.long
@@ -411,6 +212,6 @@ def test_buttons_of_the_charts_cover_no_data(page, width):
         page.locator(f"#{chart}").hover()
         (bar,) = page.evaluate(BOXES, f"#{chart} .modebar-group")
         (area,) = page.evaluate(BOXES, f"#{chart} .bglayer .bg, #{chart} .nsewdrag")[:1]
-        assert bar[3] <= area[2], chart  # it ends above the area of the data
+        assert bar[3] <= area[2], chart  # the buttons end above the plot area
         for _left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
             assert right <= bar[0] or bottom <= bar[2] or top >= bar[3], chart

@@ -1,7 +1,8 @@
-"""Questions about real contacts: what the page answers is what predict and solve answer."""
+"""The form for a real contact: its answers, warnings and messages equal those of predict."""
 
 import itertools
 import math
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +19,6 @@ from microslip.report.explorer import certified, si_form
 from microslip.si.materials import MATERIALS
 from microslip.si.quantities import read
 from microslip.sweeps.batches import key_of
-from microslip.sweeps.evaluate import computed
 
 pytestmark = [pytest.mark.slow, needs_node]
 SCRIPTS = ("certified.js", "elliptic.js", "limits.js", "beyond.js", "contact.js")
@@ -27,39 +27,42 @@ COUNT = 100
 RELATIVE = 1e-12
 
 
-def texts(motion, **given):
-    """What the form holds, with something else typed in some fields: (text, unit) or a choice."""
-    found = dict(si_form.CHOSEN) | {"motion": motion}
+def texts(motion, **changes):
+    """Contents of the form: defaults, replaced by (text, unit) or a choice."""
+    contents = dict(si_form.CHOSEN) | {"motion": motion}
     for name, field in si_form.FIELDS.items():
-        found |= {name: field.example, f"{name}_unit": field.units[0]}
-    for name, value in given.items():
+        contents |= {name: field.example, f"{name}_unit": field.units[0]}
+    for name, value in changes.items():
         text, *unit = [value] if isinstance(value, str) else value
-        found |= {name: text} | ({f"{name}_unit": unit[0]} if unit else {})
-    return found
+        contents |= {name: text} | ({f"{name}_unit": unit[0]} if unit else {})
+    return contents
 
 
-def asked_of_predict(typed):
-    """The arguments of microslip.predict for what the form holds."""
+def arguments_of_predict(contents):
+    """Arguments of microslip.predict for the contents of the form."""
 
     def quantity(name):
-        return f"{typed[name]} {typed[f'{name}_unit']}".strip()
+        return f"{contents[name]} {contents[f'{name}_unit']}".strip()
 
-    found = {name: quantity(name) for name in ("radius", "load", "mu", "speed", "frequency")}
-    found["amplitude"] = quantity(si_form.AMPLITUDE_OF[typed["motion"]])
-    if typed["material"] == si_form.OF_NUMBERS:
-        found |= {"young": quantity("young"), "nu": quantity("nu")}
+    arguments = {name: quantity(name) for name in ("radius", "load", "mu", "speed", "frequency")}
+    arguments["amplitude"] = quantity(si_form.AMPLITUDE_OF[contents["motion"]])
+    if contents["material"] == si_form.OF_NUMBERS:
+        arguments |= {"young": quantity("young"), "nu": quantity("nu")}
     else:
-        found["material"] = typed["material"]
-    other = typed["counterbody"]
+        arguments["material"] = contents["material"]
+    other = contents["counterbody"]
     if other == si_form.OF_NUMBERS:
         other = f"{quantity('counter_young')}, {quantity('counter_nu')}"
-    return found | {"counterbody": other}
+    return arguments | {"counterbody": other}
 
 
-def drawn(rng, motion, spread, *, at_ratio_0=False):
-    """A random question, around those whose amplitude is that of full slip; spread: decades."""
+def random_contents(rng, motion, spread, *, at_ratio_0=False):
+    """Random contents of the form, whose amplitude is near that of full slip.
+
+    spread: range of the quantities in decades.
+    """
     decades = rng.uniform(-spread, spread, 5)
-    given = {
+    contents = {
         "radius": (f"{5 * 10 ** decades[0]:.6g}", "mm"),
         "load": (f"{10 * 10 ** decades[1]:.6g}", "N"),
         "mu": (f"{rng.uniform(0.05, 1.3):.4g}", ""),
@@ -74,18 +77,18 @@ def drawn(rng, motion, spread, *, at_ratio_0=False):
     }
     names = [si_form.OF_NUMBERS, *([] if at_ratio_0 else MATERIALS)]
     while True:
-        given["material"], given["counterbody"] = rng.choice(names, 2).tolist()
-        if (given["material"], given["counterbody"]) != ("rigid", "rigid"):
-            return texts(motion, **given)
+        contents["material"], contents["counterbody"] = rng.choice(names, 2).tolist()
+        if (contents["material"], contents["counterbody"]) != ("rigid", "rigid"):
+            return texts(motion, **contents)
 
 
 def page(maps, questions):
-    given = {"si": si_form.packed(), "maps": [certified.packed(one) for one in maps]}
-    return answers(SCRIPTS, ANSWER, given, [[one] for one in questions])
+    data = {"si": si_form.packed(), "maps": [certified.packed(one) for one in maps]}
+    return answers(SCRIPTS, ANSWER, data, [[one] for one in questions])
 
 
 def rises(velocity, amplitude):
-    """A made-up friction, smooth, 1 where nothing oscillates, rising with the velocity."""
+    """A smooth made-up friction that rises with the velocity and is 1 without oscillation."""
     return (0.1 + velocity) / (0.1 + velocity + amplitude / (1 + amplitude))
 
 
@@ -93,46 +96,42 @@ def made(map_, answered):
     return certified_map.build(map_, certified_stub.played(map_, answered))
 
 
-def record(request, result):
-    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
-
-
 def made_up(request):
     softer = 1 - 0.3 * float(request["poisson"])
     place = float(request["velocity"]), float(request["amplitude"]) / softer
-    return record(request, {"mu_macro": rises(*place), "mu_macro_error": 1e-4, "converged": True})
+    result = {"mu_macro": rises(*place), "mu_macro_error": 1e-4, "converged": True}
+    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
 
-@pytest.fixture(scope="module", params=si_form.CHOICES)
-def coarse(request):
-    """A certified map of a made-up friction, for Poisson's ratio 0."""
-    axes = {"velocity": [0.001, 100], "amplitude": [0, 10], "adaptive": {"error": 5e-2}}
-    return made(certified_stub.configured(request.param, **axes), made_up)
+MAPS = {
+    "one ratio": {"velocity": [1e-3, 1e2], "amplitude": [0, 10], "adaptive": {"error": 5e-2}},
+    "all ratios": {"velocity": [1e-5, 1e2], "amplitude": [0, 10], "poisson": [0, 0.5]}
+    | {"adaptive": {"error": 0.1}},
+}
 
 
-@pytest.fixture(scope="module", params=si_form.CHOICES)
-def over_ratios(request):
-    """The same for every Poisson's ratio."""
-    axes = {"velocity": [1e-5, 1e2], "amplitude": [0, 10], "poisson": [0, 0.5]}
-    return made(certified_stub.configured(request.param, **axes, adaptive={"error": 0.1}), made_up)
+@cache
+def map_of(motion, which):
+    """A certified map with a made-up friction."""
+    return made(certified_stub.configured(motion, **MAPS[which]), made_up)
 
 
 @pytest.fixture
 def predicted(monkeypatch):
-    """microslip.predict with a map in the place of the solver."""
+    """A function that makes microslip.predict use a map instead of the solver."""
 
     def by(dataset):
         def solve(name, velocity, amplitude, *, poisson, **_):
             try:
-                found = Friction(dataset).at(velocity, amplitude, poisson=poisson)
+                answer = Friction(dataset).at(velocity, amplitude, poisson=poisson)
             except ValueError as error:
                 pair, reason = (math.nan, math.inf), str(error)
             else:
-                pair, reason = (float(found.mu_macro), float(found.mu_macro_error)), ""
-            found = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
+                pair, reason = (float(answer.mu_macro), float(answer.mu_macro_error)), ""
+            answer = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
             rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
             friction = Estimate(pair[0], {"model": pair[1]})
-            return SimpleNamespace(**found, friction=friction, **rest)
+            return SimpleNamespace(**answer, friction=friction, **rest)
 
         monkeypatch.setattr("microslip.si.request.solve", solve)
         return microslip.predict
@@ -152,99 +151,70 @@ PLACES = {
 }
 
 
-def compare(said, truth):
+def compare(answer, truth):
     for name, field in PLACES.items():
         value = getattr(truth, field)
-        assert said[name] == pytest.approx(value, rel=RELATIVE, abs=1e-300), name
-    assert said["warnings"] == list(truth.warnings)
-    assert said["not_checked"] == list(truth.not_checked)
+        assert answer[name] == pytest.approx(value, rel=RELATIVE, abs=1e-300), name
+    assert answer["warnings"] == list(truth.warnings)
+    assert answer["not_checked"] == list(truth.not_checked)
     if math.isnan(truth.mu_macro):
-        assert said["friction"] is None and said["refused"]
+        assert answer["friction"] is None and answer["refused"]
         return
-    for name, found in (("value", truth.mu_macro), ("error", truth.mu_macro_error)):
-        assert said["friction"][name] == pytest.approx(found, abs=1e-12, rel=0), name
-    static = said["static_friction"]
+    for name, expected in (("value", truth.mu_macro), ("error", truth.mu_macro_error)):
+        assert answer["friction"][name] == pytest.approx(expected, abs=1e-12, rel=0), name
+    static = answer["static_friction"]
     if static is not None:
         assert static["value"] == pytest.approx(truth.mu_static, abs=1e-12, rel=0)
 
 
-@pytest.mark.parametrize("at_ratio_0", [True, False])
-def test_the_page_answers_as_predict_does_on_the_same_map(coarse, predicted, at_ratio_0):
-    rng = np.random.default_rng(21)
-    motion, predict = coarse.attrs["motion"], predicted(coarse)
-    spread = 1.0 if at_ratio_0 else 3.0
-    questions = [drawn(rng, motion, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
+@pytest.mark.parametrize("motion", si_form.CHOICES)
+@pytest.mark.parametrize(
+    ("which", "spread", "at_ratio_0", "least_answered", "least_warnings"),
+    [
+        ("one ratio", 1.0, True, 0.9, 3),
+        ("one ratio", 3.0, False, 0.0, 6),
+        pytest.param("all ratios", 1.0, False, 0.7, 3, marks=pytest.mark.long),
+    ],
+)
+def test_the_page_answers_as_predict_does_on_the_same_map(
+    predicted, motion, which, spread, at_ratio_0, least_answered, least_warnings
+):
+    dataset, rng = map_of(motion, which), np.random.default_rng(21)
+    predict = predicted(dataset)
+    questions = [random_contents(rng, motion, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
     warned, answered, refused = set(), 0, 0
-    for typed, said in zip(questions, page([coarse], questions), strict=True):
+    for contents, answer in zip(questions, page([dataset], questions), strict=True):
         try:
-            truth = predict(motion, **asked_of_predict(typed))
+            truth = predict(motion, **arguments_of_predict(contents))
         except InputError as error:
-            # one body is too small for the contact, or the amplitude too large
-            assert error.argument in ("radius", "amplitude") and "refused" in said
+            # The sphere is too small for the contact, or the amplitude is too large.
+            assert error.argument in ("radius", "amplitude") and "refused" in answer
             refused += 1
             continue
-        answered += said["friction"] is not None
-        compare(said, truth)
+        answered += answer["friction"] is not None
+        compare(answer, truth)
         warned |= {text.split(",")[0][:20] for text in truth.warnings}
-    assert answered > 0.9 * COUNT if at_ratio_0 else refused < 0.3 * COUNT
-    assert len(warned) >= (3 if at_ratio_0 else 6)
+    assert answered >= least_answered * COUNT and refused < 0.3 * COUNT
+    assert len(warned) >= least_warnings
 
 
-@pytest.mark.long
-def test_the_page_answers_for_all_materials_as_predict_does_on_the_same_map(over_ratios, predicted):
-    rng = np.random.default_rng(24)
-    motion, predict = over_ratios.attrs["motion"], predicted(over_ratios)
-    questions = [drawn(rng, motion, 1.0) for _ in range(COUNT)]
-    answered = 0
-    for typed, said in zip(questions, page([over_ratios], questions), strict=True):
-        try:
-            truth = predict(motion, **asked_of_predict(typed))
-        except InputError as error:
-            assert error.argument in ("radius", "amplitude") and "refused" in said
-            continue
-        compare(said, truth)
-        answered += said["friction"] is not None
-    assert answered > 0.7 * COUNT
-
-
-@pytest.mark.long
-def test_the_page_agrees_with_the_solver_within_both_errors():
-    """100 questions about bodies of Poisson's ratio 0: map on the page, predict by the solver."""
-    axes = {"velocity": [0.01, 5], "amplitude": [0, 2.5], "adaptive": {"error": 1e-2}}
-
-    map_ = certified_stub.configured("transverse", **axes)
-    dataset = made(map_, lambda request: record(request, computed(request)))
-    rng = np.random.default_rng(22)
-    questions = [drawn(rng, "transverse", 0.35, at_ratio_0=True) for _ in range(COUNT)]
-    sources = set()
-    for typed, said in zip(questions, page([dataset], questions), strict=True):
-        truth = microslip.predict("transverse", **asked_of_predict(typed))
-        friction = said["friction"]
-        assert truth.converged
-        allowed = friction["error"] + truth.mu_macro_error
-        assert abs(friction["value"] - truth.mu_macro) <= allowed, typed
-        sources.add(friction["source"])
-        assert said["warnings"] == list(truth.warnings)
-    assert "map" in sources
-
-
-def test_at_another_poissons_ratio_the_page_refuses_and_tells_the_nearest(coarse):
-    (said,) = page([coarse], [texts(coarse.attrs["motion"])])
-    assert said["friction"] is None
+def test_at_another_poissons_ratio_the_answer_at_the_nearest_is_shown():
+    coarse = map_of("bore", "one ratio")
+    (answer,) = page([coarse], [texts("bore")])
+    assert answer["friction"] is None
     assert (
-        said["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
+        answer["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
         "microslip.solve computes any"
     )
-    near = Friction(coarse).at(said["velocity"], said["amplitude"])
-    assert said["near"]["poisson"] == 0
-    assert said["near"]["value"] == pytest.approx(float(near.mu_macro), abs=1e-12)
+    near = Friction(coarse).at(answer["velocity"], answer["amplitude"])
+    assert answer["near"]["poisson"] == 0
+    assert answer["near"]["value"] == pytest.approx(float(near.mu_macro), abs=1e-12)
 
 
-def test_a_motion_without_a_map_still_has_its_contact(coarse):
-    other = {"transverse": "bore", "bore": "transverse"}[coarse.attrs["motion"]]
-    (said,) = page([coarse], [texts(other)])
-    assert said["refused"] == f"this page holds no certified map of {other}"
-    assert said["contact_radius"] > 0
+def test_a_motion_without_a_map_still_has_its_contact():
+    (answer,) = page([map_of("bore", "one ratio")], [texts("transverse")])
+    assert answer["refused"] == "this page holds no certified map of transverse"
+    assert answer["contact_radius"] > 0
 
 
 NO_NUMBERS = {
@@ -264,16 +234,15 @@ NO_NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("motion", ["transverse"])
-def test_what_is_no_number_is_refused_in_one_line(motion):
-    questions = [texts(motion, radius=text) for text in NO_NUMBERS]
-    for said, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
-        assert said["refused"].startswith("radius of the sphere = "), text
-        assert problem in said["refused"], text
-        assert "\n" not in said["refused"]
+def test_texts_that_are_not_numbers_are_refused_in_one_line():
+    questions = [texts("transverse", radius=text) for text in NO_NUMBERS]
+    for answer, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
+        assert answer["refused"].startswith("radius of the sphere = "), text
+        assert problem in answer["refused"], text
+        assert "\n" not in answer["refused"]
 
 
-def test_what_no_contact_can_have_is_refused():
+def test_impossible_contacts_are_refused():
     rigid = {"material": "rigid", "counterbody": "rigid"}
     numbers = {"material": si_form.OF_NUMBERS}
     cases = (
@@ -286,26 +255,26 @@ def test_what_no_contact_can_have_is_refused():
         ({"load": ("1e9", "N")}, "by Hertz's theory, which is for contacts much smaller"),
         ({"stroke": ("1", "m"), "radius": ("1", "um"), "load": ("1e-3", "uN")}, "at most 1e+06"),
     )
-    said = page([], [texts("transverse", **given) for given, _ in cases])
-    for one, (_, problem) in zip(said, cases, strict=True):
+    page_answers = page([], [texts("transverse", **changes) for changes, _ in cases])
+    for one, (_, problem) in zip(page_answers, cases, strict=True):
         assert problem in one["refused"]
 
 
 def test_units_of_the_form_are_those_of_predict():
-    """Every unit of every field, by itself, against what Python reads."""
+    """Every unit of every field has the same factor as in Python."""
     units = [(name, one) for name, field in si_form.FIELDS.items() for one in field.units]
     numbers = ["0.3", "1.7e-1", ".25", "+0.125", "00.31"]
     calls = [[name, text, unit] for (name, unit), text in itertools.product(units, numbers)]
     call = "(si, name, text, unit) => siValue(si.fields[name], text, unit)"
-    said = answers(SCRIPTS, call, si_form.packed(), calls)
-    for (name, text, unit), value in zip(calls, said, strict=True):
+    values = answers(SCRIPTS, call, si_form.packed(), calls)
+    for (name, text, unit), value in zip(calls, values, strict=True):
         truth = read(name, f"{text} {unit}", si_form.FIELDS[name].unit).si
         assert value == pytest.approx(truth, rel=4e-16, abs=0), (name, text, unit)
 
 
-def test_numbers_in_sentences_are_written_as_python_writes_them():
+def test_numbers_in_messages_have_the_format_of_python():
     rng = np.random.default_rng(23)
     values = [*(10 ** rng.uniform(-12, 12, 300)), 0.125, 2.5, 1.125, 99.5, 9.995, 1e-5, 1e15, 0.0]
     calls = [[float(value), count] for value in values for count in (1, 2, 3, 6)]
-    said = answers(SCRIPTS, "(_, value, count) => general(value, count)", None, calls)
-    assert said == [f"{value:.{count}g}" for value, count in calls]
+    values = answers(SCRIPTS, "(_, value, count) => general(value, count)", None, calls)
+    assert values == [f"{value:.{count}g}" for value, count in calls]

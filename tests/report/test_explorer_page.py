@@ -1,4 +1,4 @@
-"""The whole page in node: sweeps and Poisson's ratios to choose from, and the form that answers."""
+"""The whole page in node: selection of sweeps and Poisson's ratios, and the form."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from stubs.in_node import needs_node, page_says
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
-from microslip.report.explorer import explorer, payload
+from microslip.report.explorer import payload
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
@@ -19,7 +19,7 @@ RATIOS = [0, 0.3, 0.5]
 
 
 def configured():
-    """Sweeps of every shape: maps with and without periods, lines, several Poisson's ratios."""
+    """A configuration with maps with and without periods, lines, and several Poisson's ratios."""
     extended = {
         "along": MAP | {"motion": "longitudinal", "group": "motions", "title": "to and fro"},
         "ratios": MAP | {"motion": "bore", "group": "poisson", "poisson": RATIOS},
@@ -54,7 +54,7 @@ def smooth(request):
 
 @pytest.fixture(scope="module")
 def certified():
-    """A certified map of transverse oscillation, of a made-up friction."""
+    """A certified map of transverse oscillation with a made-up friction."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
     map_ = certified_stub.configured("transverse", **axes)
     return certified_map.build(map_, certified_stub.played(map_, smooth))
@@ -62,7 +62,7 @@ def certified():
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, certified):
-    """Datasets by the names of sweeps, and the page's content."""
+    """Datasets by the names of sweeps, and the contents of their page."""
     datasets, periods = stub.made_up(tmp_path_factory.mktemp("page"), configured())
     return datasets, payload.build(datasets, periods, [certified])
 
@@ -71,7 +71,7 @@ def entries(content, kind, name):
     return [one for one in content[kind] if one["name"] == name]
 
 
-# What the page holds
+# Contents of the page
 
 
 @pytest.mark.long
@@ -79,9 +79,9 @@ def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
     datasets, content = made
     maps = {"transverse": 3, "bore": 1, "along": 1, "ratios": 3}
     lines = {"continuous_bore": 1, "still": 1, "drift": 1, "body": 1}
-    for kind, wanted in (("maps", maps), ("lines", lines)):
+    for kind, expected in (("maps", maps), ("lines", lines)):
         assert {one["name"]: len(entries(content, kind, one["name"])) for one in content[kind]} == (
-            wanted
+            expected
         )
     assert set(datasets) == set(maps) | set(lines) == set(content["made"])
 
@@ -90,17 +90,17 @@ def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
 @pytest.mark.parametrize("name", ["transverse", "ratios"])
 def test_maps_at_every_ratio_hold_the_points_of_the_dataset(made, name):
     dataset = made[0][name]
-    found = entries(made[1], "maps", name)
-    assert sorted(one["poisson"] for one in found) == RATIOS
-    for one in found:
+    maps = entries(made[1], "maps", name)
+    assert sorted(one["poisson"] for one in maps) == RATIOS
+    for one in maps:
         part = dataset.sel(poisson=one["poisson"]).transpose("amplitude", "velocity", ...)
         for key in ("mu_macro", "mu_macro_error"):
             assert np.array_equal(one["points"][key], part[key].values)
-        # the static limit of a transverse oscillation holds for Poisson's ratio 0, and says so
-        labels = " ".join(given["label"] for given in one["limits"])
+        # the static limit of a transverse oscillation is exact for Poisson's ratio 0 only
+        labels = " ".join(limit["label"] for limit in one["limits"])
         sideways = name == "transverse" and one["poisson"] > 0
         assert ("exact limit for ν = 0" in labels) == sideways
-    with_periods = [one for one in found if one["periods"]["count"]]
+    with_periods = [one for one in maps if one["periods"]["count"]]
     assert [one["poisson"] for one in with_periods] == ([0] if name == "transverse" else [])
 
 
@@ -110,13 +110,13 @@ def test_lines_run_over_the_longest_axis(made):
     assert steady["x"]["values"] == datasets["continuous_bore"].velocity.values.tolist()
     assert steady["x"]["log"] and not still["x"]["log"]
     assert steady["series"][0]["values"] == datasets["continuous_bore"].mu_macro.values.tolist()
-    assert [given["label"] for given in steady["limits"]] == ["force, Eq 21"]
+    assert [limit["label"] for limit in steady["limits"]] == ["force, Eq 21"]
     assert [one["label"] for one in still["series"]] == ["velocity 0", "velocity 0.001"]
     for one, velocity in zip(still["series"], (0, 0.001), strict=True):
         assert one["values"] == datasets["still"].mu_macro.sel(velocity=velocity).values.tolist()
 
 
-def test_what_is_pulled_is_lines_of_what_comes_out(made):
+def test_sweeps_with_a_drive_are_lines_of_the_response(made):
     datasets, content = made
     (drift,), (body,) = (entries(content, "lines", one) for one in ("drift", "body"))
     assert drift["y"]["label"] == "mean velocity"
@@ -130,23 +130,11 @@ def test_what_is_pulled_is_lines_of_what_comes_out(made):
         assert one["values"] == part.values.ravel().tolist()
 
 
-def test_too_many_points_are_refused():
-    many = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
-    many |= {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
-    given = {"sweeps": {"bore": MAP}, "extended": {"large": many}}
-    configuration = load.from_mapping(given)
-    assert explorer.refusal(configuration) is None
-    assert explorer.refusal(configuration, explorer.PAGE_OF_ALL) == (
-        "sweeps: 20,313 points have no room in explorer_all.html; allowed: up to 20,000, "
-        "at all of Poisson's ratios together"
-    )
-
-
-# What the page says
+# Texts on the page
 
 
 def chosen(name):
-    """JavaScript that chooses a sweep of the list."""
+    """JavaScript that selects a sweep in the list."""
     return f"element('others').value = '{name}', element('others').fire('change')"
 
 
@@ -158,19 +146,12 @@ def picked(field, text):
     return f"element('si-{field}').value = '{text}', element('si-{field}').fire('change')"
 
 
-def test_buttons_and_the_list_offer_all_sweeps(made):
-    tabs, others, ready = page_says(
-        made[1], "element('tabs').text", "element('others').text", "document.body.dataset.ready"
-    )
-    assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
-    # a group has its title in a label, which is no text
-    assert others == "other sweeps to and fro ratios still drift body"
-    assert ready == "yes"
-
-
-def test_every_sweep_can_be_looked_at_and_left_again(made):
-    said = page_says(
+def test_every_sweep_can_be_chosen_and_left_again(made):
+    tabs, others, ready, *values = page_says(
         made[1],
+        "element('tabs').text",
+        "element('others').text",
+        "document.body.dataset.ready",
         chosen("along"),
         "[element('map-view').hidden, element('map').data[0].z, element('run').text]",
         chosen("still"),
@@ -180,39 +161,43 @@ def test_every_sweep_can_be_looked_at_and_left_again(made):
         "element('tabs').children[1].fire('click')",
         "[element('lines-view').hidden, element('point-view').hidden, element('disc').drawn]",
     )
+    assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
+    # titles of groups are in labels, not in the text
+    assert others == "other sweeps to and fro ratios still drift body"
+    assert ready == "yes"
     dataset = made[0]["along"].transpose("amplitude", "velocity", ...)
-    hidden, shown, run = said[1]
+    hidden, shown, run = values[1]
     assert (hidden, run) == (False, "The page has no periods of this map.")
-    assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # velocity 0 has no place
+    assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # without velocity 0
     limits = len(entries(made[1], "lines", "still")[0]["limits"])
-    assert said[3] == [True, 2 + limits]
-    assert said[5][0] == "Continuous bore"
-    assert said[5][1] == made[0]["continuous_bore"].mu_macro.values.tolist()
-    assert said[7] == [True, False, True]
+    assert values[3] == [True, 2 + limits]
+    assert values[5][0] == "Continuous bore"
+    assert values[5][1] == made[0]["continuous_bore"].mu_macro.values.tolist()
+    assert values[7] == [True, False, True]
 
 
-def test_the_steady_bore_has_an_answer_at_every_place(made):
+def test_the_steady_bore_has_values_at_every_velocity(made):
     dataset = made[0]["continuous_bore"]
-    said = page_says(
+    values = page_says(
         made[1],
         "element('tabs').children[2].fire('click')",
         "element('along').value = '1', element('along').fire('input', { target: { value: '1' } })",
         "[element('line-view').hidden, element('line-value').text, element('line-facts').text]",
         "[element('along-value').value, element('lines-chart').layout.shapes[0].x0]",
     )
-    hidden, value, facts = said[2]
+    hidden, value, facts = values[2]
     mu, torque = (float(dataset[name][1]) for name in ("mu_macro", "mu_torque"))
     assert not hidden and value.startswith(f"mu_macro {mu:.5g} ± ")
     theory = paper.bore_forward(float(dataset.velocity[1]))
     assert f"Eq 21 {float(theory):.5g}" in facts and f"M_z,0 {torque:.5g} ± " in facts
-    assert said[3][1] == float(dataset.velocity[1])
+    assert values[3][1] == float(dataset.velocity[1])
 
 
 SLOW = (typed("speed", "0.001"), picked("speed_unit", "um/s"))
 
 
-def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_of_the_form(made):
-    said = page_says(
+def test_a_contact_slower_than_the_map_is_interpolated_from_the_static_limit(made):
+    values = page_says(
         made[1],
         ASK,
         *NO_NU,
@@ -220,7 +205,7 @@ def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_o
         "STATE.contact",
         "[element('contact-note').text, element('contact-still').text]",
     )
-    contact, (note, still) = said[-2:]
+    contact, (note, still) = values[-2:]
     assert contact["friction"]["source"] == "between static limit and map"
     static = paper.static_limit_transverse(contact["amplitude"])
     assert contact["static_friction"]["value"] == pytest.approx(static, abs=1e-9)
@@ -233,17 +218,17 @@ def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_o
 
 
 def test_the_coefficient_at_vanishing_speed_needs_no_map(made):
-    said = page_says(
+    values = page_says(
         made[1], ASK, picked("motion", "bore"), "[STATE.contact, element('contact-still').text]"
     )
-    contact, still = said[-1]
+    contact, still = values[-1]
     assert contact["refused"].startswith("this page holds no certified map")
     static = paper.static_limit_bore(contact["amplitude"])
     assert contact["static_friction"]["value"] == pytest.approx(static, abs=1e-9)
     assert still.startswith("Coefficient at vanishing speed: ")
 
 
-def test_the_address_holds_the_state_and_restores_it(made):
+def test_a_link_restores_the_state(made):
     before = page_says(
         made[1],
         "element('tabs').children[1].fire('click')",
@@ -257,17 +242,17 @@ def test_the_address_holds_the_state_and_restores_it(made):
         "[linkOf(STATE), STATE.contact]",
     )
     link, contact = before[-1]
-    (said,) = page_says(
+    (values,) = page_says(
         made[1],
         f"readLink('#{link}'), [linkOf(STATE), STATE.contact, element('si-load').value]",
     )
-    assert said == [link, contact, "7.5"]
-    (said,) = page_says(made[1], "readLink('#sweep=none&amplitude=x'), STATE.shown.name")
-    assert said == "transverse"
+    assert values == [link, contact, "7.5"]
+    (values,) = page_says(made[1], "readLink('#sweep=none&amplitude=x'), STATE.shown.name")
+    assert values == "transverse"
 
 
 def test_poissons_ratios_are_a_list(made):
-    said = page_says(
+    values = page_says(
         made[1],
         "[element('poisson').hidden, element('poisson').text]",
         "element('poisson').value = '2', element('poisson').fire('change')",
@@ -276,9 +261,9 @@ def test_poissons_ratios_are_a_list(made):
         "element('poisson').hidden",
     )
     ratios = "Poisson's ratio 0 Poisson's ratio 0.3 Poisson's ratio 0.5"
-    assert said[0] == [False, ratios]
-    assert said[2][0] == 0.5 and "Poisson's ratio 0.5" in said[2][1] and said[2][2] == "2"
-    assert said[4] is True
+    assert values[0] == [False, ratios]
+    assert values[2][0] == 0.5 and "Poisson's ratio 0.5" in values[2][1] and values[2][2] == "2"
+    assert values[4] is True
 
 
 ASK = "element('ask').fire('click')"
@@ -286,7 +271,7 @@ NO_NU = (picked("material", "by E and ν"), typed("nu", "0"), picked("counterbod
 
 
 def test_the_form_answers_and_marks_the_point(made, certified):
-    said = page_says(
+    values = page_says(
         made[1],
         "element('contact-view').hidden",
         ASK,
@@ -299,7 +284,7 @@ def test_the_form_answers_and_marks_the_point(made, certified):
         ASK,
         "[element('contact-view').hidden, element('map').data.at(-1).x, element('disc').drawn]",
     )
-    contact, (value, note), star, warnings = said[6:10]
+    contact, (value, note), star, warnings = values[6:10]
     truth = Friction(certified).at(contact["velocity"], contact["amplitude"])
     mu, error = float(truth.mu_macro), float(truth.mu_macro_error)
     assert contact["friction"]["value"] == pytest.approx(mu, abs=1e-12)
@@ -310,12 +295,12 @@ def test_the_form_answers_and_marks_the_point(made, certified):
     assert "Warning: the largest pressure" not in warnings
     whose = "no hardness given for the body"
     assert f"Not checked: whether the bodies stay elastic ({whose})" in warnings
-    assert said[-1] == [True, [], True]
+    assert values[-1] == [True, [], True]
 
 
-def test_the_form_asks_for_what_counts_alone(made):
+def test_the_form_shows_the_necessary_fields_only(made):
     hidden = "['young', 'counter_nu', 'stroke', 'angle'].map((id) => offerContact.rows[id].hidden)"
-    said = page_says(
+    values = page_says(
         made[1],
         ASK,
         hidden,
@@ -324,15 +309,15 @@ def test_the_form_asks_for_what_counts_alone(made):
         hidden,
         "[element('contact-value').text, STATE.map.name]",
     )
-    assert said[1] == [True, True, False, True]
-    assert said[4] == [False, True, True, False]
-    value, shown = said[5]
-    assert shown == "bore"  # the map of the motion is beside the form
+    assert values[1] == [True, True, False, True]
+    assert values[4] == [False, True, True, False]
+    value, map_name = values[5]
+    assert map_name == "bore"  # the map of the motion is drawn beside the form
     assert value == "No certified friction: this page holds no certified map of bore."
 
 
-def test_a_mistake_is_told_and_leaves_no_answer_behind(made):
-    said = page_says(
+def test_bad_input_has_a_message_and_removes_the_answer(made):
+    values = page_says(
         made[1],
         ASK,
         *NO_NU,
@@ -342,25 +327,8 @@ def test_a_mistake_is_told_and_leaves_no_answer_behind(made):
         typed("load", "1.5"),
         "element('contact-value').className",
     )
-    value, kind = said[5]
+    value, kind = values[5]
     assert value.startswith("normal load = '1,5': read 1 and stopped at ',5', since decimals")
     assert kind == "bad"
-    assert said[6] == ["", "", None]
-    assert said[8] == ""
-
-
-def test_names_of_the_scripts_do_not_meet():
-    """All scripts of the page share their names: of two functions the later one would win."""
-    import re
-
-    from microslip.report.explorer.page import FOLDER
-
-    names = []
-    for asset in explorer.ASSETS:
-        if asset.endswith(".js"):
-            text = (FOLDER / asset).read_text(encoding="utf-8")
-            names += re.findall(r"^(?:function|class|let) (\w+)", text, re.M)
-            for line in re.findall(r"^const (.*)", text, re.M):
-                names += re.findall(r"(?:^|, )(\w+) = ", line)
-    assert len(names) > 90
-    assert len(set(names)) == len(names)
+    assert values[6] == ["", "", None]
+    assert values[8] == ""

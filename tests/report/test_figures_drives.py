@@ -1,4 +1,4 @@
-"""Figures of what pulls the contact, from datasets whose numbers are known."""
+"""Figures of drives and drift, from datasets with known values."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from stubs.drives_stub import FORCES, drift, pairs, pulled
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # for drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
 def by_gid(axes, gid):
@@ -18,12 +18,12 @@ def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
     figure = drawing.draw("drift_maps", datasets)
     for axes, dataset in zip(figure.axes, datasets.values(), strict=False):
         (line,) = by_gid(axes, "mu_static")
-        held, across = line.get_data()
-        assert np.array_equal(held, dataset["mu_static_curve"])
+        force, across = line.get_data()
+        assert np.array_equal(force, dataset["mu_static_curve"])
         assert np.array_equal(across, dataset["amplitude_curve"])
         assert by_gid(axes, "stays")
         computed, rigid = by_gid(axes, "contours")[0], by_gid(axes, "velocity_large_amplitude")[0]
-        # away from the threshold the two were made equal, and so are the lines
+        # the two fields, and so the lines, are equal away from the threshold
         lines = (levels.get_paths()[1].vertices for levels in (computed, rigid))
         tops = [line[line[:, 1].argmax()] for line in lines]
         assert tops[0] == pytest.approx(tops[1], abs=1e-9)
@@ -43,7 +43,7 @@ def test_points_of_a_map_that_did_not_converge_are_marked(panel):
     assert marked.tolist() == [[FORCES[3], float(broken["amplitude"][2])]]
 
 
-def test_drives_are_laid_over_each_other():
+def test_the_points_of_all_drives_are_drawn():
     datasets = pulled()
     figure = drawing.draw("drives", datasets)
     left, right = figure.axes
@@ -51,7 +51,7 @@ def test_drives_are_laid_over_each_other():
     assert np.array_equal(line.get_ydata(), datasets["transverse"]["mu_macro"][0])
     soft, stiff, force = by_gid(left, "computed")
     assert soft.get_ydata() == pytest.approx(stiff.get_ydata() - 0.1)
-    # a force has its mean velocity along the axis: here it lies on the curve
+    # the abscissa of a force is its mean velocity; here it lies on the curve
     assert force.get_ydata() == pytest.approx(force.get_xdata() / (1 + force.get_xdata()))
     (level,) = by_gid(right, "velocity")
     assert level.get_ydata()[0] == pytest.approx(0.1 / 1.1)
@@ -65,14 +65,14 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
     assert stiff.get_label() == "constant velocity"
     (line,) = by_gid(right, "antiphase")
-    velocity, held = line.get_data()
+    velocity, bound = line.get_data()
     # (2/pi) P^(2/3) at amplitude 1
-    assert velocity == pytest.approx(2.0 / np.pi * held ** (2 / 3))
+    assert velocity == pytest.approx(2.0 / np.pi * bound ** (2 / 3))
     on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
 
 
-def test_no_other_amplitude_stands_for_the_one_of_the_sweeps():
+def test_a_sweep_without_the_amplitude_of_the_drives_is_refused():
     datasets = pulled()
     datasets["transverse"] = datasets["transverse"].assign_coords(amplitude=[1.1])
     with pytest.raises(ValueError, match="amplitude 1"):

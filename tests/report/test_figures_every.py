@@ -1,4 +1,4 @@
-"""Every figure: it saves whole and reproducibly, is laid out well, and its labels are complete."""
+"""Every figure: reproducible files, layout without overlaps, complete labels."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from stubs import figures_stub as stub
 from microslip.report.figures import drawing
 from microslip.report.figures import style as look
 
-pytestmark = pytest.mark.slow  # drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
 def arguments() -> dict[str, tuple[str, dict]]:
-    """Every figure, by a name of its own: its name for `draw`, and small datasets."""
+    """Arguments of `draw` for every figure, by a name of the case."""
     paper = {"transverse": stub.fake_transverse(12), "bore": stub.fake_bore(12)}
     ratios = {name: stub.at_ratios(dataset, 0.0, 0.5) for name, dataset in paper.items()}
     for dataset in ratios.values():
@@ -47,7 +47,7 @@ def arguments() -> dict[str, tuple[str, dict]]:
 
 FIGURES = arguments()
 SOME = ("fig1_force_history", "fig5_transients", "pairs", "certified static", "lines")
-"""Figures that every run draws: curves, panels, drives, a map, a group."""
+"""Figures that are drawn in every run."""
 each = pytest.mark.parametrize(
     "name", [pytest.param(n, marks=() if n in SOME else pytest.mark.long) for n in FIGURES]
 )
@@ -55,17 +55,17 @@ each = pytest.mark.parametrize(
 
 @cache
 def drawn(name):
-    """A figure, drawn once, without a warning."""
+    """A figure, which is drawn once and without a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         figure = drawing.draw(*FIGURES[name])
-    figure.draw_without_rendering()  # which puts all titles in their places
+    figure.draw_without_rendering()  # places the titles
     return figure
 
 
 @each
-def test_it_saves_whole_and_reproducibly(name, tmp_path, monkeypatch):
-    """Drawn twice it gives the same pixels; as a PDF it is whole, too, and has no date."""
+def test_its_files_are_complete_and_reproducible(name, tmp_path, monkeypatch):
+    """Two drawings have the same pixels. The PDF is complete and has no date."""
     monkeypatch.setattr(PdfFile, "writeFonts", lambda f: f.writeObject(f.fontObject, {}))
     figures = drawn(name), drawing.draw(*FIGURES[name])
     pictures = [drawing.save(f, tmp_path / f"{k}.png").read_bytes() for k, f in enumerate(figures)]
@@ -77,7 +77,7 @@ def test_it_saves_whole_and_reproducibly(name, tmp_path, monkeypatch):
 
 
 def out_of_view(axes) -> set[Text]:
-    """Labels of ticks beyond the ends of the axes, which are not drawn."""
+    """Labels of ticks outside the axes, which are not drawn."""
     return {
         label
         for axis in (axes.xaxis, axes.yaxis)
@@ -88,14 +88,14 @@ def out_of_view(axes) -> set[Text]:
 
 
 @each
-def test_it_fits_a_page_and_no_texts_or_legends_meet(name):
+def test_it_fits_a_page_and_no_texts_or_legends_overlap(name):
     figure = drawn(name)
     size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
     assert size[0] <= 7.1 and size[1] <= 9.85
     assert np.all(edges[:2] > -0.02) and np.all(edges[2:] < size + 0.02)
     absent = set().union(*map(out_of_view, figure.findobj(Axes)))
     shown = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
-    # The made-up sizes of two models lie on one point.
+    # The sizes of two models coincide in the made-up dataset.
     shown = [text for text in shown if text not in absent and text.get_gid() != "size"]
     assert min(text.get_fontsize() for text in shown) >= 7.0
     boxes = [text.get_window_extent() for text in shown]
@@ -104,7 +104,7 @@ def test_it_fits_a_page_and_no_texts_or_legends_meet(name):
     meet = np.triu((shared > 0.02 * figure.dpi).all(axis=2), 1)
     assert not [(shown[i].get_text(), shown[j].get_text()) for i, j in np.argwhere(meet)]
     panels = [axes.get_window_extent().padded(-2) for axes in figure.findobj(Axes) if axes.axison]
-    legends = [legend for legend in figure.findobj(Legend) if name != "fit"]  # inside its panel
+    legends = [legend for legend in figure.findobj(Legend) if name != "fit"]  # inside
     boxes = [legend.get_window_extent() for legend in legends]
     for index, box in enumerate(boxes):
         assert not any(box.overlaps(other) for other in [*panels, *boxes[index + 1 :]])

@@ -1,4 +1,4 @@
-"""Maps and groups of sweeps: colours, the surface between points, contours, ticks, lines, texts."""
+"""Maps and groups of sweeps: colours, interpolated surface, contours, ticks, lines, titles."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.legend import Legend
 from matplotlib.text import Text
@@ -16,14 +15,14 @@ from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists
 
 from microslip.datasets.query import accessor
+from microslip.datasets.query.surface import Surface
 from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, groups, map_panel, panels, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.surface import refined
 from microslip.theory import paper
 
-pytestmark = pytest.mark.slow  # drawing takes a second or two
+pytestmark = pytest.mark.slow  # drawing takes one to two seconds
 
 
 def words(figure) -> str:
@@ -36,53 +35,33 @@ def maps_in(figure) -> list:
 
 # Colours
 
-# Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291, severity 1: linear RGB as it is seen.
-SEEN = {
-    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216]]
-    + [[-0.003882, -0.048116, 1.051998]],
-    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413]]
-    + [[-0.011820, 0.042940, 0.968881]],
-    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602]]
-    + [[0.004733, 0.691367, 0.303900]],
-    "normal": np.eye(3),
-}
 XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750]])
 XYZ = np.vstack([XYZ, [0.0193339, 0.1191920, 0.9503041]])
 
 
-def lab(colours, seen="normal"):
-    """CIELAB of sRGB colours, shape (n, 3), as someone sees them; D65."""
+def lab(colours):
+    """CIELAB of sRGB colours, shape (n, 3); D65."""
     c = np.asarray(colours, float)
     linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    linear = np.clip(linear @ np.transpose(SEEN[seen]), 0, 1)
     x = linear @ XYZ.T / XYZ.sum(axis=1)
     f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
     return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], -1)
 
 
 def shown(values, levels=(-1.0, 1.0)):
-    """The colours of values in a figure with these levels."""
+    """Colours of friction values in a figure with these levels."""
     colours, norm = signed.scale(levels)
     return colours(norm(np.asarray(values, float)))[:, :3]
 
 
-def test_friction_has_the_colours_of_figure_2_wherever_it_may_be_negative():
-    values = np.linspace(0, 1, 21)
-    ours = matplotlib.colormaps[look.COLOURMAP](values)[:, :3]
+def test_colours_are_even_below_0_and_those_of_figure_2_above_whatever_the_range():
+    ours = matplotlib.colormaps[look.COLOURMAP](np.linspace(0, 1, 21))[:, :3]
     for lowest in (0.0, -0.3, -1.0):
-        np.testing.assert_allclose(shown(values, (lowest, 1.0)), ours, atol=0.02)
-
-
-def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_vision():
-    below = shown(-np.linspace(0, 1, 21))
-    steps = np.linalg.norm(np.diff(lab(below), axis=0), axis=1)
+        np.testing.assert_allclose(shown(np.linspace(0, 1, 21), (lowest, 1.0)), ours, atol=0.02)
+    below = lab(shown(-np.linspace(0, 1, 21)))
+    steps = np.linalg.norm(np.diff(below, axis=0), axis=1)
     assert steps.max() < 1.3 * steps.min()
-    assert np.all(np.diff(lab(below)[:, 0]) > 0)  # away from 0 it gets lighter, as above 0
-    above = shown(np.linspace(0.1, 1, 91))
-    for seen in SEEN:
-        clear = lab(shown([-0.1, -0.2, -0.3, -0.4, -0.5]), seen)
-        away = np.linalg.norm(clear[:, None] - lab(above, seen), axis=-1)
-        assert away.min() > 10, seen  # 2 or 3 can just be told apart
+    assert np.all(np.diff(below[:, 0]) > 0)  # colours become lighter away from 0
 
 
 def test_lines_stand_out_from_their_bands():
@@ -93,11 +72,11 @@ def test_lines_stand_out_from_their_bands():
             assert abs(behind - line) > 25, level
 
 
-# The surface between the points
+# The interpolated surface
 
 
 def mapped(velocities=9, amplitudes=7):
-    """A map that query can interpolate, far from any limit on its values."""
+    """A smooth map between 0 and 1."""
     velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
     mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return xr.Dataset(
@@ -107,32 +86,34 @@ def mapped(velocities=9, amplitudes=7):
     )
 
 
-def test_the_surface_is_that_of_friction_at():
+def test_the_surface_equals_microslip_at():
     dataset = mapped()
-    x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
+    surface = Surface(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
+    x, y, fine = surface.velocity, surface.amplitude, surface.values
     assert min(fine.shape) > 150
-    said = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
-    away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
-    assert np.all(away <= said["mu_macro_error"].values)
-    assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone
+    expected = accessor.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    away = np.abs(fine.filled(np.inf) - expected["mu_macro"].values)
+    assert np.all(away <= expected["mu_macro_error"].values)
+    assert np.median(away) < 1e-12  # values differ where they are clipped
     nodes = np.searchsorted(y, dataset.amplitude.values), np.searchsorted(x, dataset.velocity)
     np.testing.assert_allclose(fine[np.ix_(*nodes)], dataset.mu_macro, atol=1e-12)
 
 
-def test_no_island_is_drawn_that_nobody_computed():
+def test_the_surface_has_no_extrema_between_points():
     steep = np.array([[1.0, 1, 1, 1], [0.9, 1, 1, 1], [0, 0, 1, 1], [0, 0, 0, 1]])
     x, y = np.geomspace(0.01, 10, 4), np.arange(4.0)
-    _, _, fine = refined(x, y, steep)
+    fine = Surface(x, y, steep).values
     assert fine.min() >= 0 and fine.max() <= 1
     rising = np.diff(fine, axis=1)
-    assert rising.min() >= -1e-12  # as the points do
+    assert rising.min() >= -1e-12  # like the points
 
 
-def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
+def test_the_cells_around_an_unknown_point_are_masked():
     values = np.add.outer(np.arange(6.0), np.arange(7.0))
     values[2, 3] = np.nan
     x, y = np.geomspace(1, 64, 7), np.arange(6.0)
-    fine_x, fine_y, fine = refined(x, y, values)
+    surface = Surface(x, y, values)
+    fine_x, fine_y, fine = surface.velocity, surface.amplitude, surface.values
     hole = np.ma.getmaskarray(fine)
     inside = (fine_y > 1)[:, None] & (fine_y < 3)[:, None]
     inside = inside & (fine_x > x[2]) & (fine_x < x[4])
@@ -142,7 +123,7 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
 
 
 def contours_of(dataset):
-    """The panel of a map that is drawn alone, and its contours."""
+    """The panel of a single map, and its contours."""
     figure = drawing.draw("extended_motions", {"m": dataset})
     (axes,) = artists(figure, "map")
     (lines,) = artists(axes, "contours")
@@ -156,13 +137,13 @@ def test_a_coarse_map_shows_its_points_and_no_contours_that_they_cannot_support(
     for level, path in zip(lines.levels, lines.get_paths(), strict=True):
         for velocity, amplitude in path.vertices:
             true = float(paper.large_amplitude_transverse(velocity, amplitude))
-            assert abs(true - level) < 0.1  # half the distance of two contours
+            assert abs(true - level) < 0.1  # half the difference of two levels
     steep = mapped(5, 5)
     steep["mu_macro"][:] = np.where(np.add.outer(np.arange(5), np.arange(5)) > 4, 1.0, 0.0)
     assert not any(len(path.vertices) for path in contours_of(steep)[1].get_paths())
 
 
-def test_a_number_stands_on_the_contour_of_its_level_inside_the_frame():
+def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
     axes, lines = contours_of(mapped(25, 25))
     assert not artists(axes, "points")
     assert all(len(path.vertices) for path in lines.get_paths())
@@ -177,6 +158,12 @@ def test_a_number_stands_on_the_contour_of_its_level_inside_the_frame():
         box = text.get_window_extent()
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1
         assert frame.y0 <= box.y0 and box.y1 <= frame.y1
+        height = text.get_fontsize() * axes.figure.dpi / 72
+        at = axes.transData.transform((velocity, amplitude))
+        for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+            if abs(level - float(text.get_text())) > 0.05:
+                away = np.hypot(*(axes.transData.transform(path.vertices) - at).T)
+                assert away.min() > 0.7 * height
 
 
 @pytest.mark.parametrize(
@@ -219,10 +206,10 @@ def test_a_group_is_drawn_from_its_own_datasets_with_one_scale_and_shared_labels
 
 def test_friction_below_zero_widens_the_scale_of_all():
     negative = stub.spanning("a", shift=-0.234)
-    fills, contours, labels = groups.levels_of([stub.spanning(), negative])
+    fills, contours = groups.levels_of([stub.spanning(), negative])
     assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
-    assert 0 in contours and 0 in labels
-    fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error
+    assert 0 in contours
+    fills, *_ = groups.levels_of([stub.spanning(shift=-0.004)])  # within the error of the points
     assert (fills[0], fills[-1]) == (0.0, 1.0)
     figure = drawing.draw("extended_motions", {"a": negative, "b": stub.spanning("b")})
     (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
@@ -231,17 +218,6 @@ def test_friction_below_zero_widens_the_scale_of_all():
     (lines,) = artists(figure.axes[0], "contours")
     dashes = [style[1] is not None for style in lines.get_linestyle()]
     assert dashes == [level < 0 for level in lines.levels]
-
-
-def test_points_that_are_not_converged_are_hatched_with_one_legend():
-    data = stub.motions(2)
-    for dataset in data.values():
-        dataset["converged"][2:4, 1] = 0
-        dataset["mu_macro"][2, 1] = np.nan
-    figure = drawing.draw("extended_motions", data)
-    hatched = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
-    assert [len(cells.get_paths()) for cells in hatched] == [2, 2]
-    assert words(figure).count("not converged") == 1
 
 
 def test_all_of_poissons_ratios_of_a_group_are_drawn():
@@ -259,7 +235,7 @@ def test_all_of_poissons_ratios_of_a_group_are_drawn():
     (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
-    # Up to three maps show the effect of the ratios; more have a map each.
+    # Up to three datasets show the effect of the ratios; more have a map for each ratio.
     for count, differences, drawn in ((2, 2, 4), (4, 0, 8)):
         figure = drawing.draw("extended_motions", {f"m{k}": two for k in range(count)})
         labels = [axes.get_ylabel() for axes in figure.axes]
@@ -275,7 +251,7 @@ def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     loop = stub.static("loop", velocity=(1e-3,))
     loop["converged"][3, 0] = 0
     figure = drawing.draw("extended_static", {"a": slow, "b": loop})
-    (line,) = artists(figure, "limit")  # the loop has none
+    (line,) = artists(figure, "limit")  # the second dataset has no limit
     np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
     first, done, failed = (bars.lines[0] for bars in figure.axes[0].containers)
     np.testing.assert_array_equal(first.get_ydata(), slow["mu_macro"].sel(velocity=1e-3))
@@ -307,20 +283,20 @@ def test_a_steady_motion_is_drawn_over_its_velocity():
     assert figure.axes[0].get_xscale() == "log"
 
 
-# Texts from outside
+# Titles from the configuration
 
 TITLES = ["costs $5", r"$\frac{", r"\frac{1}{2} $x$", "a_b^c {} % # & ~", "_first", "$$"]
 TITLES += ["it ends in \\", r"\$ and $"]
 
 
 def drawn_words(figure):
-    """All texts as they stand on the page: without escapes and formulas, on one line."""
+    """All texts of a figure without escapes, formulas and line breaks."""
     texts = [text.get_text() for text in figure.findobj(Text)]
     plain = [re.sub(r"(?<!\\)\$(?:\\\$|[^$])*(?<!\\)\$", "", text) for text in texts]
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
-def test_titles_are_drawn_as_they_stand(tmp_path):
+def test_titles_are_drawn_verbatim(tmp_path):
     maps = {f"m{k}": stub.spanning(title) for k, title in enumerate(TITLES)}
     figure = drawing.draw("extended_motions", maps)
     assert set(TITLES) <= set(drawn_words(figure))
@@ -328,11 +304,11 @@ def test_titles_are_drawn_as_they_stand(tmp_path):
     lines = {f"s{k}": stub.static(title) for k, title in enumerate(TITLES)}
     (legend,) = drawing.draw("extended_static", lines).findobj(Legend)
     labels = [text.get_text() for text in legend.get_texts()]
-    assert len(labels) == 8 and r"$\_$first" in labels
+    assert len(labels) == 8 and "_first" in labels
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
+def test_unknown_characters_and_long_words_fit_the_page(tmp_path):
     maps = {"a": stub.spanning("\u4e2d\u6587"), "b": stub.spanning("x" * 100)}
     figure = drawing.draw("extended_motions", maps)
     drawing.save(figure, tmp_path / "maps.pdf")

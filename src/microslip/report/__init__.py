@@ -1,1 +1,1 @@
-"""Datasets to figures and pages; nothing is computed here."""
+"""Figures and pages from datasets. Nothing is computed here."""

@@ -1,7 +1,6 @@
-"""The page about the dataset claims: verdicts, the numbers behind them, and the runs to repeat.
+"""The page of the study `claims`: verdicts, their numbers, and the commands that repeat each run.
 
-One HTML file that needs nothing beside it, written with the template claims.html. All its content
-is in the dataset.
+The page is one self-contained HTML file, made from the dataset and the template claims.html.
 """
 
 from __future__ import annotations
@@ -14,27 +13,25 @@ import jinja2
 import numpy as np
 import xarray as xr
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 from microslip.report.dataset_page import provenance
-from microslip.studies.claims.static_limits import FORMULAS, SPLIT
+from microslip.studies.claims.static_limits import FORMULAS
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
 from microslip.theory.catalogue import FORMS
 
-PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of the xarray.Dataset; lines: those of its report.
+    """Write the page of a dataset to a file; lines: log of collecting it.
 
-    Raises CacheError as `files.writing_beside` does.
+    Raises CacheError if the file cannot be written.
     """
-    with writing_beside(path) as beside:
-        beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
+    write_atomically(Path(path), page(dataset, lines).encode())
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """The page as text; it depends on its arguments alone."""
+    """The text of the page. It depends on the arguments only."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = {"number": _number, "with_error": _with_error, "is_finite": np.isfinite}
     environment.filters.update(filters)
@@ -53,24 +50,27 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
         claims=claims,
         motions=[_static(dataset, name) for name in MOTIONS if f"{name}_limit" in dataset],
         runs=runs.values(),
+        dataset=dataset,
         made_by="\n".join(provenance(dataset, lines, ("title", "comment"))),
     )
 
 
-def _records(dataset: xr.Dataset, dim: str) -> list[SimpleNamespace]:
-    """The entries of a dimension: its coordinate as `name`, and its variables, without the name of
-    the dimension in theirs."""
+def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
+    """Entries along a dimension: the coordinate as `name`, and variables without a prefix.
+
+    prefix: removed from the names of variables, by default the name of the dimension.
+    """
     columns = {
-        name.removeprefix(f"{dim}_") if name != dim else "name": dataset[name].values.tolist()
+        name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
         for name in map(str, dataset.variables)
         if dataset[name].dims == (dim,)
     }
-    rows = zip(*columns.values(), strict=True)
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     return [SimpleNamespace(**dict(zip(columns, row, strict=True))) for row in rows]
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """The runs by their names, with a row on the page and a description."""
+    """Runs by name, with their row on the page and a description."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row
@@ -85,7 +85,7 @@ def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
 
 
 def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[SimpleNamespace]:
-    """The parts of all claims with their checks and the check that shows each best."""
+    """Parts of all claims, each with its checks and the decisive one."""
     checks, parts = _records(dataset, "check"), _records(dataset, "part")
     for check in checks:
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)
@@ -96,7 +96,7 @@ def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[Simple
 
 
 def _decisive(checks: list[SimpleNamespace]) -> SimpleNamespace | None:
-    """The clearest check against a part, else the closest one for it."""
+    """The clearest check against a part, else the narrowest check in favour of it."""
     for outcome in ("fails", "holds"):
         deciding = [check for check in checks if OUTCOMES[check.outcome] == outcome]
         if deciding:
@@ -109,7 +109,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """A number and its error, with the digits that the error leaves."""
+    """A number and its error estimate, with the significant digits."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):
@@ -119,39 +119,12 @@ def _with_error(value: float, error: float) -> str:
     return f"{rounded if float(rounded) else _number(value)} \N{PLUS-MINUS SIGN} {error:.2g}"
 
 
-def _static(dataset: xr.Dataset, motion: str) -> dict:
-    """A table over the amplitudes, and the largest excess of the paper's formulas."""
+def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
+    """The table of the static limit: rows by amplitude, and excess of the formulas."""
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
-    slow, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
-    head = ["amplitude", "limit", f"at velocity {slowest:g}"]
-    head += [f"{name} (less limit)" for name in names.values()]
-    head += [f"of the bound inside, {names['zone']} less limit"]
-    head += [f"paper's run at {slow:g} (less limit)", "of it from velocity"]
-    head += ["of it from resolution", "squares alone, velocity to 0"]
-    of = {
-        name: dataset[f"{motion}_{name}"].values for name in (*SPLIT, *names, "lost", "amplitude")
-    }
-    rows = []
-    for k, limit in enumerate(of["limit"]):
-        formulas = [f"{of[name][k]:.4f} ({of[name][k] - limit:+.4f})" for name in (*names, "paper")]
-        lost = of["lost"][k]
-        rows.append(
-            [
-                _number(of["amplitude"][k]),
-                *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in ("limit", "march")),
-                *formulas[:-1],
-                f"{100 * lost:.1f} %" if np.isfinite(lost) else "",
-                formulas[-1],
-                *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in PARTS_OF_SHIFT),
-                f"{of['squares_shift'][k]:+.4f}",
-            ]
-        )
-    most = []
-    for name, equation in names.items():
-        gap, at = (float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at"))
-        most.append(f"{equation} by {gap:.4f} at amplitude {at:.3g}")
-    note = f"Most above the limit: {'; '.join(most)}."
-    if motion == "bore":
-        share = 100 * float(dataset["static_asymptote_excess"])
-        note += f" At large amplitudes Eq 33 tends to {share:.1f} % more than the limit."
-    return {"title": MOTIONS[motion], "head": head, "rows": rows, "note": note}
+    gaps = [
+        (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))
+        for name, equation in names.items()
+    ]
+    rows = _records(dataset, f"{motion}_amplitude", f"{motion}_")
+    return SimpleNamespace(title=MOTIONS[motion], names=names, gaps=gaps, rows=rows)

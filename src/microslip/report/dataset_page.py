@@ -1,4 +1,4 @@
-"""A page about a dataset: what it holds, and what made it."""
+"""A page that describes a dataset: contents and provenance."""
 
 from __future__ import annotations
 
@@ -6,31 +6,31 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from html import escape
+from pathlib import Path
 
 import xarray as xr
 import yaml
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
-"""Quantities whose ranges show at a glance whether a run came out well."""
+"""Variables whose ranges are on the page."""
 MOST_LINES = 40
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of an xarray.Dataset; lines: those of its report.
+    """Write the page of a dataset to a file; lines: log of collecting it.
 
-    Raises CacheError as `files.writing_beside` does.
+    Raises CacheError if the file cannot be written.
     """
-    # Text inside HTML, since Snakemake's report shows that in place.
+    # Snakemake's report shows HTML in place.
     text, title = escape(page(dataset, lines)), escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
-    with writing_beside(path) as beside:
-        beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
+    write_atomically(Path(path), f"{head}\n<pre>{text}</pre></html>\n".encode())
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """The text of the page; it depends on its arguments alone."""
+    """The text of the page. It depends on the arguments only."""
     shown = lines[:MOST_LINES]
     if len(lines) > MOST_LINES:
         shown.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")
@@ -42,7 +42,7 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 def provenance(
     dataset: xr.Dataset, lines: Sequence[str] = (), without: Sequence[str] = ("title",)
 ) -> Iterator[str]:
-    """Lines of text: the attributes but for some, then `lines`, then the configuration."""
+    """Lines with the attributes except `without`, then `lines`, then the configuration."""
     attributes = {name: value for name, value in dataset.attrs.items() if name not in without}
     configuration = json.loads(attributes.pop("configuration", "{}"))
     yield from (f"  {name}: {value}" for name, value in attributes.items())

@@ -1,4 +1,4 @@
-"""The page about a study's dataset."""
+"""The page of a study."""
 
 import os
 
@@ -7,12 +7,12 @@ import xarray as xr
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
-"""Studies that have a page of their own."""
+"""Modules of studies with a special page."""
 
 
 def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page about a study's dataset; lines: those of its report.
+    """Write the page of a study's dataset to a file; lines: log of collecting it.
 
-    Raises CacheError as `files.writing_beside` does.
+    Raises CacheError if the file cannot be written.
     """
     _PAGES.get(study, dataset_page).write(path, dataset, lines)

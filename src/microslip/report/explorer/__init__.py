@@ -1,1 +1,1 @@
-"""One page for a browser that shows what is behind every point."""
+"""The explorer: an interactive HTML page of all points."""

@@ -1,6 +1,6 @@
-// Friction at any velocity and amplitude: a certified map, and the proved limits where it ends.
+// Friction at any velocity and amplitude: from a certified map, or from bounds outside its range.
 //
-// It says what microslip.at says in Python; datasets/query/beyond.py tells why.
+// The answers equal those of microslip.at; see datasets/query/beyond.py for the derivation.
 
 const ROUNDING = 1e-12;
 const SLOW_EXPONENT = 2 / 3; // power of the velocity with which friction approaches its static limit
@@ -9,7 +9,7 @@ const NARROW_EXPONENT = 1; // power of the amplitude with which it departs from 
 const WIDE_EXPONENT = 1; // power of 1 / amplitude with which it approaches its limit for large ones
 const STEEPEST = 2; // largest local exponent of a power law, relative to the asymptotic one
 
-// A guess brought into its bracket, and how far the bracket reaches from there.
+// Clips a value to its bracket; returns it and the largest distance to an end of the bracket.
 function bracketed(low, high, guess) {
   const value = clipped(guess, low, high);
   return [value, Math.max(high - value, value - low) + ROUNDING];
@@ -22,7 +22,7 @@ function largestKnown(a, b) {
 
 const largeAtEdges = new WeakMap();
 
-// The limit for large amplitudes along the upper edge of a map; that of the bore takes a while.
+// The limit for large amplitudes along the upper edge of a map, computed once.
 function largeAtEdge(map, limits) {
   if (!largeAtEdges.has(map)) {
     largeAtEdges.set(map, map.edge.map((at) => limits.large(at, map.amplitude[1], map.rule)));
@@ -30,7 +30,7 @@ function largeAtEdge(map, limits) {
   return largeAtEdges.get(map);
 }
 
-// Largest distance from the limit for large amplitudes that the upper edge of the map shows within a
+// Largest difference between the upper edge of the map and the limit for large amplitudes, within a
 // decade of a velocity.
 function distanceAt(map, limits, velocity, poisson) {
   const [slow, fast] = map.velocity, widest = map.amplitude[1];
@@ -47,8 +47,8 @@ function distanceAt(map, limits, velocity, poisson) {
   return most;
 }
 
-// Friction, the bound of its error, and where the answer comes from: { value, error, source }. Raises
-// Refusal for what is no question, and for what no limit is known of.
+// Friction, its error bound, and the source of the answer: { value, error, source }. Throws a Refusal
+// for bad arguments, and outside the range of a motion without limits.
 function frictionAt(map, velocity, amplitude, poisson) {
   for (const [name, value] of Object.entries({ velocity, amplitude })) {
     if (!(Number.isFinite(value) && value >= 0)) refuse(name, value, "allowed is a finite number >= 0");
@@ -99,14 +99,14 @@ function frictionAt(map, velocity, amplitude, poisson) {
   return { value, error: Number.isNaN(value) || Number.isNaN(error) ? Infinity : error, source };
 }
 
-// Friction in the limit of vanishing velocity and the bound of its error, at any Poisson's ratio.
+// Friction and its error bound in the limit of vanishing velocity, at any Poisson's ratio.
 function staticLimit(rule, limits, amplitude, poisson) {
   const high = limits.still(amplitude, rule);
   const low = Math.max(high - limits.poissonDrop * (poisson / (2 - poisson)) ** 2, 0);
   return { value: (high + low) / 2, error: (high - low) / 2 + ROUNDING };
 }
 
-// No worse than the energy balance allows; NaN stays what it is.
+// Clips an answer to the bounds from the energy balance. NaN is not changed.
 function withinTheBalance(limits, value, error, velocity, amplitude) {
   const low = Math.max(1 - limits.drop(velocity, amplitude), 0);
   const kept = clipped(value, low, 1);
@@ -114,7 +114,7 @@ function withinTheBalance(limits, value, error, velocity, amplitude) {
   return [kept, Number.isNaN(kept) ? error : Math.min(error, reach)];
 }
 
-// Answers of a map that no limit is known of.
+// Answers of a map of a motion without limits.
 function mapAlone(map, velocity, amplitude, poisson) {
   const what = map.pressure === "hertz" ? map.motion : `pressure ${map.pressure}`;
   const advice = `no limit of ${what} is known: with a tolerance the solver is asked`;

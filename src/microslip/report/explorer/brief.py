@@ -1,7 +1,8 @@
-"""Data of sweeps without periods on the page: maps and lines, with a value and an error per point.
+"""Data of sweeps without stored periods: maps and lines, with a value and an error for each point.
 
-A sweep over velocities and amplitudes is a map, one for each Poisson's ratio.  Any other sweep, and
-a sweep with a drive, is lines over its longest axis, a line for each place on the other axes.
+A sweep over velocities and amplitudes is shown as a map for each Poisson's ratio. Other sweeps, and
+sweeps with a drive, are shown as lines over their longest axis, one for each combination of the
+other axes.
 """
 
 from __future__ import annotations
@@ -14,19 +15,18 @@ import xarray as xr
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.canonical import number
-from microslip.report.figures import maps as map_figures
 from microslip.report.figures import style
 from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
 from microslip.report.figures.formulas import html
+from microslip.report.figures.maps import CURVES
 from microslip.sweeps.evaluate import plain
 from microslip.theory.catalogue import FORMS, ClosedForm
 
 POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
-"""Axes that a dataset may have besides Poisson's ratio."""
+"""Possible axes of a dataset besides Poisson's ratio."""
 DRIVE = "drive"
-"""Attribute of the dataset of a contact with a drive."""
-FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
+"""Attribute of datasets with a drive."""
 SPARE_COLOURS = (style.SKY, style.GREY)
 NAMES = {
     name: form
@@ -34,20 +34,20 @@ NAMES = {
     for name, form in forms.items()
     if not name.startswith("mu_torque")
 }
-"""A form of every name that a limit of the friction may have."""
+"""A closed form for each name of a friction limit."""
 
 
 def is_map(dataset: xr.Dataset) -> bool:
-    """Whether the dataset of a sweep is shown as maps."""
+    """Whether a dataset is shown as maps instead of lines."""
     if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
         return False
     return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """A map at each Poisson's ratio, as values that JSON can hold.
+    """The maps at all Poisson's ratios, as values for JSON.
 
-    Raises ValueError where the dataset lacks what is shown.
+    Raises ValueError if a variable is missing.
     """
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS])
     return [_map(name, part) for part in at_each_poisson(dataset)]
@@ -67,69 +67,59 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Lines at each Poisson's ratio, likewise."""
+    """The lines at all Poisson's ratios, as values for JSON.
+
+    Raises ValueError if a variable is missing.
+    """
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
 def _lines(name: str, dataset: xr.Dataset) -> dict:
-    pulled = "force" in dataset.attrs.get(DRIVE, "").split(", ")
-    value = "velocity" if pulled else "mu_macro"
+    has_force = "force" in dataset.attrs.get(DRIVE, "").split(", ")
+    value = "velocity" if has_force else "mu_macro"
     require("explorer", name, dataset, [value, f"{value}_error", "converged"])
     dims = [dim for dim in AXES if dim in dataset[value].dims]
     poisson = float(dataset["poisson"])
     along = max(dims, key=lambda dim: (dataset.sizes[dim], dims.index(dim)))
     others = [dim for dim in dims if dim != along]
     shown = dataset.transpose(*others, along, ...).sortby(along)
+    columns = {"values": value, "errors": f"{value}_error", "converged": "converged"}
+    series = []
+    for place in product(*(range(shown.sizes[dim]) for dim in others)):
+        line = shown.isel(dict(zip(others, place, strict=True)))
+        several = (dim for dim in others if shown.sizes[dim] > 1)
+        label = ", ".join(f"{dim} {number(float(line[dim]))}" for dim in several)
+        entries = {key: plain(line[column].values) for key, column in columns.items()}
+        series.append({"label": label} | entries)
     at = shown[along].values
     even_ratios = at[0] > 0 and Axis(at).logarithmic
+    limits = [] if has_force else limits_of(shown, poisson)
     return about(name, dataset, poisson) | {
         "x": {"label": axis_label(shown, along), "values": plain(at), "log": bool(even_ratios)},
-        "y": {
-            "label": "mean velocity" if pulled else MU_MACRO.description,
-            "log": pulled,
-        },
-        "series": [
-            {
-                "label": ", ".join(
-                    f"{dim} {number(float(shown[dim][k]))}"
-                    for dim, k in zip(others, place, strict=True)
-                    if shown.sizes[dim] > 1
-                ),
-                **{
-                    key: plain(shown[of].values[place])
-                    for key, of in (
-                        ("values", value),
-                        ("errors", f"{value}_error"),
-                        ("converged", "converged"),
-                    )
-                },
-            }
-            for place in product(*(range(shown.sizes[dim]) for dim in others))
-        ],
-        "limits": []
-        if pulled
-        else [one for one in limits_of(shown, poisson) if one["dims"] == [along]],
+        "y": {"label": "mean velocity" if has_force else MU_MACRO.description, "log": has_force},
+        "series": series,
+        "limits": [one for one in limits if one["dims"] == [along]],
         "beside": _torque(shown, along),
     }
 
 
 def _torque(shown: xr.Dataset, along: str) -> list[dict]:
-    """The torque of a steady bore, which its chart does not draw: its values and closed form."""
+    """Values and closed form of the torque of a steady bore, which the chart does not show."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]
-    found = {
+    torque = {
         "label": "torque  M_z/M_z,0",
         "values": plain(shown["mu_torque"].values),
         "errors": plain(shown["mu_torque_error"].values),
     }
     if theory.name in shown:
-        found["theory"] = {"label": theory.label, "values": plain(shown[theory.name].values)}
-    return [found]
+        torque["theory"] = {"label": theory.label, "values": plain(shown[theory.name].values)}
+    return [torque]
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
-    """Description of a map or a set of lines; the group of the paper's sweeps is None."""
+    """Description of a map or of lines. The group of the paper's sweeps is None."""
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,
@@ -143,47 +133,48 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
 
 
 def axis_label(dataset: xr.Dataset, dim: str) -> str:
-    """Name and formula of an axis, in the markup that plotly knows."""
+    """Name and formula of an axis, in plotly's HTML."""
     said = dataset[dim].attrs
     text = said.get("long_name", dim).split(",")[0]
     return f"{text}  {html(said.get('formula', ''))}".strip()
 
 
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
-    """The limits that a dataset at one of Poisson's ratios holds, on the axes of its points, and as
-    a curve on its fine axis where it has one of its own.
+    """Theoretical limits of a dataset at one Poisson's ratio.
 
-    The curve of one that depends on both axes belongs to a single amplitude and is left out.
+    Each limit has values at the points. A limit with a fine axis also has a curve, unless it
+    depends on both axes.
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})
-    known = [name for name in NAMES if name in dataset.variables]
-    known.sort(key=lambda name: list(own).index(name) if name in own else len(own))
-    return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in known]
+    forms = {name: form for name, form in own.items() if name in NAMES} | {
+        name: form for name, form in NAMES.items() if name not in own
+    }
+    return [
+        _limit(dataset, motion, form, poisson)
+        for name, form in forms.items()
+        if name in dataset.variables
+    ]
 
 
 def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:
     key = form.name
-    looks = {}
-    if motion in FIGURES:
-        plan = map_figures.MAPS[FIGURES[motion]]
-        looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
-    spare = list(NAMES).index(key) % len(SPARE_COLOURS)
-    look = looks.get(key, map_figures.Overlay(key, form.label, SPARE_COLOURS[spare], style.DOTTED))
+    spare = SPARE_COLOURS[list(NAMES).index(key) % len(SPARE_COLOURS)], style.DOTTED
+    color, dash = CURVES.get(motion, {}).get(key, spare)
     only_at_0 = poisson > 0 and form.exact and not form.any_poisson
     values = dataset[key]
-    found = {
-        "label": f"{look.label} for ν = 0" if only_at_0 else look.label,
+    entry = {
+        "label": f"{form.label} for ν = 0" if only_at_0 else form.label,
         "long_name": values.attrs["long_name"],
-        "color": look.color,
-        "dash": "solid" if look.linestyle == style.SOLID else _dash(look.linestyle),
+        "color": color,
+        "dash": "solid" if dash == style.SOLID else _dash(dash),
         "dims": list(values.dims),
         "values": plain(values.values),
     }
     if len(values.dims) == 1 and f"{key}_curve" in dataset:
         x, y = curve(limit(dataset, key))
-        found["curve"] = [plain(x), plain(y)]
-    return found
+        entry["curve"] = [plain(x), plain(y)]
+    return entry
 
 
 def _dash(linestyle: Any) -> str:

@@ -1,11 +1,11 @@
-// A certified map: friction and the bound of its error at any place of its range.
+// A certified map: friction and its error bound at any point of its range.
 //
-// Nothing here knows the page, so that node can run it. It says what microslip.at says in Python:
-// datasets/query/cells.py and sweeps/map_coordinates.py tell why.
+// This file does not depend on the page, so that node can run it. The answers equal those of
+// microslip.at; see datasets/query/cells.py and sweeps/map_coordinates.py for the derivation.
 
 const SAME_POISSON = 1e-12; // ratios that differ by less are one
 
-// What is no question to a map, in one line.
+// An error with a message of one line for bad arguments.
 class Refusal extends Error {}
 
 function refuse(name, value, allowed) {
@@ -36,18 +36,18 @@ function isCut(map) {
   return Math.max(...atEnds) > clear * slow && Math.min(...atEnds) < fast / clear;
 }
 
-// Where a value lies between two ends, 0 to 1 whatever rounding does.
+// Relative position of a value between two ends, clipped to 0 to 1.
 function shareOf(value, [low, high]) {
   return clipped((value - low) / (high - low), 0, 1);
 }
 
-// Where an amplitude lies between two in the logarithm of 1 + spread A, 0 to 1.
+// Relative position of an amplitude A between two others in log(1 + spread A), 0 to 1.
 function spreadShare(map, amplitude, ends) {
   const small = (a) => Math.log1p(map.gathering.spread * a);
   return shareOf(small(amplitude), ends.map(small));
 }
 
-// Even coordinate of an amplitude in a patch, 0 to 1; places gather at kinks and, below one, at 0.
+// Scaled coordinate of an amplitude in a patch, 0 to 1, graded towards kinks and, below one, 0.
 function even(map, amplitude, ends) {
   const [low, above] = ends.map((end) => map.kink_amplitudes.includes(end));
   const below = low || (above && ends[0] === 0);
@@ -57,7 +57,7 @@ function even(map, amplitude, ends) {
   return below ? s ** power : 1 - (1 - s) ** power;
 }
 
-// Scaled amplitude where the map is cut at kinks.
+// Scaled amplitude of a map that is divided at kinks.
 function rowOf(map, amplitude) {
   const borders = bordersOf(map);
   let y = 0;
@@ -68,7 +68,7 @@ function rowOf(map, amplitude) {
   return y;
 }
 
-// Scaled coordinates of a place in the range, one for each direction of the cells.
+// Scaled coordinates of a point in the range, one for each direction of the cells.
 function scaled(map, velocity, amplitude, poisson) {
   const [slow, fast] = map.velocity, { clear, slow_power, faster } = map.gathering;
   const power = (v) => v ** slow_power;
@@ -85,7 +85,7 @@ function scaled(map, velocity, amplitude, poisson) {
   return map.nodes.length > 2 ? [x, y, shareOf(poisson, map.poisson)] : [x, y];
 }
 
-// Weights of equally spaced values for the polynomial through them, at a share of their distance.
+// Lagrange weights of equally spaced nodes at a relative position between the first and the last.
 function weightsAt(count, share) {
   const at = (count - 1) * share;
   return Array.from({ length: count }, (_, own) => {
@@ -97,7 +97,7 @@ function weightsAt(count, share) {
   });
 }
 
-// The polynomial of a cell: values at its nodes, of which those of the last direction are neighbours.
+// The polynomial of a cell. The nodes of the last direction are contiguous.
 function polynomial(values, weights) {
   let left = values;
   for (const along of [...weights].reverse()) {
@@ -110,8 +110,8 @@ function polynomial(values, weights) {
   return left[0];
 }
 
-// Friction and the bound of its error inside the range: [value, error], NaN and Infinity where a
-// point that counts is not known. On a border the last cell counts.
+// Friction and its error bound inside the range: [value, error]; [NaN, Infinity] if a point of the
+// cell is unknown. On a border the last cell is used.
 function inside(map, velocity, amplitude, poisson) {
   const place = scaled(map, velocity, amplitude, poisson);
   const directions = map.nodes.length, count = map.nodes.reduce((all, n) => all * n, 1);
@@ -132,7 +132,7 @@ function inside(map, velocity, amplitude, poisson) {
   return found;
 }
 
-// Poisson's ratio within the range of a map, or a refusal.
+// Returns Poisson's ratio. Throws a Refusal if it is outside the range of a map.
 function poissonWithin(map, poisson) {
   const [low, high] = map.poisson;
   if (!(poisson >= low - SAME_POISSON && poisson <= high + SAME_POISSON)) {
@@ -142,7 +142,7 @@ function poissonWithin(map, poisson) {
   return poisson;
 }
 
-// A number as Python's format writes it with g: `count` digits, no zeros behind the last one.
+// Formats a number like Python's format "g": `count` digits, without trailing zeros.
 function general(value, count = 6) {
   if (!Number.isFinite(value) || value === 0) return String(value);
   const [digits, exponent] = rounded(Math.abs(value), count);
@@ -156,7 +156,7 @@ function general(value, count = 6) {
   return sign + whole + (rest && `.${rest}`);
 }
 
-// Digits and exponent of a positive number; where it lies half way, the last digit is even as in Python.
+// Digits and exponent of a positive number, rounded half to even as in Python.
 function rounded(value, count) {
   const [exact, power] = value.toExponential(count + 40).replace(".", "").split("e");
   if (/^50*$/.test(exact.slice(count)) && Number(exact[count - 1]) % 2 === 0) {

@@ -1,4 +1,4 @@
-"""Data of a certified map on the page: its cells, and the formulas of its coordinates."""
+"""Data of certified maps: cells, and parameters of their coordinates."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from microslip.sweeps import map_coordinates
 from microslip.sweeps.evaluate import plain
 
 RULE = 64
-"""Nodes of Gauss's rule, as many as in theory.paper."""
+"""Number of Gauss nodes, equal to that of theory.paper."""
 
 
 def packed(dataset: xr.Dataset) -> dict:
-    """A certified map as one value that JSON can hold, for certified.js and beyond.js.
+    """Pack a certified map for certified.js and beyond.js.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        As datasets.certified_map makes it.
+        Made by datasets.certified_map.
 
     Returns
     -------
     dict
-        `values` of friction at its points, null where it is not known; by cell `cells`, indices of
-        its points, `borders`, two for each direction, and `bounds` of the error; `nodes`, how many
-        there are in each direction, velocity first; all flat.
+        Values for JSON, with flat arrays. `values`: friction at the points, null if unknown.
+        `nodes`: number of nodes of a cell in each direction, velocity first. For each cell,
+        `cells`: indices of its points, `borders`: two for each direction, `bounds`: error bound.
 
     Raises
     ------
     InputError
-        For what the dataset has lost.
+        If the dataset is incomplete.
     """
-    found = cells_of(dataset)
-    table, coordinates = found.cells, found.cells.coordinates
-    assert isinstance(coordinates, map_coordinates.MapCoordinates)  # as of all maps of friction
+    source = cells_of(dataset)
+    table, coordinates = source.cells, source.cells.coordinates
+    assert isinstance(coordinates, map_coordinates.MapCoordinates)  # of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
         "motion": motion,
@@ -44,7 +44,7 @@ def packed(dataset: xr.Dataset) -> dict:
         "error": float(dataset.attrs["error"]),
         "velocity": list(coordinates.velocity),
         "amplitude": list(coordinates.amplitude),
-        "poisson": [float(found.poisson[0]), float(found.poisson[-1])],
+        "poisson": [float(source.poisson[0]), float(source.poisson[-1])],
         "kink_amplitudes": list(coordinates.kinks.amplitudes),
         "kink_velocity": list(coordinates.kinks.velocity),
         "gathering": {
@@ -66,6 +66,6 @@ def packed(dataset: xr.Dataset) -> dict:
 
 
 def gauss_rule() -> dict:
-    """Nodes and weights of Gauss's rule on 0 to 1, for the limits that are integrals."""
+    """Nodes and weights of the Gauss-Legendre rule on 0 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(RULE)
     return {"nodes": plain((nodes + 1) / 2), "weights": plain(weights / 2)}

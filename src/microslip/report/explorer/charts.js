@@ -1,4 +1,4 @@
-// The charts that stand still: map, cuts, forces. They draw what the page holds.
+// The static charts: map, cuts, forces.
 
 const INK = "#000000", BLUE = "#0072B2", VERMILLION = "#D55E00", GREY = "#6E6E6E";
 const FONT = { family: "DejaVu Sans, Verdana, Arial, sans-serif", size: 11, color: INK };
@@ -7,7 +7,7 @@ const FORWARD = "forward force / (<i>μF<sub>z</sub></i>)";
 const PHONE = matchMedia("(max-width: 700px)"); // as in style.css
 const BAR = 32; // height of the margin above a chart, where the bar of buttons hides no data
 
-// On a phone a finger scrolls the page, so nothing zooms, and no button undoes it.
+// On a phone a finger scrolls the page, so the charts do not zoom and have no buttons.
 function config() {
   return {
     responsive: true,
@@ -43,7 +43,8 @@ function layout(more) {
   };
 }
 
-// Edges of cells around points: half way between neighbours, as far outside at the ends.
+// Edges of cells around points, half-way between neighbours. The first and the last point are in the
+// middle of their cells.
 function edges(points) {
   const inner = points.slice(1).map((value, k) => (value + points[k]) / 2);
   const last = points.length - 1;
@@ -51,12 +52,12 @@ function edges(points) {
   return [first, ...inner, inner.length ? 2 * points[last] - inner[last - 1] : points[0] + 0.5];
 }
 
-// Columns of the map: those with a place on a logarithmic axis.
+// Indices of the columns of the map with a velocity above 0.
 function shownColumns(map) {
   return map.velocity.map((_, j) => j).filter((j) => map.velocity[j] > 0);
 }
 
-// Edges of the cells of the map; half way between velocities is meant in equal ratios.
+// Edges of the cells of the map, half-way between velocities by ratio.
 function cellEdges(map) {
   const exponents = shownColumns(map).map((j) => Math.log10(map.velocity[j]));
   return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
@@ -130,7 +131,7 @@ function drawMap(element, map, row, column, contact) {
   Plotly.Plots?.resize(element); // its height depends on what is beside it
 }
 
-// The contact of the form, a place [velocity, amplitude] on the map, or null.
+// contact: the position [velocity, amplitude] of the contact of the form, or null.
 function contactTrace(contact) {
   return {
     type: "scatter",
@@ -144,7 +145,7 @@ function contactTrace(contact) {
   };
 }
 
-// The cross on the map: the cell of the selected point, and the two cuts through it.
+// Marks the selected cell of the map and the two cuts through it.
 function cross(map, row, column) {
   const velocity = map.velocity[column], amplitude = map.amplitude[row];
   const line = { color: VERMILLION, width: 1.2, dash: "dot" };
@@ -169,7 +170,7 @@ function muText(map, row, column) {
   return `mu_macro ${mu.toFixed(5)} ± ${error === null ? "unknown" : error.toPrecision(2)}`;
 }
 
-// A limit's values along a cut: its fine curve, its value on every point, or a level line.
+// Values of a limit along a cut: its fine curve, its values at the points, or a constant.
 function limitAlong(map, given, along, fixed) {
   const points = map[along];
   const other = along === "velocity" ? "amplitude" : "velocity";
@@ -181,7 +182,7 @@ function limitAlong(map, given, along, fixed) {
   return [points, along === "velocity" ? given.values[fixed] : given.values.map((row) => row[fixed])];
 }
 
-// A cut through the map; along: the axis that it runs along, fixed: index on the other one;
+// Draws a cut through the map. along: the axis of the cut; fixed: index on the other axis;
 // hidden: labels of limits that are switched off.
 function drawCut(element, map, along, fixed, selected, hidden) {
   const inVelocity = along === "velocity";
@@ -234,8 +235,8 @@ function inDegrees(phase) {
   return (phase * 180) / Math.PI;
 }
 
-// Forward force over a period, with the certified mean, and against the other component; a dot is
-// at the frame.
+// Draws the forward force over a period, with its mean of the dataset, and over the other component.
+// A dot marks the frame.
 function drawForces(history, loop, period, mu, error, frame) {
   const degrees = period.phase.map(inDegrees);
   const [first, last] = [degrees[0], degrees[0] + 360];

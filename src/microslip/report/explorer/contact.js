@@ -1,9 +1,9 @@
-// A real contact in SI units: from what is typed to the point on the map, and what is said of it.
+// A real contact in SI units: from the texts of the form to the point on the map, and its answer.
 //
-// It says what microslip.predict says in Python (si/bodies.py, dimensionless.py, validity.py). Materials,
-// units, rules and sentences are those of Python: `si` is what si_form.py packs.
+// The answers equal those of microslip.predict (si/bodies.py, dimensionless.py, validity.py). `si` has
+// the materials, units, rules and messages that si_form.py packs.
 
-// One number, read to its last character.
+// Parses a text as one number. Throws a Refusal for other texts.
 function numberIn(label, text, example) {
   const given = text.trim();
   const allowed = `allowed is one number, such as ${example}`;
@@ -19,7 +19,7 @@ function numberIn(label, text, example) {
   return read[0];
 }
 
-// The value in its SI unit; powers of ten are rounded once, as in Python.
+// The value in its SI unit. Powers of ten are rounded once, as in Python.
 function siValue(field, text, unitName) {
   const digits = numberIn(field.label, text, field.example);
   const unit = field.units.find((one) => one.name === unitName);
@@ -36,7 +36,7 @@ function siValue(field, text, unitName) {
   return value;
 }
 
-// A body by name, or by Young's modulus and Poisson's ratio. A rigid one has none: null.
+// A body by its name, or by Young's modulus and Poisson's ratio. A rigid body has an infinite modulus.
 function bodyOf(si, side, texts) {
   const name = texts[side];
   if (name in si.materials) return { ...si.materials[name], young: si.materials[name].young ?? Infinity };
@@ -45,7 +45,7 @@ function bodyOf(si, side, texts) {
   return { young: value(young), poisson: value(nu), density: null, hardness: null };
 }
 
-// What is asked, in SI units, from the texts of the form.
+// The request in SI units, from the texts of the form.
 function questionOf(si, texts) {
   const value = (key) => siValue(si.fields[key], texts[key], texts[`${key}_unit`]);
   const bodies = Object.keys(si.sides).map((side) => bodyOf(si, side, texts));
@@ -65,7 +65,7 @@ function questionOf(si, texts) {
   };
 }
 
-// Hertz's contact of a sphere and a flat, and what slides.
+// The Hertzian contact of a sphere and a flat, and its sliding force and displacement.
 function contactOf(si, { bodies, radius, load, mu }) {
   const sum = (values) => values.reduce((all, one) => all + one, 0);
   const shear = bodies.map((body) => body.young / (2 * (1 + body.poisson)));
@@ -107,7 +107,7 @@ function speedUnitOf({ motion, amplitude, frequency }, contact) {
   return 2 * Math.PI * frequency * (motion === "bore" ? amplitude * contact.a : contact.u_lim);
 }
 
-// The dimensionless groups of the motion: [velocity, amplitude].
+// Dimensionless velocity and amplitude of the motion: [velocity, amplitude].
 function groupsOf(si, { motion, speed, amplitude, frequency }, contact) {
   const omega = 2 * Math.PI * frequency;
   const over = (unit) => (speed === 0 ? 0 : unit > 0 ? speed / unit : Infinity);
@@ -117,7 +117,7 @@ function groupsOf(si, { motion, speed, amplitude, frequency }, contact) {
   return [over(omega * amplitude * contact.a), (amplitude * contact.a) / contact.u_lim / twist];
 }
 
-// What the rules look at, by name; null: there is no such thing, or it is not known.
+// Quantities of the rules by name; null if a quantity is unknown or not defined.
 function measuresOf(si, question, contact) {
   const { bodies, shear, a, pressure, radius, load, mu, u_lim } = contact;
   const hard = bodies.map((body) => body.hardness).filter((hardness) => hardness !== null);
@@ -163,7 +163,7 @@ function measuresOf(si, question, contact) {
   return found;
 }
 
-// Warnings: of the rules that stand together the first that holds.
+// Warnings: for each list of rules the first rule that applies.
 function warningsOf(si, measures) {
   const value = (side) => (typeof side === "string" ? measures[side] : side);
   const holds = (rule) => rule.where.every(([left, factor, right]) =>
@@ -182,8 +182,8 @@ function uncheckedOf(si, { bodies }) {
   });
 }
 
-// All that is said of a question; `maps`: certified maps. Raises Refusal for what is no contact. Where
-// no map answers, `refused` says why, and `near` what the map has at the nearest Poisson's ratio.
+// The answer to a request; `maps`: certified maps. Throws a Refusal for an impossible contact. Without
+// an answer from a map, `refused` is the reason and `near` the answer at the nearest Poisson's ratio.
 function answerOf(si, maps, question) {
   const contact = contactOf(si, question);
   const [velocity, amplitude] = groupsOf(si, question, contact);
@@ -214,7 +214,7 @@ function answerOf(si, maps, question) {
     near: null,
     slowest: null,
   };
-  // What is proved needs no map.
+  // The static limit does not need a map.
   const still = staticLimit(si.rule, LIMITS[question.motion], amplitude, contact.poisson);
   said.static_friction = amplitude === 0 ? { value: 1, error: ROUNDING } : still;
   const map = mapFor(maps, question.motion, contact.poisson);
@@ -240,7 +240,7 @@ function answerOf(si, maps, question) {
   return said;
 }
 
-// The map of a motion that holds a Poisson's ratio, of several the most exact one.
+// The most accurate map of a motion whose range contains a Poisson's ratio.
 function mapFor(maps, motion, poisson) {
   const far = ({ poisson: [low, high] }) => Math.abs(poisson - clipped(poisson, low - SAME_POISSON, high + SAME_POISSON));
   return maps.filter((one) => one.motion === motion && one.pressure === "hertz")

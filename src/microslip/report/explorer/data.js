@@ -1,8 +1,8 @@
-// The numbers of the page: decoding, and one period on the whole disc.
+// Decodes the numbers of the page, and expands a period to the whole disc.
 
 const NUMBERS = JSON.parse(document.getElementById("numbers").textContent);
 
-// Base64 to typed arrays. The numbers are little end first, as in every machine with a browser.
+// Base64 to typed arrays, little-endian.
 function bytesOf(text) {
   const raw = atob(text);
   const bytes = new Uint8Array(raw.length);
@@ -12,7 +12,7 @@ function bytesOf(text) {
 
 const decodedMaps = new Map();
 
-// Decoded when a map is first looked at: what is not looked at costs no time.
+// The decoded periods of a map, decoded at the first call.
 function decoded(map) {
   if (!decodedMaps.has(map.id)) {
     const p = map.periods;
@@ -28,8 +28,8 @@ function decoded(map) {
   return decodedMaps.get(map.id);
 }
 
-// The period behind a point of a map: forces over mu F_z and phases in rad at every frame, radii
-// over a and bounds over mu F_z/a^2 of the rings. Null where none is stored; then `whyNone` says why.
+// The stored period of a point of a map: forces over mu F_z and phases in rad at every frame, radii
+// over a and bounds over mu F_z/a^2 of the rings. Null without a period; then `whyNone` has the reason.
 function periodAt(map, row, column) {
   const p = map.periods;
   if (p.count === 0) return null;
@@ -63,14 +63,14 @@ function whyNone(map, row, column) {
   return "No period is stored for this point: the page has one for some points of each axis only.";
 }
 
-// Angles of the sectors from the lateral axis: those kept, then the other half of the disc.
+// Angles of the sectors from the lateral axis: the stored half of the disc, then the other half.
 function sectorAngles(map) {
   const { angles, turned } = map.periods;
   const kept = Array.from({ length: angles }, (_, j) => ((j + 0.5) * Math.PI) / angles);
   return kept.concat(kept.map((angle) => (turned ? angle + Math.PI : -angle)));
 }
 
-// Cells of a frame, sector by sector and ring by ring: tractions as shares of the bound, and slip.
+// Cells of a frame, sector by sector and ring by ring: tractions over the bound, and slip.
 function cellsOf(period, frame) {
   const { frames, angles, cells, turned } = period.map.periods;
   const { tractions, slips } = decoded(period.map);
@@ -97,7 +97,7 @@ function cellsOf(period, frame) {
   return found;
 }
 
-// A number in a few digits; small ones as 1.2e-4.
+// A number with `count` digits; small numbers like 1.2e-4.
 function digits(value, count = 4) {
   if (value === null) return "none";
   if (value !== 0 && Math.abs(value) < 1e-3) return value.toExponential(Math.min(count - 1, 2));

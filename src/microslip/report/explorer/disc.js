@@ -1,10 +1,10 @@
-// The contact: which cells stick, which slip, and the tractions, at one phase.
+// The contact at one phase: cells in stick, cells in slip, and tractions.
 
 const STICK = "#56B4E9", SLIP = "#E69F00";
 const LONGEST = 0.17; // length of an arrow, over a, where the traction is the largest bound
 const CLOSEST = 0.14; // arrows on a ring are no closer than this, over a
 
-// What a frame leaves as it is: outlines of the cells, and where arrows start.
+// The parts that all frames share: outlines of the cells, and positions and lengths of the arrows.
 function discOf(period) {
   const { angles, cells } = period.map.periods;
   const theta = sectorAngles(period.map);
@@ -34,7 +34,7 @@ function discOf(period) {
   return disc;
 }
 
-// Outlines of all cells that slip, or that stick, as one line with gaps.
+// Outlines of all cells in slip, or in stick, as one line with gaps.
 function filled(disc, cells, slipping) {
   const x = [], y = [];
   disc.outlines.forEach(([xs, ys], k) => {
@@ -86,7 +86,7 @@ function drawDisc(element, disc, frame) {
   }), config());
 }
 
-// The same at another phase: three lines change, the rest stays.
+// Draws another phase by changing three lines.
 function moveDisc(element, disc, frame) {
   const cells = cellsOf(disc.period, frame);
   const parts = [filled(disc, cells, false), filled(disc, cells, true), arrowLines(disc, cells)];

@@ -1,6 +1,6 @@
-// Elliptic integrals, as far as the limits of friction need them.
+// Elliptic integrals for the limits of friction.
 
-// Complete ones at the complementary modulus q, 0 < q <= 1, by the arithmetic-geometric mean:
+// Complete integrals at the complementary modulus q, 0 < q <= 1, by the arithmetic-geometric mean:
 // K, and K - E without cancellation.
 function complete(q) {
   let a = 1, b = q, sum = ((1 - q) * (1 + q)) / 2, power = 0.5;

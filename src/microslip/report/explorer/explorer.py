@@ -1,11 +1,11 @@
-"""The explorer: one page, for a browser without a network, that shows what is behind every point.
+"""The explorer: an interactive HTML page that needs no network.
 
-This module lists what a page needs, `payload` packs datasets, periods and certified maps, `si_form`
-the data of the form for a real contact, `page` writes the page. It draws what datasets and stored
-periods hold; all that it computes are answers from certified maps. The JavaScript beside these
-modules runs in the browser; plotly.js draws.
+This module lists the inputs of a page. `payload` packs datasets, periods and certified maps,
+`si_form` packs the data of the form for a real contact, and `page` writes the page. The JavaScript
+files beside these modules run in the browser; plotly.js draws. The page shows datasets and stored
+periods, and evaluates certified maps.
 
-Importing this package is cheap, since the workflow reads it whenever it is parsed.
+The workflow imports this module whenever it is parsed. Therefore it has few imports.
 """
 
 from __future__ import annotations
@@ -18,41 +18,41 @@ from microslip.foundation.canonical import number
 
 SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
-"""Parts of the page besides numbers and plotly.js, in the order in which scripts run."""
+"""Files of the page besides the numbers and plotly.js. Scripts run in this order."""
 PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
 MAPS = ("transverse", "bore")
-"""Sweeps whose maps have periods, and motions that the form for a real contact knows."""
+"""Sweeps with stored periods, and motions of the form for a real contact."""
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Rings, points on half a ring, steps in a period: what a drawing of some 300 pixels can show."""
+"""Rings, points on half a ring, and steps of a stored period: enough for 300 pixels."""
 PERIODS_PER_JOB = 150
-"""Periods that one job computes: a few seconds of work."""
+"""Number of periods that a job computes in a few seconds."""
 MOST_PERIODS = 1250
-"""Periods on a page; one takes some 6 kB of it, and all of it is to stay below 15 MB."""
+"""Maximum number of periods on a page of at most 15 MB. A period takes about 6 kB."""
 MOST_POINTS = 5000
-"""Points of a map with periods on a page; one takes some 260 bytes of it."""
+"""Maximum number of points of a map with periods. A point takes about 260 bytes."""
 MOST_OTHERS = 20_000
-"""Points of all other sweeps together; one takes some 80 bytes."""
+"""Maximum number of points of all sweeps. A point without a period takes about 80 bytes."""
 
 
 def sweeps_of(configuration: Configuration, page: str) -> list[str]:
-    """Names of the sweeps that a page shows, a list."""
+    """Names of the sweeps on a page."""
     return list(configuration.grids if page == PAGE_OF_ALL else configuration.sweeps)
 
 
 def certified_of(configuration: Configuration) -> list[str]:
-    """Names of the certified maps that a real contact is answered from, a list.
+    """Names of the certified maps for real contacts, at most one for each motion.
 
-    One for each motion: over most of Poisson's ratios, and of several such the most exact.
+    A map over a wider range of Poisson's ratios is preferred, then a more accurate map.
     """
-    found = []
+    names = []
     for motion in MAPS:
-        known = [
+        candidates = [
             map_
             for map_ in configuration.certified.values()
             if (map_.sweep.motion, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
         ]
-        found += [map_.name for map_ in sorted(known, key=_preference)[:1]]
-    return found
+        names += [map_.name for map_ in sorted(candidates, key=_preference)[:1]]
+    return names
 
 
 def _preference(map_: CertifiedMap) -> tuple[float, float]:
@@ -61,12 +61,12 @@ def _preference(map_: CertifiedMap) -> tuple[float, float]:
 
 
 def datasets_of(configuration: Configuration, page: str) -> list[str]:
-    """Names of all datasets that a page is made of, a list."""
+    """Names of all datasets of a page."""
     return [*sweeps_of(configuration, page), *certified_of(configuration)]
 
 
 def maps_of(configuration: Configuration) -> list[str]:
-    """Names of the sweeps whose maps have periods, a list."""
+    """Names of the sweeps with stored periods."""
     return [
         name
         for name in MAPS
@@ -75,7 +75,7 @@ def maps_of(configuration: Configuration) -> list[str]:
 
 
 def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
-    """Why there can be no such page for a configuration, one line; None if there can."""
+    """The reason, in one line, why a configuration has no page; None if it has one."""
     names = maps_of(configuration)
     if not names:
         return (
@@ -100,17 +100,17 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
 
 
 def _count(sweep: Sweep) -> int:
-    """How many points a sweep has."""
+    """The number of points of a sweep."""
     pulls = [values for _, values, _ in sweep.drives]
     axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *pulls)
     return prod(len(axis) for axis in axes if axis)
 
 
 def period_requests(configuration: Configuration, name: str) -> list[dict]:
-    """List the requests for periods of the points of a map, amplitude by amplitude.
+    """Requests for the periods of a map, amplitude by amplitude, at the smallest Poisson's ratio.
 
-    Where there are more points than a page can hold, every second, third, ... of both axes has
-    one. Of several Poisson's ratios it is the smallest, as in the figures.
+    If the map has more points than `MOST_PERIODS` allows, every second, third, ... value of both
+    axes has periods.
     """
     sweep = configuration.sweeps[name]
     most = MOST_PERIODS // len(maps_of(configuration))
@@ -134,15 +134,15 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
 
 
 def report(periods: dict) -> Iterator[str]:
-    """Lines of text: how many periods there are and, one each, those that did not converge.
+    """Lines of a log: the number of periods, and each unconverged one.
 
-    periods: dict of lists of records, by the names of maps.
+    periods: lists of records by the names of maps.
     """
     for name, records in periods.items():
-        bad = [record for record in records if not record["result"]["converged"]]
-        failed = f"{len(bad)} not converged" if bad else "all converged"
-        yield f"explorer: {name}: {len(records)} periods, {failed}"
-        for record in bad:
+        unconverged = [record for record in records if not record["result"]["converged"]]
+        outcome = f"{len(unconverged)} not converged" if unconverged else "all converged"
+        yield f"explorer: {name}: {len(records)} periods, {outcome}"
+        for record in unconverged:
             where = ", ".join(
                 f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")
             )

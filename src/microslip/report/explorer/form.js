@@ -1,11 +1,11 @@
-// The form for a real contact: its fields, and the words of its answer.
+// The form for a real contact: its fields, and the texts of its answer.
 
 const SI = NUMBERS.si;
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
 const TEXTS = {}; // what the form holds, by the names of fields
 const ONE_COLUMN = matchMedia("(max-width: 1199px)"); // as in style.css
 
-// Puts a text into a field of the form, unless it is none or no choice of its list.
+// Sets a field of the form. Unknown fields and choices are ignored.
 function fillField(id, text) {
   if (!(id in TEXTS)) return;
   const control = element(`si-${id}`), before = control.value;
@@ -14,14 +14,14 @@ function fillField(id, text) {
   else control.value = before;
 }
 
-// Where the contact of the form lies on a map: [velocity, amplitude], null if it is none of its motion.
+// Position of the contact of the form on a map: [velocity, amplitude]; null for another motion.
 function contactOn(map) {
   const { contact } = STATE;
   const same = contact && contact.motion === map.motion && map.pressure === "hertz";
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
-// The power of ten of the prefix that a value is best written with.
+// The power of ten of the SI prefix for a value.
 function prefixPower(value) {
   return value === 0 ? 0 : clipped(3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9), -12, 9);
 }
@@ -31,7 +31,7 @@ function inUnit(value, unit) {
   return `${digits(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
 }
 
-// A value in as many digits as its error leaves.
+// A value with its significant digits.
 function withError(value, error) {
   if (!Number.isFinite(error)) return "not known";
   const places = clipped(1 - Math.floor(Math.log10(error)), 0, 8);
@@ -59,7 +59,7 @@ function choice(id, label, options) {
   return select;
 }
 
-// A number with a list of units.
+// An input for a number, with a list of units.
 function quantity(id) {
   const field = SI.fields[id], input = document.createElement("input");
   Object.assign(input, { id: `si-${id}`, type: "text", value: field.example });
@@ -99,7 +99,7 @@ function offerContact() {
     if (STATE.asking) {
       answerForm();
       redraw();
-      // Beside the map it is in view already; in one column the page goes to its beginning.
+      // In one column the page scrolls to the form.
       if (ONE_COLUMN.matches) element("contact-view").scrollIntoView?.({ block: "start" });
     } else {
       STATE.contact = null;
@@ -109,7 +109,7 @@ function offerContact() {
   });
 }
 
-// Only what counts is asked for.
+// Hides the fields that are not necessary.
 function showFields() {
   const { rows } = offerContact;
   for (const [side, fields] of Object.entries(SI.sides)) {
@@ -177,13 +177,13 @@ function tellContact(said) {
   }));
 }
 
-// A speed in the unit that the form has for it.
+// A speed in the unit of the form.
 function inSpeedUnit(speed) {
   const { units } = SI.fields.speed, unit = units.find(({ name }) => name === TEXTS.speed_unit) ?? units[0];
   return `${digits(speed / unit.factor)} ${unit.name}`;
 }
 
-// Of a contact slower than its map: between which coefficients it lies, and at which speeds these hold.
+// For a contact slower than its map: both coefficients of the interpolation, and their speeds.
 function approach({ friction, slowest, static_friction, mu }) {
   const remedy = friction.error > slowest.map_error && OUTSIDE_MAP.test(friction.source)
     ? " Outside the certified range: microslip predict computes it to any tolerance." : "";
@@ -195,7 +195,7 @@ function approach({ friction, slowest, static_friction, mu }) {
 
 const OUTSIDE_MAP = /^between /;
 
-// Whether the star of the contact is on the map beside the form.
+// A sentence about the star of the contact on the map: where it is, or that it is outside.
 function outside({ motion, velocity, amplitude, poisson }) {
   const map = NUMBERS.maps.find((one) => one.motion === motion && one.pressure === "hertz");
   if (map === undefined) return "";

@@ -1,8 +1,8 @@
-// What is proved about friction beyond every map, by motion: theory/paper.py and bounds.py.
+// Limits and bounds of friction outside the maps, by motion; see theory/paper.py and bounds.py.
 
 const LOWEST = 2 ** -1022; // the smallest normal number
 
-// A rigid slider: what friction tends to at large amplitudes (Eq 6).
+// Friction of a rigid slider, the limit for large amplitudes (Eq 6).
 function largeTransverse(velocity, amplitude) {
   const total = Math.hypot(velocity, amplitude);
   const q = amplitude > 0 ? velocity / total : 1;
@@ -10,7 +10,7 @@ function largeTransverse(velocity, amplitude) {
   return (2 / Math.PI) * q * elliptic;
 }
 
-// The nodes of a rule over a stick zone of this radius: weight, sqrt(1 - r^2) and sqrt(c^2 - r^2).
+// Nodes of a quadrature rule over a stick zone of radius c: weight, sqrt(1 - r^2), sqrt(c^2 - r^2).
 function stickZone(rule, c, complement) {
   const least = Math.max(complement, 1e-8), end = Math.asinh(c / least);
   return rule.nodes.map((node, k) => {
@@ -20,7 +20,7 @@ function stickZone(rule, c, complement) {
   });
 }
 
-// Static friction across for Poisson's ratio 0.
+// Static friction under transverse oscillation for Poisson's ratio 0.
 function staticTransverse(amplitude, rule) {
   const a = Math.min(amplitude, 1);
   const parts = stickZone(rule, Math.sqrt(1 - a), Math.sqrt(a)).map(([step, bound, inner]) =>
@@ -28,7 +28,7 @@ function staticTransverse(amplitude, rule) {
   return Math.min(3 * parts.reduce((sum, part) => sum + part, 0), 1);
 }
 
-// Stick radius that an oscillating bore alone leaves (Eq 32), by Newton in its logarithm.
+// Stick radius of an oscillating bore (Eq 32), by Newton's method for its logarithm.
 function boreStickRadius(amplitude) {
   const target = amplitude * complete(0.5).KlessE;
   let log = (-2 / Math.PI) * target;
@@ -42,7 +42,7 @@ function boreStickRadius(amplitude) {
   return Math.max(Math.exp(log), LOWEST);
 }
 
-// Share of the friction bound that torsion uses at a radius inside of the stick radius (Lubkin).
+// Torsional traction over the friction bound at a radius inside the stick radius (Lubkin).
 function torsionShare(r, c) {
   if (r >= c) return 1;
   const rho = r / c, cos2 = (1 - rho) * (1 + rho), delta2 = (1 - c * rho) * (1 + c * rho);
@@ -53,7 +53,7 @@ function torsionShare(r, c) {
   return clipped(share, 0, 1);
 }
 
-// Static friction of an oscillating bore, whatever Poisson's ratio.
+// Static friction of an oscillating bore for every Poisson's ratio.
 function staticBore(amplitude, rule) {
   const c = boreStickRadius(amplitude);
   const parts = stickZone(rule, c, Math.sqrt((1 - c) * (1 + c))).map(([step, bound, inner]) => {
@@ -71,7 +71,7 @@ function fastForward(inverse, rule) {
   }, 0);
 }
 
-// Friction of an oscillating bore that is steady at every instant (Eq 29).
+// Friction of a quasi-steady oscillating bore (Eq 29).
 function largeBore(velocity, _amplitude, rule) {
   if (velocity === 0) return 0;
   if (velocity >= 1) {

@@ -1,4 +1,4 @@
-// A sweep that spans no map: lines over one axis, with the limits from theory beside them.
+// A sweep without a map: lines over one axis, and the limits from theory.
 
 const COLOURS = [BLUE, VERMILLION, "#009E73", "#CC79A7", "#E69F00", "#56B4E9", GREY, INK];
 
@@ -36,7 +36,7 @@ function drawLines(element, lines) {
   }), config());
 }
 
-// A dotted line at the place that is selected.
+// Draws a dotted line at the selected point.
 function markLine(element, at) {
   const line = { color: VERMILLION, width: 1.2, dash: "dot" };
   const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: at, x1: at, line };

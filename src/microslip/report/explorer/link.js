@@ -1,9 +1,9 @@
-// The state of the page as the part of its address behind the #, so that a link reproduces it.
+// The state of the page in the fragment of its address, so that a link restores it.
 
 const LINK_DELAY = 250; // ms; browsers refuse more than some 200 changes of the address in 30 s
 let linkTimer = 0;
 
-// What is selected and typed, as text of an address.
+// The fragment of the address for a state.
 function linkOf(state) {
   const { shown, map } = state, said = new URLSearchParams();
   said.set("sweep", shown.name);
@@ -23,20 +23,20 @@ function linkOf(state) {
   return said.toString();
 }
 
-// Writes the state into the address, once it has come to rest.
+// Writes the state into the address after a delay without changes.
 function writeLink() {
   if (!document.body.dataset.ready) return;
   clearTimeout(linkTimer);
   linkTimer = setTimeout(() => history.replaceState(null, "", `#${linkOf(STATE)}`), LINK_DELAY);
 }
 
-// Index of the value that a text names, or the one that is selected already.
+// Index of the value with this text, else the selected index.
 function indexNamed(values, text, selected) {
   const index = values.findIndex((value) => String(value) === text);
   return index < 0 ? selected : index;
 }
 
-// Shows the state that an address names; what it does not name, or names wrongly, stays.
+// Restores the state of an address. Missing and wrong entries are ignored.
 function readLink(address) {
   const said = new URLSearchParams(address.replace(/^#/, ""));
   const entries = SWEEPS.find((one) => one.name === said.get("sweep"))?.entries;

@@ -1,4 +1,4 @@
-// The page: what is selected, the controls, the words.
+// The page: selection, controls, texts.
 
 const element = (id) => document.getElementById(id);
 const STATE = { shown: null, map: null, row: 0, column: 0, frame: 0, period: null, disc: null,
@@ -26,12 +26,12 @@ function show(entry) {
   }
 }
 
-// A label without the markup that plotly knows.
+// A label without HTML.
 function plainText(label) {
   return label.replace(/<[^>]*>/g, "");
 }
 
-// The answer at one place of lines: every value with its error, and the limits there.
+// Shows a point of lines: all values with their errors, and the limits.
 function selectOnLine(at) {
   const { shown } = STATE, { x, y, series, limits, beside } = shown;
   STATE.at = at;
@@ -54,7 +54,7 @@ function selectOnLine(at) {
   writeLink();
 }
 
-// The same again, after what is beside it has changed.
+// Draws the selected sweep again after a change of the layout.
 function redraw() {
   const { shown, map, row, column, at } = STATE;
   if (shown !== map) {
@@ -67,10 +67,10 @@ function redraw() {
   select(row, column);
 }
 
-// With a contact asked for, its words take the place of those of the point.
+// Arranges the panels. An open form replaces the texts of the point.
 function arrange() {
   const isMap = sweepOf(STATE.shown).kind === "map";
-  // Beside the form, and where there are no periods, the cuts fill the right half of a wide page.
+  // On a wide page with an open form or without periods, the cuts are on the right.
   const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || STATE.shown.periods.count === 0);
   const right = STATE.asking ? "contact-view" : "point-view";
   element(beside ? right : "map-view").append(element("cuts"));
@@ -87,7 +87,7 @@ function selectMap(map) {
   element("amplitude").max = map.amplitude.length - 1;
   element("velocity").max = map.velocity.length - 1;
   offerLimits(map);
-  // A point in the middle of what a period is stored for.
+  // Select a point in the middle of the points with periods.
   const stored = (map.periods.index ?? []).flatMap((row, i) =>
     row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
   const rows = [...new Set(stored.map((place) => place[0]))];
@@ -109,7 +109,7 @@ function select(row, column) {
     element(`${name}-value`).value = shown;
   }
   drawCuts();
-  // Where a point has no period, that of the nearest point is drawn, and the words say so.
+  // For a point without a period, the period of the nearest point is drawn, with a note.
   const place = periodAt(map, row, column) ? [row, column] : nearestPeriod(map, row, column);
   STATE.period = place && periodAt(map, ...place);
   STATE.disc = STATE.period && discOf(STATE.period);
@@ -129,7 +129,7 @@ function select(row, column) {
   tellPhase();
 }
 
-// The point next to a place of the map that has a period: [row, column], null if none has.
+// The nearest point of the map with a period: [row, column]; null without periods.
 function nearestPeriod(map, row, column) {
   let found = null, least = Infinity;
   (map.periods.index ?? []).forEach((line, i) => line.forEach((k, j) => {
@@ -164,14 +164,14 @@ function tellPhase() {
   element("phase-value").value = shown;
 }
 
-// Words
+// Texts
 
 function paragraph(id, text, bad = false) {
   element(id).textContent = text;
   element(id).className = bad ? "bad" : "";
 }
 
-// drawn: the place of the period that is drawn, null for none.
+// drawn: row and column of the period that is drawn, or null.
 function tell(drawn) {
   const { map, row, column, period } = STATE;
   const at = (name) => map.points[name][row][column];
@@ -256,7 +256,7 @@ function play() {
   const next = (now) => {
     phase = (phase + ((now - before) / 1000 / SECONDS) * 2 * Math.PI) % (2 * Math.PI);
     before = now;
-    // The last frame that has begun; frames are closer together where the motion turns.
+    // Frames are closer together near the turning points.
     const begun = STATE.period.phase.filter((at) => at - start <= phase).length;
     if (begun - 1 !== STATE.frame) showFrame(Math.max(begun - 1, 0));
     playing = requestAnimationFrame(next);
@@ -277,7 +277,7 @@ function connect() {
   element("play").addEventListener("click", () => (playing ? pause() : play()));
 }
 
-// The legend of the cuts: a box to switch every limit on and off.
+// The legend of the cuts, with a check box for every limit.
 function offerLimits(map) {
   const boxes = map.limits.map((given) => {
     const label = document.createElement("label"), box = document.createElement("input");
@@ -294,7 +294,7 @@ function offerLimits(map) {
   element("limits").replaceChildren(...boxes);
 }
 
-// A piece of a limit's line.
+// A sample of the line of a limit.
 function lineLike(given) {
   const svg = (name) => document.createElementNS("http://www.w3.org/2000/svg", name);
   const piece = svg("svg"), line = svg("line");
@@ -306,7 +306,7 @@ function lineLike(given) {
   return piece;
 }
 
-// Plotly adds events to an element when it first draws there.
+// Plotly adds its events to an element at the first drawing.
 function connectCharts() {
   element("map").on("plotly_click", ({ points }) => {
     const cell = points.find((point) => point.data.type === "heatmap");

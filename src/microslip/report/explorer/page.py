@@ -1,4 +1,4 @@
-"""The page as one file: markup, style, plotly.js, the scripts beside this module, numbers."""
+"""Write the page as one file: markup, style, plotly.js, scripts and numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from plotly.offline import get_plotlyjs
 
-from microslip.foundation.files import writing_beside
+from microslip.foundation.files import write_atomically
 from microslip.report.explorer import payload
 from microslip.report.explorer.explorer import ASSETS
 
@@ -17,23 +17,20 @@ FOLDER = Path(__file__).parent
 
 
 def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Sequence = ()) -> None:
-    """Write the page to `path`, whole or not at all.
+    """Write the page atomically. Equal arguments give equal bytes.
 
-    datasets, periods, certified: as for `payload.build`. The same ones give the same bytes. Raises
-    ValueError as `payload.build` does, CacheError, one line that says what to do, where the system
-    refuses.
+    datasets, periods, certified: arguments of `payload.build`. Raises ValueError if they are
+    incomplete, and CacheError if the file cannot be written.
     """
-    text = page(payload.build(datasets, periods, certified))
-    with writing_beside(path) as beside:
-        beside.write_text(text, encoding="utf-8", newline="\n")
+    write_atomically(Path(path), page(payload.build(datasets, periods, certified)).encode())
 
 
 def page(content: dict) -> str:
-    """Return the text of the page; content: as `payload.build` makes it."""
+    """The text of the page; content: value of `payload.build`."""
     template, style, *scripts = (
         (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS
     )
-    # Inside a script "<" could end it; JSON has another way to write it.
+    # A "<" inside a script could end it, so it is escaped.
     numbers = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "style": style,
@@ -41,7 +38,7 @@ def page(content: dict) -> str:
         "numbers": numbers,
         "scripts": "\n".join(scripts),
     }
-    # Cut once, so that nothing inside a part is taken for the place of another one.
+    # The template is split once, so that a part may contain "@@".
     pieces = template.split("@@")
     pieces[1::2] = [parts[name] for name in pieces[1::2]]
     return "".join(pieces) + "\n"

@@ -1,15 +1,14 @@
-"""Data of the page: maps, lines, limits and periods as one value that JSON can hold.
+"""Data of the page as one value for JSON: maps, lines, limits and periods.
 
-Numbers of datasets are kept as they are. Those of periods are whole numbers of steps in base64:
-tractions in steps of bound/127, phases in steps of 2 pi/65535, radii and bounds in steps of
-1/65535, forces in steps of the largest one over 32767. So each is off by half a step at most.
+Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64:
+tractions to bound/127, phases to 2 pi/65535, radii and bounds to 1/65535, and forces to the largest
+force over 32767.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -27,23 +26,12 @@ from microslip.theory.catalogue import FORMS
 UNSIGNED, SIGNED = 65535, 32767
 
 
-@dataclass(frozen=True)
-class Labels:
-    """Names of a map, in the markup that plotly knows, and of the other component of its force."""
-
-    title: str
-    other: str
-    force: str  # what of a period it is
-
-
-LABELS = {
-    "transverse": Labels(
-        "Transverse oscillation", "lateral force / (<i>μF<sub>z</sub></i>)", "force_lateral"
-    ),
-    "bore": Labels(
-        "Oscillating bore", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>", "torque"
-    ),
+TITLES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
+OTHER_FORCES = {
+    "transverse": ("force_lateral", "lateral force / (<i>μF<sub>z</sub></i>)"),
+    "bore": ("torque", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>"),
 }
+"""The second force component of each map: its name in a period and its label for plotly."""
 ERRORS = {
     "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
@@ -55,31 +43,36 @@ POINTS += ("steps_per_period", "model", "reason")
 
 
 def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
-    """All that the page shows, as a dict.
+    """Pack all data of the page.
 
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        By the names of sweeps, see `explorer`.
+        Datasets by the names of their sweeps, see `explorer`.
     periods : dict of list
-        Records of periods, of the sweeps that have some: a map each.
+        Records of periods by the names of the sweeps with stored periods.
     certified : sequence of xarray.Dataset
-        Certified maps, which the form for a real contact is answered from.
+        Certified maps for the form for a real contact.
+
+    Returns
+    -------
+    dict
+        Values for JSON.
 
     Raises
     ------
     ValueError
-        Where a dataset lacks what the page shows, or a period belongs to no point of its map.
+        If a variable is missing, or a period belongs to no point of its map.
     """
-    found: dict[str, list[dict]] = {"maps": [], "lines": []}
+    content: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
         if name in periods:
-            found["maps"] += _maps(name, dataset, periods[name])
+            content["maps"] += _maps(name, dataset, periods[name])
         elif brief.is_map(dataset):
-            found["maps"] += brief.maps(name, dataset)
+            content["maps"] += brief.maps(name, dataset)
         else:
-            found["lines"] += brief.lines(name, dataset)
-    return found | {
+            content["lines"] += brief.lines(name, dataset)
+    return content | {
         "made": {name: _made(datasets[name], periods.get(name, ())) for name in datasets},
         "certified": [packed(dataset) for dataset in certified],
         "si": si_form.packed(),
@@ -90,56 +83,54 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
 
 
 def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
-    """Maps at all of Poisson's ratios; that next to 0 has the periods and all of the errors."""
+    """Maps at all Poisson's ratios. The map at the ratio nearest 0 has periods and all errors."""
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
-    labels = LABELS[name]
-    found = brief.maps(name, dataset)
-    for one in found:
-        one["title"] = labels.title
-    first = next(one for one in found if one["poisson"] == poisson)
+    force, label = OTHER_FORCES[name]
+    maps = [one | {"title": TITLES[name]} for one in brief.maps(name, dataset)]
+    first = next(one for one in maps if one["poisson"] == poisson)
     first |= {
-        "labels": [*first["labels"], labels.other],
+        "labels": [*first["labels"], label],
         "points": {key: plain(shown[key].values) for key in POINTS},
-        "periods": _periods(shown, records, labels.force),
+        "periods": _periods(shown, records, force),
     }
-    return [first, *(one for one in found if one is not first)]
+    return [first, *(one for one in maps if one is not first)]
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
-    """Periods of the points of a map, one after another in the order of `index`."""
+    """Periods of a map, and their positions by point; -1 means that a point has none."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
-    failed: list[list] = []
-    kept: list[dict] = []
+    failures: list[list] = []
+    results: list[dict] = []
     for record in records:
         request, result = record["request"], record["result"]
         try:
             place = rows[request["amplitude"]], columns[request["velocity"]]
         except KeyError as error:
-            raise ValueError(f"explorer: a period at {error}, which the map has not") from None
+            raise ValueError(f"explorer: a period at {error}, which is not on the map") from None
         if "tractions" in result:
-            index[place] = len(kept)
-            kept.append(result)
+            index[place] = len(results)
+            results.append(result)
         else:
-            failed.append([*place, result["reason"]])
-    return {"index": plain(index), "failed": failed} | _packed(kept, force)
+            failures.append([*place, result["reason"]])
+    return {"index": plain(index), "failed": failures} | _packed(results, force)
 
 
 def _packed(results: list[dict], force: str) -> dict:
     if not results:
         return {"count": 0}
     halves = [unpacked_half(result) for result in results]
-    # the frame half a period later is the mirror image of the first one
+    # The frame half a period later is the mirror image of the first one and is omitted.
     shares = np.array([half[0][:-1] for half in halves])
     slips = np.array([half[1][:-1] for half in halves])
     forces = np.array([[r["force_forward"], r[force]] for r in results])
     step = float(np.abs(forces).max()) / SIGNED
     count, frames, _, angles, cells = shares.shape
     phases = np.array([r["phase"] for r in results])
-    start = float(phases[0, 0])  # the turning point that periods begin at
+    start = float(phases[0, 0])  # phase of the turning point at which periods begin
     return {
         "count": count,
         "frames": 2 * frames,
@@ -165,12 +156,12 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
 
 
 def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
-    """Provenance of a map and its periods, as a list of pairs of texts."""
-    found = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
-    if "configuration" in found:
-        found["configuration"] = json.dumps(json.loads(found["configuration"]), indent=1)
+    """Provenance of a map and its periods: pairs of name and text."""
+    provenance = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
+    if "configuration" in provenance:
+        provenance["configuration"] = json.dumps(json.loads(provenance["configuration"]), indent=1)
     if records:
         request = records[0]["request"]
         counts = ", ".join(f"{name} {request[name]}" for name in ("cells", "angles", "steps"))
-        found["periods"] = f"{len(records)} of the polar model: {counts}"
-    return [[key.replace("_", " "), str(value)] for key, value in found.items()]
+        provenance["periods"] = f"{len(records)} of the polar model: {counts}"
+    return [[key.replace("_", " "), str(value)] for key, value in provenance.items()]

@@ -1,12 +1,12 @@
-"""Data of the page's form for a real contact: fields, units, materials, rules and sentences.
+"""Data of the form for a real contact: fields, units, materials, rules and messages.
 
-All are those of microslip.predict, so that the page asks, warns and refuses as it does.
+They come from microslip.predict, so that the page has the same checks, warnings and messages.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from microslip.foundation.arguments import LARGEST
@@ -21,27 +21,29 @@ from microslip.theory.hertz import D_half
 CHOICES = ("transverse", "bore")
 """Motions of the form."""
 OF_NUMBERS = "by E and ν"
-"""Instead of the name of a material."""
+"""Choice that replaces the name of a material."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """A quantity that is typed.
+    """An input field for a quantity.
 
     Attributes
     ----------
     label : str
-        What it is called on the page and in messages.
+        Name on the page and in messages.
     unit : str
-        The SI unit, as si.quantities.read takes it.
+        SI unit, an argument of si.quantities.read.
     units : tuple of str
-        Units to choose from; the first one is chosen at first.
+        Units to choose from. The first one is the default.
     example : str
-        The number that stands there at first.
+        Default number.
     low_open : bool
-        Whether 0 itself is not allowed.
+        Whether the smallest allowed value is excluded.
+    low : float
+        Smallest allowed value.
     high : float or None
-        The largest value; None: any.
+        Largest allowed value; None: no limit.
     """
 
     label: str
@@ -49,6 +51,7 @@ class Field:
     units: tuple[str, ...]
     example: str
     low_open: bool = True
+    low: float = 0.0
     high: float | None = None
 
 
@@ -67,19 +70,22 @@ FIELDS = {
     "stroke": Field("amplitude (half stroke)", "m", ("um", "nm", "mm", "m"), "0.3", False),
     "angle": Field("amplitude (half angle)", "rad", ("mrad", "deg", "rad"), "1", False),
 }
-"""By the names that the scripts know them by, in the order of the form."""
+"""Fields by their names in the scripts, in the order of the form."""
 SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_nu")}
-"""Both bodies, and the fields that take the place of a name."""
+"""Both bodies, and the fields that replace the name of a material."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
 CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
-"""Initial choices of the form besides numbers."""
+"""Default choices of the form besides numbers."""
 
 
 def packed() -> dict:
-    """All that the form needs as one value that JSON can hold."""
+    """Pack the data of the form as values for JSON."""
     return {
         "motions": {motion: f"{motion}: {MOTIONS[motion]}" for motion in CHOICES},
-        "fields": {name: _field(field) for name, field in FIELDS.items()},
+        "fields": {
+            name: asdict(field) | {"units": [_unit(unit, field.unit) for unit in field.units]}
+            for name, field in FIELDS.items()
+        },
         "sides": {side: list(fields) for side, fields in SIDES.items()},
         "amplitude_of": AMPLITUDE_OF,
         "chosen": CHOSEN,
@@ -101,19 +107,8 @@ def packed() -> dict:
     }
 
 
-def _field(field: Field) -> dict:
-    return {
-        "label": field.label,
-        "units": [_unit(name, field.unit) for name in field.units],
-        "example": field.example,
-        "low": 0.0,
-        "low_open": field.low_open,
-        "high": field.high,
-    }
-
-
 def _unit(name: str, unit: str) -> dict:
-    """A unit in that of the SI: a factor, and which power of ten it is; None where it is none."""
+    """A unit: its factor to the SI unit, and the exponent of the factor if it is a power of ten."""
     factor = read(name, f"1 {name}", unit).si
     power = round(math.log10(factor))
     exact = float(f"1e{power}") == factor

@@ -1,6 +1,6 @@
-// Which sweep is looked at, at which Poisson's ratio: buttons for those of the paper, a list of others.
+// Selection of a sweep and a Poisson's ratio: buttons for the sweeps of the paper, a list for others.
 
-// Sweeps in the order of the page, each with its maps, or its lines, from the smallest ratio on.
+// Sweeps in the order of the page, each with its maps or lines by ascending Poisson's ratio.
 function sweepsOf(numbers) {
   const found = new Map();
   for (const [kind, entries] of [["map", numbers.maps], ["lines", numbers.lines]]) {
@@ -25,7 +25,7 @@ function optionOf(value, text) {
   return option;
 }
 
-// A button for each sweep without a group; the others by group in a list.
+// Adds a button for each sweep without a group, and a list of the others by group.
 function offerSweeps(choose) {
   for (const one of SWEEPS.filter((given) => given.group === null)) {
     const button = document.createElement("button");
@@ -52,7 +52,7 @@ function offerSweeps(choose) {
   });
 }
 
-// Shows which sweep and which ratio are chosen.
+// Marks the selected sweep and Poisson's ratio.
 function markSweep(entry) {
   const { entries, group } = sweepOf(entry);
   for (const button of element("tabs").children) {

@@ -1,4 +1,4 @@
-"""Accuracy study: performance profiles, and growth of the effort with the number of unknowns."""
+"""Figures of the accuracy study: performance profiles, and effort over the number of unknowns."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
 
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
-"""Labels of the competitors that have a name of their own."""
+"""Labels of competitors whose names need an explanation."""
 LEAST_RANGE = 10.0
-"""End of the axis of a profile if nothing is more expensive than the best."""
+"""Smallest upper end of the axis of a profile."""
 GROWTH = {
     "iterations": "iterations a step  (dimensionless)",
     "seconds": "time a step (s)",
     "memory": "memory (bytes)",
 }
-"""Quantities of the panels of `scaling`, and their labels."""
+"""Quantities of the panels of `scaling`, with their labels."""
 
 
 def profile(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the share of points that each competitor solves at which cost.
+    """Draw the share of points that each competitor solves within a cost.
 
     There is a panel for each contest, at the tightest tolerance.
     """
@@ -47,11 +47,11 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
-    """A rising line for each competitor: the share of points within a ratio of the best."""
+    """Draw a line for each competitor: share of points over the ratio to the least cost."""
     ratios = contest["profile_ratio"].transpose("competitor", "point").values
     high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
     names = contest["competitor"].values.astype(str)
-    # The shipped method first, in black; then in the order of the dataset.
+    # The default method is first and black; the others follow in the order of the dataset.
     order = np.argsort(names != "shipped", kind="stable")
     for place, index in enumerate(order):
         name, at = names[index], np.sort(ratios[index][np.isfinite(ratios[index])])
@@ -59,7 +59,7 @@ def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
         ls = look.LINES[(place + place // len(look.LINES)) % len(look.LINES)][2]
         if of_models and name in look.MODELS:
             color = look.model(name)[0]
-            ls = look.DOTTED if color == look.BLACK else ls  # a solid black line is the choice
+            ls = look.DOTTED if color == look.BLACK else ls  # solid black is the line of "auto"
         if name == "auto":
             color, ls = look.BLACK, look.SOLID
         shares = np.array([0, *range(1, at.size + 1), at.size]) / ratios.shape[1]
@@ -74,7 +74,7 @@ def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
 
 
 def scaling(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw one panel a quantity, one curve a model, with the fitted exponent in its label."""
+    """Draw a panel for each quantity, with a curve for each model and its fitted exponent."""
     figure = look.new_figure(look.DOUBLE, 3.1)
     grid = figure.subplots(1, len(GROWTH), sharex=True)
     for letter, axes, (quantity, label) in zip("abc", grid, GROWTH.items(), strict=True):
@@ -85,20 +85,20 @@ def scaling(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
-    """Draw one quantity of every model against the unknowns."""
+    """Draw a quantity of every model over the number of unknowns."""
     axes.set(xscale="log", yscale="log")
     for index, model in enumerate(dataset["scaling_model"].values.astype(str)):
         of_model = dataset.isel(scaling_model=index).sortby("scaling_unknowns")
         x, y = columns(of_model, "scaling_unknowns", f"scaling_{quantity}")
-        known = np.isfinite(x) & np.isfinite(y)
+        finite = np.isfinite(x) & np.isfinite(y)
         exponent = float(of_model[f"scaling_exponent_{quantity}"])
         growth = rf"  $N^{{{exponent:.2f}}}$" if np.isfinite(exponent) else ""
         color, marker, _ = look.model(model)
         ink: look.Ink = {"color": color, "marker": marker, "ms": 4.0}
         ink |= {"ls": look.LINES[index % 4][2]}
-        axes.plot(x[known], y[known], label=f"{model}{growth}", gid=quantity, **ink)
-        if quantity == "iterations" and known.any():
-            last = np.flatnonzero(known)[-1]
+        axes.plot(x[finite], y[finite], label=f"{model}{growth}", gid=quantity, **ink)
+        if quantity == "iterations" and finite.any():
+            last = np.flatnonzero(finite)[-1]
             size = str(of_model["scaling_label"].values[last])
             text: look.Ink = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom"}
             text |= {"textcoords": "offset points", "gid": "size"}

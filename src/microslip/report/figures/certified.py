@@ -1,6 +1,6 @@
-"""A certified map: friction with the cells that answer and their points, and their errors.
+"""Figure of a certified map: friction, its cells and points, and the error bounds of the cells.
 
-A map of drift shows the velocity under a force in the place of friction.
+A certified map of drift has the velocity under a force instead of friction.
 """
 
 from __future__ import annotations
@@ -18,24 +18,25 @@ from microslip.datasets.query.drift import Drift
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.drift import REST, THRESHOLD, velocity_bands, velocity_bar
-from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.groups import CONTOURS, LABELLED
+from microslip.report.figures.formulas import axis_label
+from microslip.report.figures.groups import CONTOURS
 from microslip.report.figures.map_panel import fill
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 BOUND = "bound of the error,\nthousandths  (dimensionless)"
+DIMENSIONLESS = "(dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
-"""Velocities and amplitudes at which the map is evaluated for the figure: of a map, of a line."""
+"""Number of coordinates along an axis at which a map, or a line, is evaluated."""
 SIDE = np.linspace(0.0, 1.0, 17)
-"""Places along a side of a cell, which is no straight line on the map."""
+"""Positions along a side of a cell. The side is curved on the map."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the map with its cells and points, and beside it the bound of the error in each cell.
+    """Draw the map with its cells and points, and the error bound of each cell.
 
-    A map that spans Poisson's ratios is shown at the smallest one. A map of the static limit is a
-    line.
+    A map over several Poisson's ratios is drawn at the smallest one. A map of the static limit is
+    drawn as a line.
     """
     if is_static(dataset) and not certified_map.is_of_drift(dataset):
         return _lines(dataset)
@@ -49,24 +50,24 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         across, bound = "velocity", "bound of the error"
         grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
         grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
-        filled, *_ = fill(left, grid, lines=CONTOURS, labelled=LABELLED)
+        filled, *_ = fill(left, grid, lines=CONTOURS)
         panels.colour_bar(filled, left, look.FRICTION, aspect=20, ticks=np.linspace(0, 1, 6))
     errors = _show_cells(left, right, dataset, _points(dataset, poisson), across)
     panels.colour_bar(errors, right, BOUND, aspect=20)
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
     panels.letter(left, "a", f"{_points_of(dataset)}, {len(dataset['cell_error'])} cells")
     panels.letter(right, "b", bound + ratio)
-    left.set_ylabel(_axis(dataset, "amplitude"))
+    left.set_ylabel(axis_label(dataset, "amplitude", DIMENSIONLESS))
     for axes in (left, right):
-        axes.set_xlabel(_axis(dataset, across))
+        axes.set_xlabel(axis_label(dataset, across, DIMENSIONLESS))
         panels.ticks_outside(axes)
     return figure
 
 
 def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
-    """The velocity over force and amplitude; grey where the contact stays."""
+    """Draw the velocity over force and amplitude, grey where the contact stays at rest."""
     coordinates = certified_map.coordinates_in(dataset)
-    assert isinstance(coordinates, DriftCoordinates)  # as of all maps of drift
+    assert isinstance(coordinates, DriftCoordinates)  # maps of drift have these coordinates
     force = np.linspace(0.0, coordinates.force, NODES)
     grid = Drift(dataset).on_grid(force, NODES)
     amplitude = grid["amplitude"].values
@@ -82,9 +83,9 @@ def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
 def _show_cells(
     left: Axes, right: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str
 ) -> PolyCollection:
-    """Outlines and the points of `at` on one panel; the bounds, which are returned, on the other.
+    """Draw cells and points on the left panel, and error bounds on the right one.
 
-    across: the variable along the abscissa.
+    at: dataset of the points; across: variable of the abscissa. Returns the artist of the bounds.
     """
     outlines, errors = _cells(dataset)
     left.add_collection(LineCollection(outlines, colors=look.VERMILLION, lw=0.7, gid="cells"))
@@ -97,8 +98,10 @@ def _show_cells(
 
 
 def _lines(dataset: xr.Dataset) -> Figure:
-    """The static limit over the amplitude at the smallest and the largest Poisson's ratio, and the
-    bound of its error there."""
+    """Draw the static limit over the amplitude, and its error bound.
+
+    The lines belong to the smallest and the largest Poisson's ratio.
+    """
     figure = look.new_figure(look.DOUBLE, 2.6)
     left, right = figure.subplots(1, 2, sharex=True)
     ends = np.unique([float(dataset["poisson"].min()), float(dataset["poisson"].max())])
@@ -115,7 +118,7 @@ def _lines(dataset: xr.Dataset) -> Figure:
     panels.letter(right, "b", f"{len(dataset['cell_error'])} cells")
     right.set_ylim(0.0, 1e3 * float(dataset.attrs["error"]))
     for axes, label in ((left, look.FRICTION), (right, BOUND)):
-        axes.set(xlabel=_axis(dataset, "amplitude"), ylabel=label)
+        axes.set(xlabel=axis_label(dataset, "amplitude", DIMENSIONLESS), ylabel=label)
     return figure
 
 
@@ -124,36 +127,30 @@ def _points_of(dataset: xr.Dataset) -> str:
 
 
 def _is_deep(dataset: xr.Dataset) -> bool:
-    """Whether Poisson's ratio is a direction of the map."""
+    """Whether the map has several Poisson's ratios."""
     return dataset["poisson"].ndim > 0
 
 
 def _points(dataset: xr.Dataset, poisson: float) -> xr.Dataset:
-    """The points of the map at a Poisson's ratio."""
+    """Select the points of the map at a Poisson's ratio."""
     here = dataset["poisson"].values == poisson
     return dataset.isel(point=here) if _is_deep(dataset) else dataset
 
 
 def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
-    """Outlines on the map, shape (n, 2) each, and bounds of the cells at the smallest ratio."""
+    """Outlines, shape (n, 2) each, and error bounds of the cells at the smallest ratio."""
     coordinates = certified_map.coordinates_in(dataset)
     ends = [
         [dataset[name].values for name in certified_map.BORDERS[direction]]
         for direction in coordinates.directions
     ]
-    shown = np.flatnonzero(ends[2][0] == 0.0) if _is_deep(dataset) else np.arange(len(ends[0][0]))
+    cells = np.flatnonzero(ends[2][0] == 0.0) if _is_deep(dataset) else np.arange(len(ends[0][0]))
     deep = (0.0,) * (len(ends) - 2)
     outlines = []
-    for cell in shown:
+    for cell in cells:
         (left, right), (low, high) = ([end[cell] for end in pair] for pair in ends[:2])
         x, y = left + (right - left) * SIDE, low + (high - low) * SIDE
         around = [(one, low) for one in x] + [(right, one) for one in y]
         around += [(one, high) for one in x[::-1]] + [(left, one) for one in y[::-1]]
         outlines.append(np.array([coordinates.place((*node, *deep))[:2] for node in around]))
-    return outlines, dataset["cell_error"].values[shown]
-
-
-def _axis(dataset: xr.Dataset, dim: str) -> str:
-    """Label of an axis."""
-    quantity = {"velocity": "forward velocity"}.get(dim, dim)
-    return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"
+    return outlines, dataset["cell_error"].values[cells]

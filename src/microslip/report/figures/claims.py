@@ -1,4 +1,4 @@
-"""Figures of the paper's claims: static limits with the share of the bound, and stick zones."""
+"""Figures of the study `claims`: static limits, shares of the friction bound, and stick zones."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ MOTIONS = (
     ("transverse", "transverse oscillation", AMPLITUDE["transverse"], (LIMIT, ZONE, SLIDER)),
     ("bore", "oscillating bore", BORE_AMPLITUDE, (LIMIT, ZONE, PRINTED)),
 )
-"""Each column: the motion, its name, its amplitude, and its curves: variable, closed form, colour
-and line style."""
+"""Motion, title, amplitude and curves of each column. A curve has a variable, a closed form, a
+colour and a line style."""
 LIGHTEST = 0.82
-"""End of the shades for lines; lighter ones are too pale."""
+"""Upper end of the colour map for lines. Lines in lighter colours have too little contrast."""
 PIXELS = 401
-"""Pixels along a side of the picture of a contact; each shows the point next to it."""
+"""Number of pixels along each side of the image of a contact."""
 MOMENTS = {0: "before one turning point", 1: "mid-stroke", 2: "before the other"}
-"""The moments of `patches`, by their index in the dataset."""
+"""Labels of the moments of `patches` by their index in the dataset."""
 AREAS = (
     ("patch_stick", "all", look.BLACK, look.SOLID),
     ("patch_stick_right", "right half", look.BLUE, look.DASHED),
@@ -44,7 +44,7 @@ AREAS = (
 
 
 def static(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw friction over amplitude above, shares of the bound over the radius below."""
+    """Draw friction over amplitude, and shares of the friction bound over the radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
     for column, (motion, title, quantity, curves) in enumerate(MOTIONS):
@@ -60,7 +60,7 @@ def static(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> None:
-    """The limit and formulas for it as lines; certified points and the paper's run as marks."""
+    """Draw limit and formulas as lines, computed points and the paper's run as markers."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, name, color, ls in curves:
         label = FORMS[motion][name].equation or FORMS[motion][name].label
@@ -81,7 +81,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> No
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
-    """Draw the share of the bound that the oscillation uses, solid, and the rest, dashed."""
+    """Draw the shares of the bound for oscillation (solid) and forward friction (dashed)."""
     radius, dim = dataset["share_radius"].values, f"{motion}_share_amplitude"
     amplitudes = dataset[dim].values
     shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
@@ -97,7 +97,7 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) ->
 
 
 def patches(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the contact at three moments of a bore above, the sticking area over a period below."""
+    """Draw the contact at three moments of a bore, and the stick area over a period."""
     figure = look.new_figure(look.DOUBLE, 5.2)
     grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
     contacts = [grid[which] for which in "abc"]
@@ -112,16 +112,16 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """Draw sticking points shaded by the share of the bound in use, and slipping points white."""
+    """Draw points in stick coloured by traction over bound, and points in slip white."""
     lateral, forward, share = columns(at, "patch_lateral", "patch_forward", "patch_share")
     line = np.linspace(-1.0, 1.0, PIXELS)
     x, y = np.meshgrid(line, line)
-    shown = griddata((lateral, forward), share, (x, y), method="nearest")
+    shares = griddata((lateral, forward), share, (x, y), method="nearest")
     half = 0.5 * (line[1] - line[0])
     frame: look.Ink = {"origin": "lower", "extent": 2 * (-1 - half, 1 + half)}
-    slips = (shown >= 1.0) | (np.hypot(x, y) >= 1.0)
+    slips = (shares >= 1.0) | (np.hypot(x, y) >= 1.0)
     scale: look.Ink = {"cmap": look.COLOURMAP, "vmin": 0.0, "vmax": 1.0, "interpolation": "nearest"}
-    shade = axes.imshow(np.ma.masked_where(slips, shown), gid="sticks", **scale, **frame)
+    shade = axes.imshow(np.ma.masked_where(slips, shares), gid="sticks", **scale, **frame)
     axes.add_patch(Circle((0, 0), 1.0, fill=False, lw=0.9))
     edge = columns(at, "patch_edge_lateral", "patch_edge_forward")
     axes.plot(*edge, color=look.VERMILLION, ls=look.DASHED, gid="theory")
@@ -134,7 +134,7 @@ def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
 
 
 def _areas(axes: Axes, dataset: xr.Dataset) -> None:
-    """Shares of the contact's area that stick."""
+    """Draw the stick area over the contact area."""
     phase = dataset["patch_phase"].values / np.pi
     for variable, label, color, ls in AREAS:
         axes.plot(phase, dataset[variable].values, color=color, ls=ls, label=label, gid=variable)

@@ -1,4 +1,4 @@
-"""Access of figures to a dataset: checks, one Poisson's ratio, curves along one dimension."""
+"""Read datasets for figures: files, checks, Poisson's ratios, curves along one dimension."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 
 def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
-    """A dataset from its file, with the groups of the file, as `draw` takes it.
+    """Read a dataset and the groups of its file into one dataset for `draw`.
 
-    Raises CacheError, one line, if the file is missing or damaged.
+    Raises CacheError if the file is missing or damaged.
     """
     try:
         return whole(path)
@@ -30,7 +30,10 @@ def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
 
 
 def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]) -> None:
-    """Raise ValueError unless the dataset has all these variables."""
+    """Raise ValueError unless the dataset has all variables.
+
+    figure, key: names of the figure and of the dataset, for the message.
+    """
     missing = [name for name in variables if name not in dataset.variables]
     if missing:
         raise ValueError(
@@ -39,7 +42,7 @@ def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]
 
 
 def at_one_poisson(dataset: xr.Dataset) -> tuple[xr.Dataset, float]:
-    """The part of a dataset with the Poisson's ratio nearest 0 (the paper's), and that ratio."""
+    """Select the Poisson's ratio nearest 0, as in the paper; returns the dataset and the ratio."""
     if "poisson" not in dataset.variables:
         return dataset, 0.0
     if "poisson" in dataset.dims:
@@ -48,7 +51,7 @@ def at_one_poisson(dataset: xr.Dataset) -> tuple[xr.Dataset, float]:
 
 
 def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """The parts of a dataset at each of its Poisson's ratios, in ascending order."""
+    """Split a dataset by Poisson's ratio, in ascending order."""
     if "poisson" not in dataset.dims:
         return [dataset]
     ordered = dataset.sortby("poisson")
@@ -56,9 +59,10 @@ def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
 
 
 def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float]:
-    """A dataset whose `mu_macro` has exactly these dims, ascending, and its Poisson's ratio.
+    """Reduce a dataset so that `mu_macro` has exactly the dimensions `dims`, ascending.
 
-    Further axes of the sweep may have one entry only, since a figure shows one of them.
+    Returns the dataset and its Poisson's ratio. Raises ValueError if a dimension is missing, or if
+    another dimension has more than one entry.
     """
     dataset, poisson = at_one_poisson(dataset)
     present = dataset["mu_macro"].dims
@@ -72,27 +76,27 @@ def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float
 
 
 def limit(dataset: xr.Dataset, name: str) -> xr.DataArray:
-    """A theoretical limit: on its fine axis where the dataset has that, else on the sweep's."""
+    """A theoretical limit, on its own fine axis if the dataset has one."""
     return dataset[f"{name}_curve"] if f"{name}_curve" in dataset else dataset[name]
 
 
 def curve(variable: xr.DataArray, **at: float) -> Curve:
     """Abscissa and ordinate of a variable along its only dimension after the selection `at`.
 
-    Dimensions in `at` that the variable lacks are skipped.
+    Dimensions in `at` that the variable does not have are ignored.
     """
     line = variable.sel({dim: value for dim, value in at.items() if dim in variable.dims})
     if line.ndim != 1:
-        raise ValueError(f"variable {variable.name!r} has dims {variable.dims}; one expected")
+        raise ValueError(f"variable {variable.name!r} has dims {variable.dims}; allowed: one")
     return np.asarray(line[line.dims[0]].values), np.asarray(line.values, dtype=float)
 
 
 def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
-    """The values of several variables."""
+    """The values of several variables as arrays."""
     return tuple(dataset[name].values for name in names)
 
 
 def finite_or_nan(values: np.ndarray) -> np.ndarray:
-    """The values with infinities made NaN, which drawing skips."""
+    """Replace infinite values by NaN, which matplotlib does not draw."""
     values = np.asarray(values, dtype=float)
     return np.where(np.isfinite(values), values, np.nan)

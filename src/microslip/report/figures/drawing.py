@@ -1,13 +1,12 @@
-"""Datasets to figures.
+"""Draw figures from datasets and save them.
 
-The figures draw what the datasets hold and compute nothing: every curve, theory included, is a
-variable of a dataset. One module draws one kind of figure; `style` holds the look, `data` the
-checks on what a dataset holds.
+Figures compute nothing: every curve, including those from theory, is a variable of a dataset. Each
+kind of figure has a module. The module `style` defines colours and fonts, `data` checks datasets.
 
     figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
 
-Importing this package is cheap: matplotlib is loaded by the first `draw` or `save`.
+Matplotlib is imported by the first call of `draw` or `save`.
 """
 
 from __future__ import annotations
@@ -49,34 +48,34 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "propulsion": ("propulsion.draw", "propulsion"),
     "fit": ("fit.draw", "fit"),
 }
-"""Every figure: the module beside this one and its function that draw it, and its datasets."""
+"""Module and function that draw each figure, and its datasets."""
 
 ON_DEMAND = {"fit": ("fit",)}
-"""Figures that commands draw from their own results, not the workflow, and their datasets."""
+"""Figures that commands draw from their own results, and their datasets."""
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
 """Figures of the workflow and their datasets.
 
-Two kinds of figures have names of the configuration and are not listed: those of groups in
-`extended`, see `figure_of`, and those of certified maps.
+Figures whose names depend on the configuration are not listed: those of groups in `extended`, see
+`figure_of`, and those of certified maps.
 """
 
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
-"""Figures of the paper by their numbers: fig1 to fig6."""
+"""Full names of the figures of the paper by their short names fig1 to fig6."""
 
 CERTIFIED = "certified_"
-"""Prefix of the names of certified maps; a figure of one has the name of its dataset."""
+"""Prefix of the names of certified maps. The figure of a map has the name of its dataset."""
 MOST_POISSONS = 4
-"""Lines that the figure of Poisson's ratios can tell apart."""
+"""Maximum number of Poisson's ratios in the figure `poisson`."""
 
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
-"""Formats of `save`: metadata left out, since they hold dates and versions, and the entry that says
-what the figure was made from."""
+"""Formats of `save`: metadata to omit, because they contain dates and versions, and the metadata
+entry for the provenance."""
 PROVENANCE = ["title", "references", "microslip_version", "source_digest", "results_digest"]
 PROVENANCE += ["configuration", "library_versions"]
-"""Attributes of a dataset that say what made it."""
+"""Attributes of a dataset that describe its provenance."""
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
@@ -87,7 +86,7 @@ def figure_of(group: str) -> str:
 
 
 def modules_of(name: str) -> tuple[str, ...]:
-    """Paths inside the package of the modules that draw a figure, besides what they import."""
+    """Paths inside the package of the modules that draw a figure, without their imports."""
     folder = "report/figures"
     return f"{folder}/drawing.py", f"{folder}/{_function_of(name)[0]}.py"
 
@@ -113,7 +112,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Returns
     -------
     Figure
-        It belongs to no window and no global state.
+        A figure without a window and without global state.
 
     Raises
     ------
@@ -124,7 +123,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     missing = [key for key in keys if key not in datasets]
     if missing:
         present = ", ".join(map(repr, datasets)) or "none"
-        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {present}")
+        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; datasets: {present}")
     for key in keys:
         motion, other = MOTION_OF_SWEEP.get(key), datasets[key].attrs.get("motion")
         if motion and other not in (motion, None):
@@ -138,7 +137,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
             figure = draw_panels(name, *(datasets[key] for key in keys))
         except KeyError as error:
             raise _missing_variable(name, {key: datasets[key] for key in keys}, error) from error
-        for _ in range(2):  # the second layout settles; then it is fixed: every save is the same
+        for _ in range(2):  # the second pass converges; the layout is then fixed
             figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
@@ -150,7 +149,10 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 def _missing_variable(
     name: str, datasets: Mapping[str, xr.Dataset], error: KeyError
 ) -> KeyError | ValueError:
-    """The error of xarray for a variable that a dataset lacks, with the name of the dataset."""
+    """An error that names the dataset without the variable of an xarray KeyError.
+
+    Other errors are returned unchanged.
+    """
     variable = re.match(r"No variable named '(\w+)'", str(error.args[0]))
     lacking = [k for k, data in datasets.items() if variable and variable[1] not in data.variables]
     if not variable or not lacking:
@@ -160,7 +162,7 @@ def _missing_variable(
 
 
 def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
-    """Keys of the datasets that a figure is drawn from."""
+    """Keys of the datasets of a figure."""
     if name in _DRAWN:
         return _DRAWN[name][1:]
     if name.startswith(CERTIFIED):
@@ -170,23 +172,23 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
     if not keys:
         raise ValueError(
             f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}, and extended_GROUP for "
-            "the group of datasets that are given"
+            "a group of these datasets"
         )
     return keys
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
-    """Provenance of datasets, as JSON: a list of their attributes in PROVENANCE."""
-    found = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
-    return json.dumps(found, sort_keys=True)
+    """Provenance of datasets as JSON: a list of their attributes in `PROVENANCE`."""
+    attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
+    return json.dumps(attributes, sort_keys=True)
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
-    """Write a figure as `.png` (300 dpi) or `.pdf`, whole or not at all, and return its path.
+    """Write a figure atomically as `.png` (300 dpi) or `.pdf` and return its path.
 
-    The metadata say what made it, see `made_from`. Equal figures give equal bytes: no date is
-    written. A missing folder is made. Raises CacheError, one line with the remedy, on a full disk,
-    a read-only folder and the like.
+    The metadata contain the provenance, see `made_from`, and no date, so that equal figures have
+    equal bytes. A missing folder is created. Raises CacheError if the file cannot be written, and
+    ValueError for another suffix.
     """
     from microslip.report.figures.style import style
 

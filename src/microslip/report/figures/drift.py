@@ -1,4 +1,4 @@
-"""Maps of the velocity that a constant force gives a vibrated contact."""
+"""Maps of the drift velocity of a vibrated contact under a constant force."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from microslip.report.figures.map_panel import bands
 from microslip.theory.catalogue import STATIC
 
 DECADES = np.linspace(-3.0, 1.0, 17)
-"""Decimal logarithms of the velocities at the edges of the bands."""
+"""Decimal logarithms of the dimensionless velocities at the edges of the bands."""
 LINES = (0.01, 0.1, 1.0)
-"""Velocities that have a contour."""
+"""Dimensionless velocities of the contours."""
 RIGID = "velocity_large_amplitude"
 REST: look.Ink = {"facecolor": look.PALE, "edgecolor": "none", "gid": "stays"}
 THRESHOLD: look.Ink = {"color": look.BLACK, "lw": 1.3}
@@ -30,20 +30,20 @@ UNCONVERGED: look.Ink = {"color": look.BLACK, "marker": "x", "ls": "none"}
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw the velocity over force and amplitude, sideways and under oscillating bore."""
+    """Draw the velocity over force and amplitude for transverse oscillation and for bore."""
     figure = look.new_figure(look.DOUBLE, 3.3)
     grid = figure.subplots(1, len(datasets))
-    marked = False
+    any_unconverged = False
     for axes, letter, dataset in zip(grid, "ab", datasets, strict=True):
         filled, has_marks = _map(axes, dataset, letter)
-        marked |= has_marks
+        any_unconverged |= has_marks
     velocity_bar(filled, list(grid))
     handles: list[Artist] = [
         Line2D([], [], label="static limit: threshold", **THRESHOLD),
         Patch(label="comes to rest", **REST),
         Line2D([], [], label="rigid contact, at the same velocities", **RIGID_LINE),
     ]
-    if marked:
+    if any_unconverged:
         handles.append(Line2D([], [], label="not converged", **UNCONVERGED))
     panels.legend_of_figure(figure, handles)
     return figure
@@ -52,28 +52,31 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 def velocity_bands(
     axes: Axes, force: np.ndarray, amplitude: np.ndarray, velocity: np.ndarray
 ) -> tuple[ContourSet, np.ndarray]:
-    """Fill a panel with velocities, shape (amplitudes, forces); the bands and what they show."""
+    """Fill a panel with bands of velocity, shape (amplitudes, forces).
+
+    Returns the bands and the decimal logarithms of the velocities, clipped to the bands.
+    """
     clipped = np.clip(np.nan_to_num(velocity), *10.0 ** DECADES[[0, -1]])
     shown, settings = np.log10(clipped), {"levels": DECADES, "cmap": look.COLOURMAP}
     return bands(axes, force, amplitude, shown, extend="both", **settings), shown
 
 
 def velocity_bar(filled: ContourSet, grid: Axes | list[Axes]) -> None:
-    """The colour bar of velocities."""
+    """Add the colour bar of the velocity."""
     powers = np.arange(-3.0, 2.0)
     bar = panels.colour_bar(filled, grid, "mean velocity  (dimensionless)", ticks=powers)
     bar.set_ticklabels([f"${look.number(10.0**power)}$" for power in powers])
 
 
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
-    """One map: its bands, and whether a point is marked as not converged."""
+    """Draw one map; returns its bands and whether it has unconverged points."""
     motion = dataset.attrs["motion"]
     part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
     part = part.transpose("amplitude", "force", ...)
     force, amplitude, velocity, rigid = columns(part, "force", "amplitude", "velocity", RIGID)
     filled, shown = velocity_bands(axes, force, amplitude, velocity)
     levels = np.log10(LINES)
-    # Logarithms below 0 would be dashed.
+    # By default contours of negative values, here logarithms, are dashed.
     white: look.Ink = {"colors": "white", "linestyles": "solid", "linewidths": 0.9}
     white |= {"gid": "contours"}
     lines = axes.contour(force, amplitude, shown, levels, **white)

@@ -1,5 +1,4 @@
-"""Drives of a contact: friction over velocity under each drive, a mass on a spring, and two
-contacts that work against each other."""
+"""Figures of drives: friction over velocity under each drive, a mass on a spring, pairs."""
 
 from __future__ import annotations
 
@@ -17,30 +16,30 @@ from microslip.report.figures.data import at_one_poisson, columns, require
 from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
-"""Colour and marker of the points of each stiffness, from the softest on."""
+"""Colour and marker of the points at each stiffness, ascending."""
 GOOD = 0.01
-"""A share of the friction at a constant velocity within which that is a good model."""
+"""Relative deviation below which a constant velocity is a good model of a drive."""
 AS_A_VELOCITY = 1e5
-"""Stiffness from which on a spring is labelled as a constant velocity."""
+"""Smallest dimensionless stiffness that is labelled as a constant velocity."""
 MARGIN = 1.1
-"""Free space beside the first and the last velocity, as a factor, so that no mark is cut."""
+"""Ratio of the ends of the axis to the first and the last velocity."""
 MU = ("mu_macro", "mu_macro_error", "converged")
 
 
 def drives(
-    name: str, moved: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
+    name: str, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
 ) -> Figure:
     """Draw friction over the mean velocity, and over the mass at one velocity."""
     require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
-    _over_velocity(left, moved, force, spring)
-    _over_mass(right, moved, body)
+    _over_velocity(left, transverse, force, spring)
+    _over_mass(right, transverse, body)
     return figure
 
 
 def pairs(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw friction over the mean velocity, of one contact and of two in antiphase."""
+    """Draw friction over the mean velocity of one contact and of two contacts in antiphase."""
     one, pair, force = map(_one, datasets)
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -64,11 +63,13 @@ def pairs(name: str, *datasets: xr.Dataset) -> Figure:
     return figure
 
 
-def _over_velocity(axes: Axes, moved: xr.Dataset, force: xr.Dataset, spring: xr.Dataset) -> None:
-    """All drives at the amplitude of the sweeps."""
+def _over_velocity(
+    axes: Axes, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset
+) -> None:
+    """Draw friction over the mean velocity under all drives."""
     springs = _one(spring)
     amplitude = float(springs["amplitude"])
-    velocity, mu = columns(_moved(moved, amplitude), "velocity", "mu_macro")
+    velocity, mu = columns(_constant_velocity(transverse, amplitude), "velocity", "mu_macro")
     ink: look.Ink = {"color": look.BLACK, "lw": 1.3, "gid": "velocity"}
     axes.plot(velocity, mu, label="constant velocity", **ink)
     _springs(axes, springs, "velocity", mfc="white")
@@ -79,11 +80,11 @@ def _over_velocity(axes: Axes, moved: xr.Dataset, force: xr.Dataset, spring: xr.
     panels.legend_above(axes, "a", f"amplitude {amplitude:g}, sideways")
 
 
-def _over_mass(axes: Axes, moved: xr.Dataset, body: xr.Dataset) -> None:
-    """A mass on springs at one velocity, and the friction at a constant velocity."""
+def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
+    """Draw friction over the mass on a spring, and friction at a constant velocity."""
     bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
-    mu = float(_at(_moved(moved, amplitude), "velocity", velocity)["mu_macro"])
+    mu = float(_at(_constant_velocity(transverse, amplitude), "velocity", velocity)["mu_macro"])
     axes.axhspan(mu * (1 - GOOD), mu * (1 + GOOD), color=look.PALE, label="within 1 %")
     axes.axhline(mu, color=look.BLACK, lw=1.3, label="constant velocity", gid="velocity")
     _springs(axes, bodies, "mass", name="")
@@ -95,7 +96,7 @@ def _over_mass(axes: Axes, moved: xr.Dataset, body: xr.Dataset) -> None:
 
 
 def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", **ink: Any) -> None:
-    """Friction on every spring; the stiffest may stand for a constant velocity."""
+    """Draw friction at every stiffness. Very stiff springs are labelled as a constant velocity."""
     for k, (color, marker) in zip(range(dataset.sizes["stiffness"]), SPRINGS, strict=False):
         part = dataset.isel(stiffness=k)
         stiffness = float(part["stiffness"])
@@ -107,11 +108,11 @@ def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", 
 
 
 def _force(axes: Axes, dataset: xr.Dataset) -> None:
-    """The mean velocities under constant forces, where the contact moves."""
+    """Draw constant forces over the mean velocities of contacts that move."""
     moving = dataset.isel(force=(dataset["velocity"].values > 0.0))
-    velocity, force, done = columns(moving, "velocity", "force", "converged")
+    velocity, force, converged = columns(moving, "velocity", "force", "converged")
     label, exact = "constant force", np.zeros(force.size)
-    panels.computed(axes, velocity, force, exact, done, label=label, color=look.VERMILLION)
+    panels.computed(axes, velocity, force, exact, converged, label=label, color=look.VERMILLION)
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
@@ -120,18 +121,18 @@ def _logarithmic(axes: Axes, low: float, high: float) -> None:
 
 
 def _one(dataset: xr.Dataset) -> xr.Dataset:
-    """At one Poisson's ratio, without the axes that have one entry."""
+    """Select one Poisson's ratio and drop axes with one entry."""
     return at_one_poisson(dataset)[0].squeeze()
 
 
-def _moved(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
-    """The cut of the paper's map at an amplitude."""
+def _constant_velocity(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
+    """Select an amplitude of the sweep `transverse`."""
     return _at(at_one_poisson(transverse)[0], "amplitude", amplitude)
 
 
 def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """A dataset at one of its values, up to rounding. Raises ValueError if it has no such value."""
+    """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
     same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
     if not same.size:
-        raise ValueError(f"the sweep transverse has no {dim} {value:g}, as the drives have")
+        raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")
     return dataset.isel({dim: same[0]})

@@ -1,4 +1,4 @@
-"""Figure 3: the traction field of the steady bore and its instantaneous centre of rotation."""
+"""Figure 3: traction field and instantaneous centre of rotation of the steady bore."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from microslip.report.figures.data import at_one_poisson, columns
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
-"""Light enough everywhere for black arrows."""
+"""Colours with enough contrast to black arrows."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw traction arrows over the friction bound, lateral across and forward up."""
+    """Draw traction arrows on the friction bound. The lateral axis is horizontal."""
     dataset, _ = at_one_poisson(dataset)
     x, y = columns(dataset, "field_lateral_position", "field_forward_position")
     tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
@@ -56,7 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> ScalarMappable:
-    """Shade the friction bound; outside the outermost cells it is that of the nearest cell."""
+    """Shade the friction bound. Between the outermost cells and the rim it is constant."""
     angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
     rim_x, rim_y = np.cos(angle), np.sin(angle)
     nearest = griddata((x, y), bound, (rim_x, rim_y), method="nearest")
@@ -70,16 +70,16 @@ def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> 
 def lattice(
     x: np.ndarray, y: np.ndarray, *fields: np.ndarray, centre: float
 ) -> tuple[np.ndarray, ...]:
-    """Nodes of an even square lattice, and the fields there, linear between the cells.
+    """Interpolate fields linearly from the cells onto a square lattice.
 
-    Arrows on the cells themselves would crowd in the middle and at the rim. Nodes close to the rim
-    and to the centre of rotation, where an arrow is a dot, are left out.
+    Arrows at the cells would overlap in the middle and at the rim. Nodes close to the rim and to
+    the centre of rotation are omitted. Returns lateral and forward positions, then the fields.
     """
     count = round(1.0 / SPACING)
     line = SPACING * np.arange(-count, count + 1)
     nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
     values = griddata(np.column_stack((x, y)), np.column_stack(fields), nodes)
-    shown = np.isfinite(values).all(axis=1)
-    shown &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
-    shown &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
-    return (*nodes[shown].T, *values[shown].T)
+    visible = np.isfinite(values).all(axis=1)
+    visible &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
+    visible &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
+    return (*nodes[visible].T, *values[visible].T)

@@ -1,4 +1,4 @@
-"""A fit: measured friction and that of the fitted contact, and the residuals."""
+"""Figure of a fit: measured friction, friction of the fitted contact, and residuals."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ CONDITIONS = {
     "row_load_N": ("load", "N"),
     "frequency_Hz": ("frequency", "Hz"),
 }
-"""Conditions that can differ from row to row: name and SI unit."""
+"""Conditions that can differ between rows: name and SI unit."""
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PARAMETERS = (
     (r"\mu", "mu{}", ""),
     (r"u_\mathrm{lim}", "u_lim{}_m", "m"),
     ("G", "shear_modulus{}_Pa", "Pa"),
 )
-"""Fitted numbers: symbol, name in the dataset with a place for the end of the interval, SI unit."""
+"""Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
 BAND = 2.0
-"""Standard errors within which about 95 % of the residuals are."""
+"""Half width in standard errors of the band with about 95 % of the residuals."""
 WIDE = 10.0
-"""Ratio of the ends of an axis from which on it is logarithmic."""
+"""Ratio of the ends of an axis above which it is logarithmic."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw measured and fitted friction above, residuals below.
 
-    The abscissa is the condition with the most values; rows that differ in another one have a look
-    of their own. The line is the model curve, with a band for the error of the model; a row that no
-    curve passes through has a short dash there.
+    The abscissa is the condition with the most values. Rows that differ in another condition have
+    another colour and marker. The line is the model curve, with a band for the error of the model.
+    A row without a model curve has a short dash at the friction of the model.
     """
     abscissa = abscissa_of({each: dataset[each].values for each in CONDITIONS})
     figure = look.new_figure(look.SINGLE, 4.0)
@@ -89,7 +89,7 @@ def _model(
     *,
     ink: tuple[str, str, Any],
 ) -> None:
-    """The model curve of rows that share all conditions but the abscissa, else a dash at each."""
+    """Draw the model curve of rows that differ in the abscissa only, else a dash for each row."""
     color, _, ls = ink
     others = [each for each in CONDITIONS if each != abscissa]
     here = np.ones(dataset[f"curve_{abscissa}"].shape, bool)
@@ -108,7 +108,7 @@ def _model(
 
 
 def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
-    """Titles and rows of the series that differ in another condition than the abscissa.
+    """Titles and row indices of the series. They differ in a condition other than the abscissa.
 
     If there are more series than line styles, all rows are one series.
     """
@@ -127,7 +127,7 @@ def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
 
 
 def _unit(condition: str, dataset: xr.Dataset) -> str:
-    """SI unit of a condition; the amplitude may be an angle."""
+    """SI unit of a condition. The amplitude of a bore is an angle."""
     if condition == "amplitude_si" and dataset.attrs.get("motion") == "bore":
         return "rad"
     return CONDITIONS[condition][1]
@@ -139,14 +139,14 @@ def _value(condition: str, value: float, dataset: xr.Dataset) -> str:
 
 
 def _prefix(values: np.ndarray | float, unit: str) -> tuple[float, str]:
-    """A power of ten that suits the values, and the unit with its prefix; 1 without a unit."""
+    """A power of ten for values in a unit, and the unit with its prefix. Without a unit it is 1."""
     largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
     power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
     return 10.0**power, EngFormatter.ENG_PREFIXES[power] + unit
 
 
 def _parameters(dataset: xr.Dataset) -> str:
-    """The fitted numbers with the larger halves of their intervals."""
+    """The fitted parameters as text, each with the larger half of its interval."""
     parts = []
     for symbol, name, unit in PARAMETERS:
         names = [name.format(part) for part in ("", "_low", "_high")]

@@ -1,41 +1,51 @@
-"""Formulas as motions write them, "v0 / (omega u_lim)", in mathtext."""
+"""Plain-text formulas of motions, such as "v0 / (omega u_lim)", as mathtext and HTML."""
 
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
 } | {"phi": r"\varphi", "theta": r"\vartheta"}
-"""Names of Greek letters, and how matplotlib writes those that have two shapes."""
+"""Names of Greek letters and their LaTeX commands."""
 
 LETTERS = {
     **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
     **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
 }
-"""Names of Greek letters, and their Unicode characters."""
+"""Names of Greek letters and their Unicode characters."""
 
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
 def mathtext(formula: str) -> str:
-    """A formula set as one; of one with words in it, only the symbols.
+    """A formula as mathtext. If it contains words, only its symbols are mathtext.
 
-    A symbol is a letter, or the name of a Greek one, that a number or an index may follow: x, v0,
-    u_lim, phi_lk. All other letters are words.
+    A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
+    u_lim, phi_lk. Other sequences of letters are words.
     """
-    if any(not _symbol(found) for found in _WORD.finditer(formula)):
+    if any(not _symbol(match) for match in _WORD.finditer(formula)):
         return _WORD.sub(_in_words, formula)
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
     text = re.sub(r"\s+", r"\\,", text)
     return f"${text}$" if text else ""
 
 
-def html(formula: str) -> str:
-    """A formula in HTML: letters in italics, indices below."""
+def axis_label(dataset: xr.Dataset, dim: str, default: str = "") -> str:
+    """Name and formula of an axis, or the name and `default` if the axis has no formula."""
+    name = "forward velocity" if dim == "velocity" else dim
+    return f"{name}  {mathtext(dataset[dim].attrs.get('formula', default))}".strip()
 
-    def symbol(found: re.Match[str]) -> str:
-        letters, number, index = found.groups()
+
+def html(formula: str) -> str:
+    """A formula as HTML, with italic letters and subscripts."""
+
+    def symbol(match: re.Match[str]) -> str:
+        letters, number, index = match.groups()
         below = number + (index or "")
         letter = LETTERS.get(letters, letters)
         return f"<i>{letter}</i>" + (f"<sub>{below}</sub>" if below else "")
@@ -44,9 +54,9 @@ def html(formula: str) -> str:
     return text.replace("</sub> <i>", "</sub><i>").replace("</i> <i>", " ")
 
 
-def _symbol(found: re.Match[str]) -> str:
-    """The symbol that a match of _WORD is, "" if it is a word."""
-    letters, number, index = found.groups()
+def _symbol(match: re.Match[str]) -> str:
+    """The LaTeX symbol of a match of _WORD, "" for a word."""
+    letters, number, index = match.groups()
     if letters not in GREEK and len(letters) > 1:
         return ""
     base = GREEK.get(letters, letters)
@@ -54,7 +64,7 @@ def _symbol(found: re.Match[str]) -> str:
     return f"{base}_{{{below}}}" if below else base
 
 
-def _in_words(found: re.Match[str]) -> str:
-    # A letter alone may be a word as well, such as an article.
-    plain = len(found[0]) == 1 or not _symbol(found)
-    return found[0] if plain else f"${_symbol(found)}$"
+def _in_words(match: re.Match[str]) -> str:
+    # A single letter may be a word, such as an article.
+    plain = len(match[0]) == 1 or not _symbol(match)
+    return match[0] if plain else f"${_symbol(match)}$"

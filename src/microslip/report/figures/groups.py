@@ -1,4 +1,4 @@
-"""The figure of a group of sweeps in `extended`: a map of each, or a line of each on one panel."""
+"""Figure of a group of sweeps in `extended`: a panel with a map, or a line, for each sweep."""
 
 from __future__ import annotations
 
@@ -22,32 +22,29 @@ from microslip.report.figures.data import (
     require,
     sweep,
 )
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.formulas import axis_label, mathtext
 from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Columns of maps by their number; other numbers have three."""
+"""Number of columns by the number of maps, else 3."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height in inches of a row of maps, by the number of columns, and of the margins."""
+"""Height in inches of a row of maps by the number of columns, and height of both margins."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Fewer than on a large map, and fewer with a number, which would hide the others."""
-LABELLED = np.array([0.1, 0.5, 0.9])
+"""Levels of contours, fewer than on a large map."""
 BEYOND = 0.01
-"""Friction below 0 or above 1 by more than this is no error of the points."""
-MOST_MAPS = 12
-"""Maps that a figure has room for, as `load.MOST_PANELS`."""
+"""Excess below 0 or above 1 that is attributed to the errors of the points."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
-"""Limits from theory at Poisson's ratio 0, by the axis of the lines."""
+"""Closed forms that are drawn at Poisson's ratio 0, by the horizontal axis."""
 JOINING = 0.5
-"""Width of lines that only join marks."""
+"""Width in points of lines between markers."""
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw maps if every dataset has two amplitudes and two velocities above 0, lines if none has.
 
-    Every Poisson's ratio of every dataset is drawn: by its effect where there is room, else with a
-    map or a line of its own. Raises ValueError for a mixture of maps and lines.
+    Every Poisson's ratio of a dataset has a map or a line. If there is room, `poisson.draw` shows
+    the effect of the ratio instead.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
@@ -61,46 +58,36 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
             shown.append(part)
             at = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
             titles.append(look.literal(title) + at)
-    spans = [_spans_a_map(dataset) for dataset in shown]
-    if any(spans) and not all(spans):
-        odd = shown[spans.index(False)].attrs.get("title")
-        raise ValueError(f"figure {name}: {odd!r} spans no map, as others of its group do")
-    what, most = ("maps", MOST_MAPS) if all(spans) else ("sweeps", len(look.LINES))
-    if len(shown) > most:
-        raise ValueError(f"figure {name}: {len(shown)} {what}; allowed: up to {most}")
-    return (_maps if all(spans) else _lines)(shown, titles)
+    return (_maps if _spans_a_map(shown[0]) else _lines)(shown, titles)
 
 
 def _spans_a_map(dataset: xr.Dataset) -> bool:
-    """Whether there is an area to draw."""
+    """Whether the dataset has two amplitudes and two velocities above 0."""
     positive = int((dataset["velocity"] > 0).sum())
     return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
 
 
 def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """A map of each dataset, headed by its title, with one scale of colours."""
+    """Draw a map of each dataset with its title, on a common colour scale."""
     count = len(datasets)
     columns_ = COLUMNS.get(count, 3)
     rows = -(-count // columns_)
     width = look.DOUBLE if columns_ > 1 else 0.65 * look.DOUBLE
     figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
-    fills, contours, labelled = levels_of(datasets)
+    fills, contours = levels_of(datasets)
     grid = figure.subplots(rows, columns_, squeeze=False).ravel()
     entries: dict[str, Artist] = {}
     for axes, letter, dataset, title in zip(
         grid, look.letters(count), datasets, titles, strict=False
     ):
-        # Where friction is negative, the contour of 0 is next to that of 0.1, and worth more.
-        spare = 0.1 if float(dataset["mu_macro"].min()) < -BEYOND else None
-        numbered = labelled[labelled != spare]
-        filled, handles, _ = fill(axes, dataset, fills, contours, numbered, look.SMALLEST)
+        filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
         entries |= {str(handle.get_label()): handle for handle in handles}
         axes.set_gid("map")
         panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
     for axes in grid[count:]:
         axes.remove()
-    for dim, quantity in (("velocity", "forward velocity"), ("amplitude", "amplitude")):
-        _label_maps(figure, list(grid[:count]), dim, quantity, datasets)
+    for dim in ("velocity", "amplitude"):
+        _label_maps(figure, list(grid[:count]), dim, datasets)
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
     shown = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     panels.colour_bar(filled, list(grid[:count]), label, aspect=20 * rows, ticks=shown)
@@ -108,10 +95,10 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     return figure
 
 
-def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Levels of bands, of contours, and of contours with a number.
+def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
+    """Levels of bands and of contours.
 
-    Bands hold all values: they span 0 to 1, and further where values lie outside.
+    The bands span 0 to 1, extended to the smallest and the largest value.
     """
     low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
     high = max(float(dataset["mu_macro"].max()) for dataset in datasets)
@@ -119,40 +106,40 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, n
     high = np.ceil(10 * high) if high > 1 + BEYOND else 10.0
     fills = np.linspace(low / 10, high / 10, round(2 * (high - low)) + 1)
     if low == 0:
-        return fills, CONTOURS, LABELLED
+        return fills, CONTOURS
     contours = np.concatenate([-CONTOURS[::-1], [0.0], CONTOURS])
-    contours = contours[contours > fills[0]]
-    return fills, contours, contours[np.isin(contours, [-0.7, -0.3, 0.0, *LABELLED])]
+    return fills, contours[contours > fills[0]]
 
 
 def _label_maps(
-    figure: Figure, grid: Sequence[Axes], dim: str, quantity: str, datasets: Sequence[xr.Dataset]
+    figure: Figure, grid: Sequence[Axes], dim: str, datasets: Sequence[xr.Dataset]
 ) -> None:
-    """Name an axis once where all panels have the same, else at each panel."""
+    """Label an axis once for all panels if they share it, else on each panel."""
     texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
     if len(set(texts)) == 1:
         write = figure.supxlabel if dim == "velocity" else figure.supylabel
-        write(f"{quantity}  {texts[0]}".strip(), fontsize=look.RC["axes.labelsize"])
+        write(axis_label(datasets[0], dim), fontsize=look.RC["axes.labelsize"])
         return
-    spec = panels.place_of(grid[0]).get_gridspec()
     width, height = figure.get_size_inches()
-    room = width / spec.ncols - 0.7 if dim == "velocity" else height / spec.nrows - 0.5
-    for axes, text in zip(grid, texts, strict=True):
+    across = COLUMNS.get(len(grid), 3)
+    room = width / across - 0.7 if dim == "velocity" else height / -(-len(grid) // across) - 0.5
+    for axes, text, dataset in zip(grid, texts, datasets, strict=True):
         axis = axes.xaxis if dim == "velocity" else axes.yaxis
-        axis.set_label_text(look.wrapped(text or quantity, room, 7.5), fontsize=7.5)
+        label = text or axis_label(dataset, dim)
+        axis.set_label_text(look.wrapped(label, room, 7.5), fontsize=7.5)
 
 
 def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """A line of each dataset: static friction over amplitude, or friction over velocity."""
+    """Draw a line for each dataset: static friction over amplitude, or friction over velocity."""
     (dim,) = {"amplitude" if d.sizes.get("amplitude", 0) > 1 else "velocity" for d in datasets}
     figure = look.new_figure(5.2, 3.3)
     axes = figure.subplots()
     velocities: set[float] = set()
     handles = []
     for dataset, title, (color, marker, ls) in zip(datasets, titles, look.LINES, strict=False):
-        limited = _limit(axes, dataset, dim, color=color, ls=ls)
-        style: look.Ink = {"ls": ls} if limited else {"lw": JOINING}
-        label = look.wrapped(look.shown_in_legend(title), 1.35, 8.0)
+        has_limit = _limit(axes, dataset, dim, color=color, ls=ls)
+        style: look.Ink = {"ls": ls} if has_limit else {"lw": JOINING}
+        label = look.wrapped(title, 1.35, 8.0)
         handles.append(Line2D([], [], color=color, marker=marker, ms=4.0, label=label, **style))
         points = dataset.isel(velocity=dataset["velocity"].values > 0)
         if points.sizes["velocity"]:
@@ -175,10 +162,10 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
-    """Draw the limit for vanishing velocity, or a closed form; whether the dataset has one."""
-    known = [variable for variable in THEORY[dim] if variable in dataset]
-    if known and float(dataset["poisson"]) == 0.0:
-        line = limit(dataset, known[0])
+    """Draw a closed form or the computed static limit; returns whether the dataset has one."""
+    forms = [variable for variable in THEORY[dim] if variable in dataset]
+    if forms and float(dataset["poisson"]) == 0.0:
+        line = limit(dataset, forms[0])
         if line.ndim == 1:
             axes.plot(line[line.dims[0]], line, gid="limit", **ink)
             return True
@@ -190,11 +177,11 @@ def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
 
 
 def _marks(axes: Axes, points: xr.Dataset, dim: str, color: str, marker: str) -> None:
-    """Computed points with their errors, joined by a thin line; hollow where not converged."""
+    """Draw computed points with errors, joined by a thin line; unconverged ones are hollow."""
     x, y, error = map(finite_or_nan, columns(points, dim, "mu_macro", "mu_macro_error"))
     axes.plot(x, y, color=color, lw=JOINING, alpha=0.6, zorder=1.5)
-    done = points["converged"].values != 0
-    for part, face, gid in ((done, color, "computed"), (~done, "white", "unconverged")):
+    converged = points["converged"].values != 0
+    for part, face, gid in ((converged, color, "computed"), (~converged, "white", "unconverged")):
         if part.any():
             ink: look.Ink = {"color": color, "mfc": face, "gid": gid, **look.ERROR_BARS}
             axes.errorbar(x[part], y[part], yerr=error[part], fmt=marker, ms=4.0, **ink)

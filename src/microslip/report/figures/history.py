@@ -1,4 +1,4 @@
-"""Figure 1: the forces over the first periods of a transverse oscillation."""
+"""Figure 1: forces over the first periods of a transverse oscillation."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from microslip.report.figures.data import at_one_poisson, columns
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the forward force with its mean over the last period, and below it the lateral force."""
+    """Draw the forward force with its mean over the last period, and the lateral force."""
     dataset, _ = at_one_poisson(dataset)
-    periods = phase_in_periods(dataset["history_phase"])
+    periods = dataset["history_phase"].values / (2.0 * np.pi)
     forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")
     figure = look.new_figure(look.SINGLE, 3.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.0))
@@ -41,9 +41,3 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     panels.legend_above(upper, "a", look.conditions(zip(symbols, values, strict=True)))
     panels.letter(lower, "b")
     return figure
-
-
-def phase_in_periods(phase: xr.DataArray) -> np.ndarray:
-    """The phase in periods. It is in radians unless its `units` are periods or cycles."""
-    counted = phase.attrs.get("units", "rad") in ("period", "periods", "cycle", "cycles")
-    return phase.values / (1.0 if counted else 2.0 * np.pi)

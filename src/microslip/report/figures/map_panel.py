@@ -1,4 +1,4 @@
-"""One panel with a map: bands, contours, and hatched cells where a point is not converged."""
+"""A panel with a map: bands, contours, and hatched cells around unconverged points."""
 
 from __future__ import annotations
 
@@ -12,33 +12,59 @@ from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from scipy.spatial import KDTree
 
+from microslip.datasets.query.surface import Surface
 from microslip.report.figures import panels, signed
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
-from microslip.report.figures.surface import refined, supported
 
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
 FEW = len(LINE_LEVELS)
-"""Points along an axis below which they are drawn: more than one contour may pass between two."""
+"""Number of points along an axis below which the points are drawn."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 
 
 def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
-    """Filled contours without white hairlines between the bands in a PDF."""
+    """Draw filled contours without white hairlines between the bands in a PDF."""
     filled = axes.contourf(*table, **settings)
     filled.set(edgecolor="face", linewidth=0.3)
     return filled
 
 
-def number_contours(axes: Axes, contours: ContourSet, levels: np.ndarray, size: float) -> None:
-    """Write their numbers on the contours of these levels once the panel has its final size."""
+def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
+    """Write numbers on contours once the panel has its final size.
+
+    A number is placed where the other contours are farthest away. A contour without enough space
+    has no number.
+
+    Parameters
+    ----------
+    size : float
+        Font size in points.
+    """
+    height = size * look.DPI / 72.0
 
     def write() -> None:
-        axes.clabel(contours, levels, fmt="%.1f", fontsize=size, inline_spacing=2)
+        lines = [axes.transData.transform(path.vertices) for path in contours.get_paths()]
+        low, high = axes.bbox.get_points() + 2.0 * height * np.array([[1.0], [-1.0]])
+        places: list[np.ndarray] = []
+        for k, vertices in enumerate(lines):
+            line = vertices[((vertices > low) & (vertices < high)).all(axis=1)]
+            if not len(line):
+                continue
+            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], low[None]])).query(line)
+            if places:
+                room[KDTree(places).query(line)[0] < 3.0 * height] = 0.0
+            if room.max() > 0.7 * height:
+                places.append(line[room.argmax()])
+        if places:
+            ink: look.Ink = {"fmt": "%.1f", "fontsize": size, "inline_spacing": 2}
+            ink |= {"manual": axes.transData.inverted().transform(places).tolist()}
+            axes.clabel(contours, **ink)
 
     panels.after_layout(axes.get_figure(root=True), write)
 
@@ -48,52 +74,53 @@ def fill(
     dataset: xr.Dataset,
     fills: np.ndarray = FILL_LEVELS,
     lines: np.ndarray = LINE_LEVELS,
-    labelled: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, list[Artist], int]:
-    """Fill a panel with `mu_macro` over velocity and amplitude, as `microslip.at` interpolates it.
+    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as by `microslip.at`.
 
-    Contours end where the points do not support them. There, and on coarse maps, the points are
-    drawn.
+    Contours end where the interpolation is too uncertain, see `Surface.supported`. Then, and on
+    coarse maps, the computed points are drawn as well.
 
     Parameters
     ----------
-    fills, lines, labelled : ndarray
-        Levels of the bands, of the contours (dashed below 0, heavier at 0) and of the contours with
-        a number, ascending.
+    fills, lines : ndarray
+        Levels of the bands and of the contours (dashed below 0, heavier at 0), ascending.
     size : float
-        Of the numbers, in points.
+        Font size of the numbers in points.
 
     Returns
     -------
     tuple
-        The bands, for a colour bar; entries of a legend; the number of hatched cells.
+        The bands, for a colour bar; the legend entries; the number of hatched cells.
     """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
     if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
-        raise ValueError("a map needs two amplitudes and two positive velocities at least")
+        raise ValueError("a map needs at least two amplitudes and two positive velocities")
     shown = shown.transpose("amplitude", "velocity", ...)
-    points = velocity, amplitude, _ = columns(shown, "velocity", "amplitude", "mu_macro")
-    x, y, values = refined(*points)
+    velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
+    surface = Surface(velocity, amplitude, mu)
+    grid = surface.velocity, surface.amplitude
     colours, norm = signed.scale(fills)
-    inside = np.clip(values, fills[0], fills[-1])  # rounding at the ends must leave no white holes
-    filled = bands(axes, x, y, inside, levels=fills, cmap=colours, norm=norm)
-    known = supported((x, y, values), points, lines)
+    # Values outside the levels due to rounding would be white.
+    inside = np.clip(surface.values, fills[0], fills[-1])
+    filled = bands(axes, *grid, inside, levels=fills, cmap=colours, norm=norm)
+    supported = surface.supported(lines)
     contours = axes.contour(
-        *known,
+        *grid,
+        supported,
         levels=lines,
         colors=signed.inks(lines, fills),
         linestyles=["dashed" if level < 0 else "solid" for level in lines],
         linewidths=[1.1 if level == 0 else 0.7 for level in lines],
     )
     contours.set_gid("contours")
-    number_contours(axes, contours, labelled, size)
+    number_contours(axes, contours, size)
     axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
     panels.logarithmic(axes.xaxis)
     panels.ticks_outside(axes)
     handles: list[Artist] = []
     few = min(len(velocity), len(amplitude)) < FEW
-    if few or np.ma.count(known[2]) < np.ma.count(values):
+    if few or np.ma.count(supported) < np.ma.count(surface.values):
         axes.plot(*map(np.ravel, np.meshgrid(velocity, amplitude)), **POINTS)
         handles.append(Line2D([], [], label="computed points", **POINTS))
     hatched = _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
@@ -102,19 +129,14 @@ def fill(
     return filled, handles, hatched
 
 
-def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
-    """Hatch the cell around every point that is not converged, and count the cells."""
-    x, y = np.exp(_edges(np.log(velocity))), _edges(amplitude)
+def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, converged: np.ndarray) -> int:
+    """Hatch the cell around every unconverged point and return the number of cells."""
+    x, y = panels.edges(velocity, True), panels.edges(amplitude, False)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
-        for i, j in np.argwhere(~done)
+        for i, j in np.argwhere(~converged)
     ]
     axes.add_collection(
         PolyCollection(cells, gid="unconverged", zorder=4, **HATCHED), autolim=False
     )
     return len(cells)
-
-
-def _edges(points: np.ndarray) -> np.ndarray:
-    """Edges half-way between the points; the outer ones at the outermost points."""
-    return np.concatenate(([points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]))

@@ -1,4 +1,4 @@
-"""Which model is the cheapest that is accurate enough, over velocity and amplitude."""
+"""Map of the cheapest model that is accurate enough, over velocity and amplitude."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 from scipy import ndimage
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
+from microslip.datasets.query.interpolation import Axis
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 
@@ -20,7 +21,7 @@ BORDER: look.Ink = {"color": look.BLACK, "lw": 0.8, "capstyle": "projecting", "z
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw one row of panels a motion, one column a tolerance."""
+    """Draw a row of panels for each motion and a column for each tolerance."""
     tolerances = dataset["map_tolerance"].values
     names = {str(n) for motion in MOTIONS for n in dataset[f"{motion}_cheapest"].values.ravel()}
     models = look.in_order(names - {""})
@@ -44,15 +45,15 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> None:
-    """Colour every cell by its model, outline the regions and write the model into each."""
+    """Colour every cell by its model, outline the regions and label them."""
     velocity, amplitude = (dataset[f"{motion}_{n}"] for n in ("velocity", "amplitude"))
-    shown = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
-    codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in shown])
-    logarithmic = _is_logarithmic(amplitude.values)
-    x, y = _edges(velocity.values, True), _edges(amplitude.values, logarithmic)
+    names = dataset[f"{motion}_cheapest"].transpose(amplitude.name, velocity.name).values
+    codes = np.array([[models.index(str(n)) if str(n) else -1 for n in line] for line in names])
+    logarithmic = Axis(amplitude.values).logarithmic
+    x, y = panels.edges(velocity.values, True), panels.edges(amplitude.values, logarithmic)
     axes.set(xscale="log", yscale="log" if logarithmic else "linear")
     colours = ListedColormap([_pale(name) for name in models] or [(1.0, 1.0, 1.0)])
-    # Coloured edges: no hairlines between the cells in a PDF.
+    # Coloured edges prevent hairlines between the cells in a PDF.
     ink: look.Ink = {"cmap": colours, "vmin": -0.5, "vmax": max(len(models), 1) - 0.5}
     ink |= {"edgecolors": "face"}
     axes.pcolormesh(x, y, np.ma.masked_less(codes, 0), lw=0.3, gid="cheapest", **ink)
@@ -74,39 +75,19 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
 
 
 def _centres(inside: np.ndarray) -> list[np.ndarray]:
-    """The cell of every connected region that is farthest from its border."""
+    """Indices of the cell of every connected region that is farthest from the border."""
     regions, count = ndimage.label(inside)
     centres = []
     for region in range(1, count + 1):
         depth = ndimage.distance_transform_cdt(np.pad(regions == region, 1))[1:-1, 1:-1]
-        # Of equally deep cells the one nearest the middle of them.
+        # Among cells of equal depth, choose the one nearest their centroid.
         deepest = np.argwhere(depth == depth.max())
         away = np.hypot(*(deepest - deepest.mean(axis=0)).T)
         centres.append(deepest[np.argmin(away)])
     return centres
 
 
-def _edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Edges half-way between the points, by their ratios or their differences.
-
-    The outer edges are as far from the points as the inner ones.
-    """
-    if logarithmic:
-        return np.exp(_edges(np.log(points), False))
-    between = (points[1:] + points[:-1]) / 2 if points.size > 1 else points + 0.5
-    return np.unique([2 * points[0] - between[0], *between, 2 * points[-1] - between[-1]])
-
-
-def _is_logarithmic(points: np.ndarray) -> bool:
-    """Whether the ratios of the points are more even than their differences."""
-    if points.size < 3 or points[0] <= 0.0:
-        return False
-    steps = np.diff(points), np.diff(np.log(points))
-    plain, ratios = (float(np.ptp(step) / step.mean()) for step in steps)
-    return ratios < plain
-
-
 def _pale(model: str) -> tuple[float, float, float]:
-    """The colour of a model, pale enough for black letters on it."""
+    """The colour of a model, lightened for black letters on it."""
     red, green, blue = (1.0 - 0.5 * (1.0 - part) for part in to_rgb(look.model(model)[0]))
     return red, green, blue

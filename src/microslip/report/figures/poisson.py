@@ -1,4 +1,4 @@
-"""Effect of Poisson's ratio: maps at several of its values, and their differences."""
+"""Effect of Poisson's ratio: contours of friction at several ratios, and differences."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import MU_MACRO
+from microslip.datasets.query.surface import Surface
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
-from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.formulas import axis_label
 from microslip.report.figures.map_panel import bands, number_contours
-from microslip.report.figures.surface import refined, supported
 
 LEVELS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 LOOKS = (
@@ -26,24 +26,26 @@ LOOKS = (
 )
 """Colour and line style at each Poisson's ratio, ascending."""
 MOST = 3
-"""Datasets that a figure has room for."""
+"""Maximum number of datasets in a figure."""
 MOST_LEVELS = 12
-"""Levels on one side of 0 from which on the two inner ones have no room for labels."""
+"""Number of levels on each side of 0 from which the labels of the two inner ones would overlap."""
 DIVERGING = "PuOr"
-"""Pale in the middle, and evenly darker on both sides."""
+"""Colour map of differences, pale in the middle."""
 
 
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:
-    """Whether all datasets have differences between Poisson's ratios, and a figure has room."""
+    """Whether all datasets have differences between Poisson's ratios and fit into one figure."""
     ratios = [d.sizes.get("poisson", 1) if "mu_macro_change" in d else 1 for d in datasets]
     return len(datasets) <= MOST and min(ratios) > 1 and max(ratios) <= len(LOOKS)
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw a row of panels for each dataset: contours at every Poisson's ratio, and beside them the
-    effect of the largest one."""
+    """Draw a row of panels for each dataset: contours at every ratio, effect of the largest one.
+
+    Raises ValueError if the datasets do not fit, see `has_room`.
+    """
     if not has_room(datasets):
-        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} of Poisson's ratios"
+        allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} Poisson's ratios"
         raise ValueError(f"figure {name}: no room for the datasets; allowed: {allowed}")
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
     grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
@@ -59,14 +61,17 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 
 def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """Contours of friction at each Poisson's ratio; those at the smallest one have numbers."""
+    """Draw contours of friction at each Poisson's ratio, with numbers at the smallest one."""
     for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
-        points = columns(one, "velocity", "amplitude", "mu_macro")
-        known = supported(refined(*points), points, LEVELS)
-        lines = axes.contour(*known, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1)
+        surface = Surface(*columns(one, "velocity", "amplitude", "mu_macro"))
+        grid = surface.velocity, surface.amplitude
+        supported = surface.supported(LEVELS)
+        lines = axes.contour(
+            *grid, supported, LEVELS, colors=[color], linestyles=[ls], linewidths=1.1
+        )
         if index == 0:
-            number_contours(axes, lines, LEVELS, look.SMALLEST)
+            number_contours(axes, lines, look.SMALLEST)
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
         axes.plot([], [], color=color, ls=ls, label=label)
     key = "title" if "group" in shown.attrs else "motion"
@@ -75,17 +80,20 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 
 
 def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """The effect of the largest ratio. Changes within twice the tolerance, which the errors of the
-    points leave open, are pale."""
+    """Draw the difference between the largest and the smallest Poisson's ratio.
+
+    Differences within twice the tolerance are not significant and have the palest colour.
+    """
     last = shown.isel(poisson=-1)
-    x, y, values = refined(*columns(last, "velocity", "amplitude", "mu_macro_change"))
+    surface = Surface(*columns(last, "velocity", "amplitude", "mu_macro_change"))
+    grid = surface.velocity, surface.amplitude
     step = 2.0 * float(shown.attrs["tolerance"])
-    if not step > 0.0:  # no tolerance was requested: the largest error estimate
+    if not step > 0.0:  # without a tolerance: the largest error estimate
         step = 2.0 * max(float(shown["mu_macro_error"].max()), 1e-3)
-    count = max(2, int(np.ceil(np.abs(values).max() / step)))
+    count = max(2, int(np.ceil(np.abs(surface.values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
-    filled = bands(axes, x, y, values, levels=levels, cmap=DIVERGING)
-    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else their labels would meet
+    filled = bands(axes, *grid, surface.values, levels=levels, cmap=DIVERGING)
+    inner = (-step, step) if count < MOST_LEVELS else (0.0,)  # else the labels would overlap
     ends = (levels[0], *inner, levels[-1])
     first, at = (look.number(float(shown["poisson"][k])) for k in (0, -1))
     label = rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$"
@@ -96,8 +104,6 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 def _axes(axes: Axes, shown: xr.Dataset) -> None:
     velocity, amplitude = columns(shown, "velocity", "amplitude")
     axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
-    units = (mathtext(shown[dim].attrs.get("formula", "")) for dim in ("velocity", "amplitude"))
-    axes.set_xlabel(f"forward velocity  {next(units)}".strip())
-    axes.set_ylabel(f"amplitude  {next(units)}".strip())
+    axes.set(xlabel=axis_label(shown, "velocity"), ylabel=axis_label(shown, "amplitude"))
     panels.logarithmic(axes.xaxis)
     panels.ticks_outside(axes)

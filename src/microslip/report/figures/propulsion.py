@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 
 from microslip.report.figures import panels
@@ -19,7 +18,7 @@ VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw a column for each panel of the dataset: force above, efficiency below."""
+    """Draw a column of two panels for each panel name of the dataset: force and efficiency."""
     names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)
@@ -27,11 +26,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for row, (variable, label) in zip(grid, ROWS.items(), strict=True):
         row[0].set_ylabel(label)
         for axes, panel in zip(row, names, strict=True):
-            chosen = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
-            if (count := chosen.sizes["line"]) > len(look.LINES):
-                allowed = f"allowed: up to {len(look.LINES)}"
-                raise ValueError(f"figure {name}: {count} lines in {panel}; {allowed}")
-            _lines(axes, chosen, variable)
+            lines = dataset.isel(line=np.flatnonzero(dataset["panel"].values == panel))
+            _lines(axes, lines, variable)
             note = look.literal(panel) if variable == "force" else ""
             panels.letter(axes, next(letters), note, WIDTH - 0.5)
     for axes in grid[-1]:
@@ -41,25 +37,23 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
-    """The lines of one panel; hollow marks where not all of a line converged."""
+    """Draw the lines of a panel. A line with an unconverged point has hollow markers."""
     axes.axhline(0.0, color=look.PALE, lw=0.7, zorder=0.5)
     for k, (color, marker, ls) in zip(range(dataset.sizes["line"]), look.LINES, strict=False):
         one = dataset.isel(line=k)
         face = color if bool(one["converged"]) else "white"
-        ink: look.Ink = {"color": color, "marker": marker, "ms": 3.2, "mfc": face, "ls": ls}
-        ink |= {"lw": 1.0}
+        ink: look.Ink = {"marker": marker, "ms": 3.2, "mfc": face, "ls": ls, "lw": 1.0}
+        ink |= {"mew": 0.7}
         x, y, error = map(finite_or_nan, columns(one, "velocity", variable, f"{variable}_error"))
-        title = look.shown_in_legend(look.literal(one["title"].values))
-        ink |= {"label": look.wrapped(title, WIDTH - 0.9, 7.5), "gid": variable, "ms": 3.2}
-        axes.errorbar(x, y, yerr=error, **ink, **look.ERROR_BARS)
+        label = look.wrapped(look.literal(one["title"].values), WIDTH - 0.9, 7.5)
+        axes.errorbar(x, y, yerr=error, fmt="none", ecolor=color, **look.ERROR_BARS)
+        axes.plot(x, y, color=color, label=label, gid=variable, **ink)
 
 
 def _legend(axes: Axes) -> None:
-    """The lines of a column, below it, where their names hide no data."""
-    containers = axes.get_legend_handles_labels()[0]
+    """Add the legend of a column below it."""
     axes.legend(
-        handles=[bars.lines[0] for bars in containers if isinstance(bars, ErrorbarContainer)],
-        labels=[bars.get_label() for bars in containers],
+        handles=[line for line in axes.get_lines() if line.get_gid() == "efficiency"],
         loc="upper left",
         bbox_to_anchor=(0.0, -0.2),
         fontsize=7.5,

@@ -1,4 +1,4 @@
-"""Colours of friction: those of Figure 2 from 0 up, and another hue below 0."""
+"""Colour scale of friction: the colour map of Figure 2 from 0 to 1, another hue below 0."""
 
 from __future__ import annotations
 
@@ -13,19 +13,18 @@ BELOW = (
     "#871C3E", "#97243D", "#A72E3B", "#B7393B", "#C9463C", "#E05846", "#ED6E59",
     "#F07F6A", "#F18E7A", "#F29D8A", "#F4AE9C", "#F6BEAF", "#F6CEC1", "#F5DED3",
 )  # fmt: skip
-"""Colours of friction 0, -0.05, ..., -1. They begin where `style.COLOURMAP` begins, are equally far
-apart in CIELAB, and get lighter away from 0 as that map does. Down to -0.5, by far the most that a
-motion drives, they keep apart from all of that map for all common kinds of colour vision."""
+"""Colours of friction 0, -0.05, ..., -1. They start at the first colour of `style.COLOURMAP`, have
+equal distances in CIELAB, and become lighter away from 0. From 0 to -0.5 they differ from all
+colours of `style.COLOURMAP` for all common kinds of colour vision."""
 LOWEST = -1.0
 DARK = 0.5
-"""Lines on colours darker than this are white, on others black."""
+"""Luminance of a band below which lines on it are white, else black."""
 
 
 def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
-    """Colours and their norm for bands between ascending levels.
+    """Colour map and norm of bands between ascending levels.
 
-    0 has the same colour whatever the levels are, and so has every value between 0 and 1 unless
-    there are larger ones.
+    The colours of 0 to 1 do not depend on the levels, unless the largest level is above 1.
     """
     top = max(float(levels[-1]), 1.0)
     above = matplotlib.colormaps[look.COLOURMAP]
@@ -38,8 +37,8 @@ def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
 
 
 def inks(levels: np.ndarray, fills: np.ndarray) -> list[str]:
-    """Colours of lines at these levels, which stand out from the bands between `fills`."""
+    """Colours of lines at `levels` with enough contrast to the bands between `fills`."""
     colours, norm = scale(fills)
-    weights = (0.2126, 0.7152, 0.0722)  # of luminance, by Rec. 709
-    shown = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]
-    return ["white" if luminance < DARK else "black" for luminance in shown]
+    weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
+    luminances = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]
+    return ["white" if luminance < DARK else "black" for luminance in luminances]

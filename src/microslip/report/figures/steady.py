@@ -1,4 +1,4 @@
-"""Figures 4 and 5: the steady bore over the forward velocity, and how it is reached."""
+"""Figures 4 and 5: steady bore over the forward velocity, and transients."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STARTS = {
     "full-rotation": "full rotational slip",
     "full-slip": "full forward slip",
 }
-"""The paper's words for the starts; any other label is shown as it is."""
+"""Labels of the initial states in the paper. Other states are labelled by their names."""
 
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:
@@ -52,7 +52,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def transients(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw force and torque over the forward travel, one panel for each start."""
+    """Draw force and torque over the forward travel, with a panel for each initial state."""
     dataset, _ = at_one_poisson(dataset)
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
@@ -63,11 +63,11 @@ def transients(name: str, dataset: xr.Dataset) -> Figure:
             QUANTITIES, MARKERS, strict=True
         ):
             travel, values = columns(at, "transient_displacement", history)
-            known = np.isfinite(travel) & np.isfinite(values)  # runs differ in length
+            finite = np.isfinite(travel) & np.isfinite(values)  # shorter runs end in NaN
             marks: look.Ink = {"marker": marker, "ms": 3.4, "markevery": (0.06, 0.12)}
             marks |= {"gid": history}
             label, theory = f"{what}, computed", f"transient_{what}_theory"
-            axes.plot(travel[known], values[known], color=color, label=label, **marks)
+            axes.plot(travel[finite], values[finite], color=color, label=label, **marks)
             ink: look.Ink = {"color": color, "ls": look.DASHED, "lw": 1.0, "zorder": 1.5}
             ink |= {"gid": theory}
             axes.axhline(float(at[theory]), label=f"{what}, {equation}", **ink)

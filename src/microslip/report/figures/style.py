@@ -1,4 +1,4 @@
-"""The look of all figures, in one place: sizes, fonts, colours, labels of quantities."""
+"""The style of all figures: sizes, fonts, colours and labels of quantities."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
 
 Ink = dict[str, Any]
-"""Keyword arguments of an artist."""
+"""Keyword arguments of a matplotlib artist."""
 
 SINGLE, DOUBLE = 3.39, 7.09
 """Journal column widths in inches (86 mm and 180 mm)."""
 
-# Okabe and Ito's colours, which all common kinds of colour vision tell apart.
+# Colours of Okabe and Ito, which can be distinguished with all common kinds of colour vision.
 BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
 GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
 COLOURMAP = "cividis"
-"""Perceptually even and readable in grey and by colour-blind readers. For shares from 0 to 1; where
-friction may be negative as well, `signed` continues it below 0."""
+"""Colour map for values from 0 to 1, perceptually uniform and readable in grey. The module `signed`
+extends it to negative friction."""
 
-# Line styles, so that curves differ without colour as well.
+# Line styles distinguish curves that are printed without colour.
 SOLID = "-"
 DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
 
 COMPUTED: Ink = {"ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7, "zorder": 5}
-"""Computed values: the same marker in every figure."""
+"""Markers of computed values, equal in every figure."""
 
 ERROR_BARS: Ink = {"mew": 0.7, "elinewidth": 0.7, "capsize": 1.8}
 
@@ -51,7 +51,7 @@ LINES = (
     (SKY, "X", DASHDOT),
     (GREY, "*", DOTTED),
 )
-"""Colour, marker and line style of the lines of a panel, in their order."""
+"""Colour, marker and line style of the first, second, ... line of a panel."""
 
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),
@@ -62,19 +62,19 @@ MODELS = {
     "polar": (BLUE, "o", "Po"),
     "cartesian": (VERMILLION, "s", "Ca"),
 }
-"""The contact models, coarsest first: colour, marker, and two letters where a word has no room."""
+"""Colour, marker and two-letter abbreviation of each contact model, coarsest first."""
 
 SMALLEST = 7.0
-"""Characters that are smaller than this in print are hard to read."""
+"""Smallest font size in points."""
 HEADING = 8.0
-"""Letters of panels and what follows them, in every figure."""
+"""Font size in points of the headings of panels."""
 LONGEST = 100
-"""Characters of a text from outside that are drawn at most; the rest is an ellipsis."""
+"""Maximum number of characters of a title from the configuration."""
 
 DPI = 300
 
 RC = {
-    "figure.dpi": DPI,  # the layout is solved for the PNG that is written
+    "figure.dpi": DPI,  # the layout is computed for the resolution of the PNG file
     "savefig.dpi": "figure",
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
@@ -105,30 +105,30 @@ RC = {
     "figure.constrained_layout.w_pad": 0.05,
 }
 
-# Every axis has words, then a symbol with its unit: a ratio shows by itself that it has none, and
-# of anything else it is said.
+# The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit; other
+# dimensionless symbols are labelled so.
 FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
 FRICTION_IN_TWO_LINES = FRICTION.replace("  (", "\n(")
 
 
 def axis(quantity: Quantity) -> str:
-    """The label of an axis: words, the symbol, and the ratio that it stands for."""
+    """The label of an axis: words, the symbol, and the ratio that defines the symbol."""
     ratio = f" = {mathtext(quantity.unit)[1:-1]}" if quantity.unit else ""
     return f"{quantity.text}  ${quantity.latex}{ratio}$"
 
 
 def style() -> AbstractContextManager[None]:
-    """A context with the look of the figures; the user's own settings play no part in it."""
+    """A context with the settings of the figures instead of the user's matplotlib settings."""
     return matplotlib.style.context(RC, after_reset=True)
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of that size in inches, which places its own panels without overlap."""
+    """An empty figure with a size in inches and a layout that keeps its panels apart."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def number(value: float) -> str:
-    """A number for a label, inside mathtext: three digits, powers of ten written out."""
+    """A number with three digits as mathtext, with large and small ones as powers of ten."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
@@ -138,25 +138,28 @@ def number(value: float) -> str:
 
 
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:
-    """Conditions of a panel as mathtext; pairs: a symbol for LaTeX and its value."""
+    """Conditions of a panel as mathtext, such as "v = 0.1, A = 2".
+
+    pairs: LaTeX symbols and their values.
+    """
     return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
 
 
 def model(name: str) -> tuple[str, str, str]:
-    """Colour, marker and two letters of a contact model; grey for one that has no own look."""
+    """Colour, marker and abbreviation of a contact model. An unknown model is grey."""
     return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
 
 
 def in_order(names: set[str]) -> list[str]:
-    """Names of contact models, coarsest first; those without a look of their own come last."""
+    """Names of contact models, coarsest first. Unknown models come last."""
     return [name for name in MODELS if name in names] + sorted(names - MODELS.keys())
 
 
 def literal(text: str) -> str:
-    """A text from outside, such as a title of the configuration, that is drawn as it stands.
+    """Escape a title from the configuration so that matplotlib draws it verbatim.
 
-    A dollar begins no formula, line breaks and the like are spaces, and a text of more than
-    `LONGEST` characters ends in an ellipsis. A sign that the font lacks is drawn as an empty box.
+    Dollar signs are escaped, white space becomes single spaces, and a text of more than `LONGEST`
+    characters ends in an ellipsis.
     """
     plain = "".join(sign if sign.isprintable() else " " for sign in str(text))
     plain = " ".join(plain.split())
@@ -165,20 +168,15 @@ def literal(text: str) -> str:
     return plain.replace("$", r"\$")
 
 
-def shown_in_legend(text: str) -> str:
-    """A label, changed so that a legend shows it also if it begins with an underscore."""
-    return rf"$\_${text[1:]}" if text.startswith("_") else text
-
-
 def width(text: str, size: float) -> float:
-    """The width in inches of a text, with mathtext, set in `size` points."""
+    """Width in inches of a text, which may contain mathtext, at a font size in points."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """The text with line breaks such that no line is wider than `room` inches.
+    """Break a text into lines of at most `room` inches at a font size in points.
 
-    Breaks are made at spaces outside mathtext, and within a word that is wider than a line.
+    Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """
     lines = [""]
     for word in re.findall(r"(?:\\\$|\$(?:\\\$|[^$])*\$|[^\s$])+|\$", text):
@@ -193,17 +191,17 @@ def wrapped(text: str, room: float, size: float) -> str:
 
 
 def power_of_ten(value: float) -> str:
-    """A tolerance for a label, inside mathtext: 10^{-3} rather than 0.001."""
+    """A tolerance as mathtext: 10^{-3} rather than 0.001."""
     power = np.log10(value) if value > 0 else np.nan
     return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
 
 
 def letters(count: int) -> list[str]:
-    """Letters of so many panels: a, b, ..., z, aa, ab, ..."""
+    """The letters of `count` panels: a, b, ..., z, aa, ab, ..."""
     alphabet = "abcdefghijklmnopqrstuvwxyz"
     return [(alphabet[i // 26 - 1] if i >= 26 else "") + alphabet[i % 26] for i in range(count)]
 
 
 def heading(which: str, note: str = "") -> str:
-    """The letter of a panel, bold and in brackets, and an optional note."""
+    """The heading of a panel: its letter, bold and in brackets, and an optional note."""
     return rf"$\bf{{({which})}}$" + (rf"$\;$ {note}" if note else "")

@@ -1,10 +1,9 @@
-"""Accuracy against cost: the error of every trial over its time, or over its effort.
+"""Work-precision diagrams: error of each trial over its CPU time or its effort.
 
-One panel a point. All panels share their axes: further down and to the left is better in every one.
-Models with the shipped method have a look each; runs by other methods are small grey marks of one
-kind, which the profile tells apart. Trials without a place on the axes are drawn at their ends:
-errors too small to judge at the bottom, trials without a result at the top, costs of zero at the
-left.
+There is a panel for each point; all panels have the same axes. Each model with the default method
+has a colour and a marker. Runs of other methods are small grey dots; the figure `accuracy_profile`
+compares them. Trials outside the axes are drawn in strips at the ends: errors below the error of
+the reference at the bottom, trials without a result at the top, costs of zero at the left.
 """
 
 from __future__ import annotations
@@ -31,14 +30,13 @@ COSTS = {
     "accuracy_vs_cost": ("seconds", "CPU time of a run  $t$ (s)"),
     "accuracy_vs_work": ("effort", "effort: iterations $\\times$ unknowns\n(dimensionless)"),
 }
-"""Abscissa of each figure: its variable and its label."""
+"""Abscissa of each figure: variable and label."""
 COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
-"""Panels side by side; in inches: width of a panel, height of a row, and of a line of
-the legend."""
+"""Number of panels in a row; width of a panel, height of a row and of a legend line in inches."""
 BELOW_REFERENCE = 3.0
-"""Errors so many times smaller than the error of any reference are drawn at the bottom."""
+"""Errors smaller than the error of the reference divided by this are drawn at the bottom."""
 MOST = 1e6
-"""The largest ratio of errors on the axis."""
+"""Largest ratio of the ends of the axis of errors."""
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
@@ -52,14 +50,15 @@ CROSS |= {"zorder": 9}
 ARROW: look.Ink = {"color": look.BLACK, "ls": "none", "ms": 3.6, "zorder": 9}
 ARROW |= {"clip_on": False, "marker": CARETDOWN}
 AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7))
-"""Directions from a point in which its label may stand."""
+"""Directions from a point to its label, tried in this order."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A logarithmic axis from low to high, and a strip beyond each end that has a name.
+    """A logarithmic axis from `low` to `high`, with optional labelled strips at its ends.
 
-    Values below `low` are drawn in the strip `below`, values that are not finite in `above`.
+    Values below `low` are drawn in the strip labelled `below`, values that are not finite in the
+    strip labelled `above`. An empty label omits a strip.
     """
 
     low: float
@@ -69,20 +68,20 @@ class Scale:
 
     @property
     def strip(self) -> float:
-        """Ratio of the ends of a strip."""
+        """Ratio of the upper to the lower end of a strip."""
         return (self.high / self.low) ** 0.1
 
     def shown(self, values: np.ndarray) -> np.ndarray:
-        """Where values are drawn."""
+        """Coordinates at which values are drawn."""
         inside = np.where(values < self.low, self.low / self.strip**0.5, values)
         return np.where(np.isfinite(values), inside, self.high * self.strip**0.5)
 
     def on(self, axes: Axes, axis: Axis) -> None:
-        """Set the ends of an axis, its ticks, and a line where a strip begins."""
+        """Set the limits and ticks of an axis, and draw a line where a strip begins."""
         first = self.low / (self.strip if self.below else 1.0)
         last = self.high * (self.strip if self.above else 1.0)
         decades = np.arange(np.ceil(np.log10(self.low)), np.floor(np.log10(self.high)) + 1)
-        # Labels at the ends would meet those of the next panel.
+        # Labels at the ends would overlap those of the next panel.
         span = np.log10(last / first)
         inner = np.abs(decades - np.log10(first * last) / 2) < 0.44 * span
         decades = decades[inner][:: max(1, -(-inner.sum() // 5))]
@@ -138,34 +137,34 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
-    """A scale that spans all costs above zero."""
-    counted = costs[np.isfinite(costs) & (costs > 0)]
-    low, high = (counted.min(), counted.max()) if counted.size else (1.0, 10.0)
+    """A scale for all costs above zero."""
+    positive = costs[np.isfinite(costs) & (costs > 0)]
+    low, high = (positive.min(), positive.max()) if positive.size else (1.0, 10.0)
     margin = max((high / low) ** 0.05, 1.2)
     below, above = (costs <= 0).any(), not np.isfinite(costs).all()
     return Scale(low / margin, high * margin, "0" * bool(below), "none" * bool(above))
 
 
 def _scale_of_errors(dataset: xr.Dataset) -> Scale:
-    """A scale from just below what can be judged to the largest error."""
+    """A scale from just below the smallest significant error to the largest error."""
     errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
-    counted = np.isfinite(errors) & (errors > 0)
+    positive = np.isfinite(errors) & (errors > 0)
     lows = []
-    for point, known in zip(*columns(dataset, "point", "reference_error"), strict=True):
-        smallest = errors[counted & (of_point == str(point))].min(initial=np.inf) / 1.5
-        known = known / BELOW_REFERENCE if np.isfinite(known) else 0.0
-        lows.append(max(known, smallest) if np.isfinite(smallest) else known or np.inf)
-    high = 1.5 * errors[counted].max(initial=1e-3)
+    for point, limit in zip(*columns(dataset, "point", "reference_error"), strict=True):
+        smallest = errors[positive & (of_point == str(point))].min(initial=np.inf) / 1.5
+        limit = limit / BELOW_REFERENCE if np.isfinite(limit) else 0.0
+        lows.append(max(limit, smallest) if np.isfinite(smallest) else limit or np.inf)
+    high = 1.5 * errors[positive].max(initial=1e-3)
     low = max(min(*lows, high / 100.0), high / MOST)
     below, above = (errors < low).any(), not np.isfinite(errors).all()
     return Scale(low, high, "below" * bool(below), "none" * bool(above))
 
 
 def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
-    """Write the letter of a panel, the title of its point, and the point's numbers."""
+    """Write the letter of a panel, and title and parameters of its point."""
     motion = str(point["point_motion"].item())
-    known = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
-    symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
+    quantities = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
+    symbols = [one.latex if one else plain for one, plain in zip(quantities, "vA", strict=True)]
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
     pairs = zip((*symbols, r"\nu"), values, strict=True)
     numbers = look.conditions((symbol, value) for symbol, value in pairs if np.isfinite(value))
@@ -174,31 +173,31 @@ def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
     axes.set_title(head, loc="left", pad=4, fontsize=look.HEADING, linespacing=1.15)
 
 
-def _reference(axes: Axes, known: float) -> None:
-    """Hatch the errors within that of the reference; an unknown one is NaN."""
+def _reference(axes: Axes, error: float) -> None:
+    """Hatch the errors below the error of the reference, unless that is NaN."""
     bottom, top = axes.get_ylim()
-    if known > bottom:
-        axes.axhspan(bottom, min(known, top), gid="reference", zorder=0.5, **UNKNOWN)
+    if error > bottom:
+        axes.axhspan(bottom, min(error, top), gid="reference", zorder=0.5, **UNKNOWN)
 
 
 def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
-    """Draw every trial of a point: curves over the levels, one a model, and marks of others."""
+    """Draw every trial of a point: a curve for each model, and markers for other methods."""
     raw_x, raw_y, front = columns(rows, cost, "error", f"front_{cost}")
-    x, y, done = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
+    x, y, converged = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
     model, method = (rows[f"trial_{n}"].values.astype(str) for n in ("model", "method"))
     best = np.flatnonzero(front)
     best = best[np.lexsort((-y[best], x[best]))]
     axes.plot(x[best], y[best], drawstyle="steps-post", gid="front", **FRONT)
-    failed = ~(np.isfinite(raw_y) & done)
+    unconverged = ~(np.isfinite(raw_y) & converged)
     for pair in dict.fromkeys(zip(model, method, strict=True)):
         own = (model == pair[0]) & (method == pair[1])
         ink = _ink(*pair)
-        joined = own & np.isfinite(raw_y)
-        axes.plot(x[joined], y[joined], gid=" ".join(pair), **ink)
+        finite = own & np.isfinite(raw_y)
+        axes.plot(x[finite], y[finite], gid=" ".join(pair), **ink)
         if ink is not OTHER:
             hollow: look.Ink = ink | {"ls": "none", "mfc": "white", "gid": "hollow"}
-            axes.plot(x[own & failed], y[own & failed], **hollow)
-    axes.plot(x[failed], y[failed], gid="not converged", **CROSS)
+            axes.plot(x[own & unconverged], y[own & unconverged], **hollow)
+    axes.plot(x[unconverged], y[unconverged], gid="not converged", **CROSS)
     low, left = raw_y < errors.low, raw_x < costs.low
     if low.any():
         bottom = np.full(low.sum(), axes.get_ylim()[0])
@@ -213,7 +212,7 @@ def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale)
 
 
 def _ink(model: str, method: str) -> look.Ink:
-    """The look of the trials of a model by a method."""
+    """Colour, marker and line of the trials of a model by a method."""
     if method == "paper":
         return PAPER
     if model == "auto":
@@ -222,33 +221,33 @@ def _ink(model: str, method: str) -> look.Ink:
     return SHIPPED | {"color": color, "marker": marker} if method == "shipped" else OTHER
 
 
-def _label(axes: Axes, texts: list[str], labelled: np.ndarray, marks: np.ndarray) -> None:
-    """Write texts beside the marks that are labelled where they hide nothing, else leave them out.
+def _label(axes: Axes, texts: list[str], has_label: np.ndarray, marks: np.ndarray) -> None:
+    """Write labels beside markers. A label that would overlap a marker or a line is omitted.
 
-    marks: shape (n, 2), in data coordinates.
+    texts: labels, one for each true value in `labelled`; marks: shape (n, 2), data coordinates.
     """
     pixels, scale = axes.transData.transform(marks), look.DPI / 72.0
-    line = pixels[labelled]
-    taken = np.concatenate([pixels, *np.linspace(line[:-1], line[1:], 20)])
-    for text, place in zip(texts, pixels[labelled], strict=True):
+    line = pixels[has_label]
+    obstacles = np.concatenate([pixels, *np.linspace(line[:-1], line[1:], 20)])
+    for text, place in zip(texts, pixels[has_label], strict=True):
         size = np.array([look.width(text, look.SMALLEST) * 72.0, look.SMALLEST]) * scale
         for way in np.array(AROUND):
             middle = place + way * (size / 2 + 5.0 * scale)
             low, high = middle - size / 2, middle + size / 2
-            hidden = ((taken > low - scale) & (taken < high + scale)).all(axis=1)
-            if not hidden.any() and axes.bbox.contains(*low) and axes.bbox.contains(*high):
+            overlaps = ((obstacles > low - scale) & (obstacles < high + scale)).all(axis=1)
+            if not overlaps.any() and axes.bbox.contains(*low) and axes.bbox.contains(*high):
                 white = [patheffects.withStroke(linewidth=1.5, foreground="white")]
                 at = axes.transData.inverted().transform(middle)
                 ink: look.Ink = {"fontsize": look.SMALLEST, "ha": "center", "va": "center"}
                 ink |= {"zorder": 10, "path_effects": white, "gid": "label"}
                 axes.text(at[0], at[1], text, **ink)
                 corners = np.stack(np.meshgrid(*np.linspace(low, high, 5).T), axis=-1)
-                taken = np.concatenate([taken, corners.reshape(-1, 2)])
+                obstacles = np.concatenate([obstacles, corners.reshape(-1, 2)])
                 break
 
 
 def _legends(figure: SubFigure, models: list[str], others: bool) -> None:
-    """Two lists side by side: the models, and the marks."""
+    """Add two legends side by side: models and markers."""
     shipped: list[Artist] = [
         Line2D([], [], label=model, **_ink(model, "shipped")) for model in models
     ]

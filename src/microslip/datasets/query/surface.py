@@ -1,0 +1,103 @@
+"""The interpolated surface of a map on a grid that is fine enough to draw.
+
+Datasets hold values at the computed points only, and figures compute nothing. The values between
+the points are therefore interpolated here, with the cubics of `query.interpolation`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from microslip.datasets.query.interpolation import Axis, largest_around
+
+FINE = 200
+"""Approximate number of lines of the fine grid along each axis."""
+
+
+class Surface:
+    """Values of a map on a fine grid that contains all computed points.
+
+    The values are those of `microslip.at`, except where its cubic leaves the range of the two
+    neighbouring points, as on coarse maps. There they are clipped to this range, so that no figure
+    shows an extremum that was not computed. Where a point of a cubic is unknown, the value is
+    interpolated linearly.
+
+    Parameters
+    ----------
+    velocity : ndarray, shape (m,)
+        Dimensionless, ascending, above 0.
+    amplitude : ndarray, shape (n,)
+        Dimensionless, ascending.
+    values : ndarray, shape (n, m)
+        Values at the points. Values that are not finite are unknown.
+
+    Attributes
+    ----------
+    velocity, amplitude : ndarray, shapes (k,) and (l,)
+        Coordinates of the fine grid.
+    values : masked ndarray, shape (l, k)
+        Values on the fine grid, masked where they are unknown.
+    """
+
+    def __init__(self, velocity: np.ndarray, amplitude: np.ndarray, values: np.ndarray) -> None:
+        self._columns = Axis(np.asarray(velocity, float))
+        self._rows = Axis(np.asarray(amplitude, float))
+        self._points = np.where(np.isfinite(values), values, np.nan)
+        self.velocity, self.amplitude = _subdivided(self._columns), _subdivided(self._rows)
+        along_velocity = _refined(self._columns, self.velocity, self._points.T).T
+        fine = _refined(self._rows, self.amplitude, along_velocity)
+        self.values = np.ma.masked_invalid(fine)
+
+    def supported(self, levels: ArrayLike) -> np.ma.MaskedArray:
+        """Values on the fine grid, masked in cells where the points do not support contours.
+
+        A contour is supported where the interpolation error is below half the distance between two
+        levels. The error is estimated by leaving points out.
+
+        Parameters
+        ----------
+        levels : sequence of float
+            Levels of the contours, ascending.
+        """
+        error = np.zeros(np.subtract(self._points.shape, 1))
+        for missed in (
+            self._rows.misses(self._points),
+            self._columns.misses(self._points.T).T,
+        ):
+            nodes = largest_around(np.nan_to_num(missed))
+            corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]
+            error += np.maximum.reduce(corners)
+        cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
+        # A line between two cells is drawn if one of them supports it.
+        rows = _cells(self._rows, self.amplitude)
+        columns = _cells(self._columns, self.velocity)
+        drawn = np.logical_or.reduce([cells[np.ix_(i, j)] for i in rows for j in columns])
+        return np.ma.masked_where(~drawn, self.values)
+
+
+def _subdivided(axis: Axis) -> np.ndarray:
+    """The coordinates of an axis with evenly spaced ones between them."""
+    parts = -(-FINE // (len(axis.nodes) - 1))
+    share = np.arange(1, parts) / parts
+    between = axis.nodes[:-1, None] + share * np.diff(axis.nodes)[:, None]
+    inner = np.exp(between) if axis.logarithmic else between
+    filled = np.column_stack((axis.values[:-1, None], inner)).ravel()
+    return np.append(filled, axis.values[-1])
+
+
+def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarray:
+    """A table, interpolated along its first axis and clipped to the range of each cell."""
+    cell, share, nodes, weights = axis.cubics(coordinates)
+    cubic = np.einsum("pn,pn...->p...", weights, table[nodes])
+    low, high = table[cell], table[np.minimum(cell + 1, len(table) - 1)]
+    share = share[:, None]
+    # At a known end the unknown other end has no weight.
+    line = np.where(share > 0, share * high, 0.0) + np.where(share < 1, (1.0 - share) * low, 0.0)
+    return np.where(np.isnan(cubic), line, np.clip(cubic, np.fmin(low, high), np.fmax(low, high)))
+
+
+def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
+    """Indices of the cells left and right of each coordinate, equal inside a cell."""
+    sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
+    return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]
