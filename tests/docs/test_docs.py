@@ -51,11 +51,11 @@ LONG_PAGES = (
     "docs/explanation/motions_and_pressures.md",
     "docs/explanation/drives.md",
     "docs/explanation/propulsion.md",
+    "docs/how-to/certified_maps.md",
     "docs/how-to/contacts.md",
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
     "docs/how-to/force_and_spring.md",
-    "docs/how-to/sweeps.md",
     "docs/tutorials/datasets.md",
 )
 """Pages whose code takes several seconds, but for those that a newcomer reads first."""
@@ -91,8 +91,8 @@ NOT_RUN = {
     ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 5"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 3"): BENCHMARK,
-    ("docs/how-to/sweeps.md", "python benchmarks/certified.py"): BENCHMARK,
-    ("docs/how-to/sweeps.md", "python benchmarks/other_maps.py"): BENCHMARK,
+    ("docs/how-to/certified_maps.md", "python benchmarks/certified.py"): BENCHMARK,
+    ("docs/how-to/certified_maps.md", "python benchmarks/other_maps.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
