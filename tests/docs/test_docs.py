@@ -48,15 +48,15 @@ PAGES = sorted(
     )
 )
 LONG_PAGES = (
-    "docs/explanation/beyond.md",
+    "docs/explanation/motions_and_pressures.md",
     "docs/explanation/drives.md",
     "docs/explanation/propulsion.md",
+    "docs/how-to/certified_maps.md",
     "docs/how-to/contacts.md",
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
-    "docs/how-to/loose.md",
-    "docs/how-to/sweeps.md",
-    "docs/tutorials/tutorial.md",
+    "docs/how-to/force_and_spring.md",
+    "docs/tutorials/datasets.md",
 )
 """Pages whose code takes several seconds, but for those that a newcomer reads first."""
 OPEN_A_SWEEP = ("README.md", "docs/how-to/workflow.md")
@@ -79,20 +79,20 @@ NOT_RUN = {
         "docs/index.md",
         '.venv/bin/pip install -e ".[docs]"',
     ): f"{INSTALLS}; the build is a test here",
-    ("docs/tutorials/start.md", "python3 -m venv .venv && "): INSTALLS,
+    ("docs/tutorials/quickstart.md", "python3 -m venv .venv && "): INSTALLS,
     ("docs/reference/gallery.md", ".venv/bin/snakemake -j2"): FULL,
     ("docs/how-to/workflow.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/tutorials/tutorial.md", ".venv/bin/microslip sweep --cores 2"): (
+    ("docs/tutorials/datasets.md", ".venv/bin/microslip sweep --cores 2"): (
         "the points are computed, and the datasets written, by the fixture below, without the "
-        "processes of a workflow; a sweep is run as it stands by docs/tutorials/start.md"
+        "processes of a workflow; a sweep is run as it stands by docs/tutorials/quickstart.md"
     ),
     ("docs/explanation/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
     ("docs/explanation/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
     ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 5"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 3"): BENCHMARK,
-    ("docs/how-to/sweeps.md", "python benchmarks/certified.py"): BENCHMARK,
-    ("docs/how-to/sweeps.md", "python benchmarks/other_maps.py"): BENCHMARK,
+    ("docs/how-to/certified_maps.md", "python benchmarks/certified.py"): BENCHMARK,
+    ("docs/how-to/certified_maps.md", "python benchmarks/other_maps.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
@@ -140,7 +140,7 @@ def reason_not_to_run(page, block):
 
 
 def tutorial_configuration():
-    (block,) = (b for b in blocks("docs/tutorials/tutorial.md") if file_of(b) == "tutorial.yaml")
+    (block,) = (b for b in blocks("docs/tutorials/datasets.md") if file_of(b) == "tutorial.yaml")
     return load.from_mapping(yaml.safe_load(block.text))
 
 

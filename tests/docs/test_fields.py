@@ -39,9 +39,9 @@ def section(title):
 
 RECORDS = {
     "A fit": microslip.Fit,
-    "Forces from a start": microslip.History,
+    "A force history": microslip.History,
     "A period of the periodic state": microslip.Period,
-    "The way to rest": microslip.Shakedown,
+    "Shakedown": microslip.Shakedown,
     "The line of a self-propelled motion": microslip.PropulsionLine,
     "A self-propelled motion, in units": microslip.RealPropulsionLine,
 }
@@ -129,7 +129,7 @@ def test_every_variable_of_a_study_is_in_its_table_and_no_other(study):
 def test_every_variable_of_the_claims_is_in_their_table_and_no_other():
     answer, _ = claims_stub.answered()
     data = registry.build("claims", claims_stub.configured(), answer)
-    assert set(section("The claims")) == set(map(str, data.variables))
+    assert set(section("The check of the paper")) == set(map(str, data.variables))
 
 
 def test_every_variable_of_propulsion_is_in_its_table_and_no_other():
