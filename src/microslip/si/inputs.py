@@ -14,7 +14,7 @@ from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, PARTS, TAKES
-from microslip.si.quantities import Given, read
+from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
@@ -67,7 +67,7 @@ QUANTITIES = {
 
 def read_argument(
     name: str, value: object, unit: str | None = None, title: str | None = None
-) -> Given:
+) -> Quantity:
     """One of QUANTITIES, in another unit and with another name in messages where they are given;
     raises InputError."""
     usual, *limits = QUANTITIES[name]
@@ -151,7 +151,7 @@ def _counterbody(body: Any) -> Body:
     raise InputError("counterbody", body, f"{count}; allowed: {EXAMPLE}")
 
 
-def _elastic(young: Given, nu: Given) -> Body:
+def _elastic(young: Quantity, nu: Quantity) -> Body:
     return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
 
 
