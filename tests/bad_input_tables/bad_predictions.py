@@ -1,7 +1,7 @@
-"""Bad options of `microslip predict`, each with a part of the one line that refuses it.
+"""Bad options of `microslip predict`, each with a part of its error message.
 
-A row is the motion, the options that are changed in a good command line (None: left out), and the
-part.  One row for each reason that there is.
+A row has the options that differ from a valid command line (None: missing) and the part.  There is
+one row for each cause of an error.
 """
 
 GOOD = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
@@ -11,8 +11,8 @@ SPRUNG = {"drive_stiffness": "1 N/um"}
 SIZED = {"radius": None, "contact_radius": "1 mm"}
 STEADY = {"amplitude": None, "frequency": None, "rotation": "1 Hz"}
 ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
-SOUGHT = {"amplitude": None, "reduction": "50 %"}
-MOVED = [
+SEARCH = {"amplitude": None, "reduction": "50 %"}
+MOTIONS = [
     ({"motion": "sideways"}, "MOTION = 'sideways': "),
     ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
     ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
@@ -39,7 +39,7 @@ MOVED = [
     ),
     ({"motion": "continuous-bore", "amplitude": None, "frequency": None}, "--rotation: continuous"),
 ]
-PRESSED = [
+CONTACTS = [
     ({"load": None}, "--load: needed"),
     ({"load": "nan N"}, "it is not finite"),
     ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
@@ -68,7 +68,7 @@ PRESSED = [
     (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': no contact"),
     ({"contacts": "load=1;mass=1"}, "--contacts = 'load=1;mass=1'"),
     ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
-    ({"contacts": "phase=0"} | SOUGHT, "--reduction = '50 %': allowed for one contact only"),
+    ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed for one contact only"),
     ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
     (
         {
@@ -97,7 +97,7 @@ BODIES = [
     ({"hardness": "HV"}, "the text is empty"),
     ({"density": "7.85"}, "--density = '7.85': 7.85 is a number without a unit"),
 ]
-DRIVEN = [
+DRIVES = [
     ({"speed": None}, "--speed: needed, or a force in its place"),
     ({"speed": "1 mm"}, "--speed = '1 mm': the unit is millimeter"),
     ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "--speed = '1e300 m/s': over that of the"),
@@ -114,35 +114,35 @@ DRIVEN = [
     ({"tolerance": "none"}, "--tolerance = 'none'"),
     ({"tolerance": "1e-9"}, "at least 1e-06 and at most 0.1"),
 ]
-FOUND = [
+REDUCTIONS = [
     (
         {"reduction": "50 %"},
         "--reduction = '50 %': allowed without an amplitude, a speed",
     ),
-    (SOUGHT | {"load": None}, "one thing can be looked for, and amplitude and load are not given"),
-    (SOUGHT | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
-    (SOUGHT | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
-    (SOUGHT | {"reduction": "100 %"}, "allowed is at most 90 %, 100 % less the tolerance"),
-    (SOUGHT | {"motion": "bore", "reduction": "100 %"}, "allowed is less than all of it"),
-    (SOUGHT | FORCED, "--reduction = '50 %': allowed where a speed alone pulls"),
-    (SOUGHT | SPRUNG, "--reduction = '50 %': allowed where a speed alone pulls"),
-    (SOUGHT | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
+    (SEARCH | {"load": None}, "one thing can be looked for, and amplitude and load are not given"),
+    (SEARCH | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
+    (SEARCH | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
+    (SEARCH | {"reduction": "100 %"}, "allowed is at most 90 %, 100 % less the tolerance"),
+    (SEARCH | {"motion": "bore", "reduction": "100 %"}, "allowed is less than all of it"),
+    (SEARCH | FORCED, "--reduction = '50 %': allowed where a speed alone pulls"),
+    (SEARCH | SPRUNG, "--reduction = '50 %': allowed where a speed alone pulls"),
+    (SEARCH | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
     (
         {"reduction": "50 %", "load": None, "amplitude": "0 m"},
         "allowed is above 0 with a reduction",
     ),
 ]
 UNCERTAIN = [
-    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is a spread below the value"),
+    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is an uncertainty below the value"),
     ({"load": "10 N +- 1 mm"}, "in it '1 mm': the unit is millimeter"),
     ({"load": "10 +- 1 N"}, "in it '10': 10 is a number without a unit"),
     ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
 ]
 OTHERS = [
-    ({"output": "found.nc"}, "--output = 'found.nc': allowed with --table alone"),
-    ({"points": "3"}, "--points = '3': allowed with --propulsion alone"),
+    ({"output": "found.nc"}, "--output = 'found.nc': allowed only with --table"),
+    ({"points": "3"}, "--points = '3': allowed only with --propulsion"),
 ]
-PREDICTIONS = OTHERS + MOVED + PRESSED + BODIES + DRIVEN + FOUND + UNCERTAIN
+PREDICTIONS = OTHERS + MOTIONS + CONTACTS + BODIES + DRIVES + REDUCTIONS + UNCERTAIN
 
 SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
 PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
@@ -159,4 +159,4 @@ PROPULSIONS = [
         "allowed is a motion without a rotation",
     ),
 ]
-"""The same with --propulsion."""
+"""Bad options of `microslip predict --propulsion`, in the form of PREDICTIONS."""
