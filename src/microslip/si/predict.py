@@ -190,7 +190,7 @@ def answer_request(request: Request) -> Prediction:
         parts["search"] = Search(request.sought, error)
         load = found.contact.load
         request = found if request.sought != "load" else request.under(load)
-    request.refuse_out_of_range()
+    request.check_range()
     limit = static_limit(request)
     threshold = force_threshold(request, limit)
     answer = answer_of(request, limit, threshold)
