@@ -137,10 +137,7 @@ def test_the_threshold_beside_a_reduction_has_an_interval():
     )
     (line, again) = [line for line in str(found).splitlines() if "95 % interval" in line]
     for text in (line, again):
-        assert text.endswith(
-            ", from the uncertain inputs to first order: static friction is taken to be linear in "
-            "each of them"
-        )
+        assert "from the uncertain inputs to first order" in text
 
 
 @pytest.mark.long
@@ -160,7 +157,7 @@ def test_an_uncertain_ratio_of_amplitudes_has_an_interval_to_first_order():
     ends = [found.mu_static + 1.96 * (high - found.mu_static)]
     ends.append(found.mu_static + 1.96 * (low - found.mu_static))
     assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=1e-3)
-    assert "to first order: static friction is taken to be linear in each of them" in str(found)
+    assert "to first order: static friction is assumed" in str(found)
 
 
 @pytest.mark.slow
@@ -246,4 +243,4 @@ def test_a_contact_that_stays_one_deviation_around_its_inputs_may_move():
     found = microslip.predict("transverse", **given, force=f"{threshold - 3.0!r} N +- 2 N")
     assert found.outcome == "stays" and found.speed_spread_m_s == 0.0
     assert found.probability_moves == pytest.approx(0.0668, abs=2e-3)
-    assert "none of the speed: the contact may move" in str(found)
+    assert "none of the speed: the contact can move" in str(found)

@@ -64,7 +64,7 @@ def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
     text = said(capsys, "longitudinal", **BALL | {"amplitude": "1 um", "speed": "1 mm/s"})
     assert re.search(r"^static friction +0 \+- ", text, re.MULTILINE)
     assert re.search(r"^force threshold +3 N: ", text, re.MULTILINE)
-    assert "it is not the force threshold, because the vibration is along the pull" in text
+    assert "it is not the force threshold, because the vibration is along the drive" in text
     text = said(capsys, "transverse", **BALL | SLOW)
     assert "not the force threshold" not in text
 
@@ -100,7 +100,7 @@ def test_static_friction_that_is_no_threshold_is_explained_where_the_threshold_i
     given = BALL | {"amplitude": "0.1 um", "forward-amplitude": "0.1 um", "speed": "1 mm/s"}
     text = said(capsys, "elliptic", **given, tolerance="0.05")
     assert "static friction" in text and "force threshold  " not in text
-    assert "it is not the force threshold, because part of the vibration is along the pull" in text
+    assert "it is not the force threshold, because part of the vibration is along the drive" in text
 
 
 @pytest.mark.slow
@@ -126,5 +126,5 @@ def test_a_static_friction_below_rounding_is_zero(capsys):
     given = BALL | {"amplitude": "0.0412 rad", "speed": "1 mm/s", "tolerance": "0.01"}
     text = said(capsys, "bore", **given)
     assert re.search(r"^static friction +0 \+- \S+e-1[23]: ", text, re.MULTILINE)
-    zero = r"^force threshold +0 \+- \S+ N: any constant force beyond that moves"
+    zero = r"^force threshold +0 \+- \S+ N: any larger constant force moves"
     assert re.search(zero, text, re.MULTILINE)

@@ -45,7 +45,7 @@ MOTIONS = {
     "continuous-bore": "slides forward and spins steadily about the contact normal",
 }
 """Motions of this module, and what the sphere does in each."""
-ALONG_THE_PULL = ("longitudinal", "elliptic", "normal")
+ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
 """Motions that can vibrate along the drive, or whose load and so friction force oscillates."""
 SAME = 1e-3
 """Relative difference of two angles, one of them from 721 phases, that are equal."""
@@ -76,10 +76,10 @@ def unit_of_amplitude(motion: str) -> str | None:
     return _unit(record) if record.periodic else None
 
 
-def is_along_the_pull(motion: str) -> bool:
+def is_along_the_drive(motion: str) -> bool:
     """Whether the vibration is along the direction of the pull, or may be."""
     if motion in MOTIONS:
-        return motion in ALONG_THE_PULL
+        return motion in ALONG_THE_DRIVE
     ahead, _, _ = _oscillation(_record(motion))
     return bool(np.ptp(ahead) > 0.0)
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from microslip.motions.drive import Drive
-from microslip.si.motions import is_along_the_pull
+from microslip.si.motions import is_along_the_drive
 
 SAME = 0.01
 """Difference of mu_macro below which two drives are equivalent."""
@@ -52,7 +52,7 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
     drive : drive.Drive
         With stiffness, mass and damping in working units.
     """
-    first, further = (1, ALONG) if is_along_the_pull(motion) else (2, 1.0)
+    first, further = (1, ALONG) if is_along_the_drive(motion) else (2, 1.0)
     swings = [n * first for n in range(1, HARMONICS + 1)]
     answers = [math.hypot(drive.stiffness - drive.mass * n * n, drive.damping * n) for n in swings]
     if min(answers) >= STIFFER * CONTACT_STIFFNESS * further:
