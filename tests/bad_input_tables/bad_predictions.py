@@ -91,7 +91,7 @@ BODIES = [
     ({"counterbody": "70 GPa, 0.9"}, "its Poisson's ratio '0.9': allowed is a finite value at"),
     ({"counterbody": "70 GPa, 0,22"}, "2 commas in it"),
     ({"counter_hardness": "7 GPa"}, "allowed for an elastic body, not a rigid one"),
-    ({"hardness": "60 HRB"}, "the scale HRB is not known; allowed are Vickers"),
+    ({"hardness": "60 HRB"}, "the scale HRB is not supported; allowed are Vickers"),
     ({"hardness": "80 HRC"}, "allowed is 20 to 68 HRC, or a Vickers hardness"),
     ({"hardness": "200 HB"}, "about 211 HV"),  # HB = 0.95 HV, ISO 18265
     ({"hardness": "HV"}, "the text is empty"),

@@ -269,7 +269,7 @@ def test_a_missing_property_is_said_with_its_body():
     given = MILD | {"material": "glass", "young": None, "nu": None, "counterbody": "gold"}
     found = microslip.predict("transverse", **given)
     assert found.not_checked == (
-        "whether the bodies stay elastic (no hardness given for the counterbody)",
+        "whether the bodies stay elastic (the hardness of the counterbody is missing)",
     )
 
 
