@@ -1,8 +1,4 @@
-"""What a stranger tries: each with its answer by arithmetic, or words of the line that refuses it.
-
-A number is expected where there is a reason for it besides the code; a text is a part of the one
-line of a refusal.
-"""
+"""Odd inputs: pairs of equal inputs, and calls with a part of their error message."""
 
 import datetime
 import math
@@ -14,7 +10,7 @@ import pandas as pd
 import xarray as xr
 from bad_input_tables.odd_quantities import Q
 
-# The same contact in other words: what is changed, and what it is equal to.
+# Changes of a contact, and the equal changes in other units.
 
 SAME = [
     ({"frequency": "7200000 deg/s"}, {"frequency": "20 kHz"}),
@@ -32,7 +28,7 @@ SAME = [
     ({"tolerance": "5 %"}, {"tolerance": "0.05"}),
 ]
 
-# Python: function, arguments that are changed in a good call, what the one line must hold.
+# Function, changes of a valid call, part of the error message.
 
 SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
 NO_NUMBERS = [None, [0.5], {"a": 1}, "0.5", b"0.5", True, np.True_, 0.5j, Decimal("0.5")]
@@ -146,7 +142,7 @@ CALLS += [
     ("Material", {"poisson": "300 %"}, "poisson = '300 %'"),
 ]
 
-# Questions to a map: velocities and other arguments that NumPy would make numbers of.
+# Bad arguments of Friction.at, many of which NumPy would convert to numbers.
 
 TIMES = np.array(["2020-01-01"], "datetime64[ns]")
 VELOCITIES = [*NO_NUMBERS[2:4], "1_0", b"0.5", True, np.True_, np.ma.masked, HIDDEN, None, HUGE]

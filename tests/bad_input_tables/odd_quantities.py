@@ -1,7 +1,7 @@
-"""Odd quantities: what each is in its SI unit, by arithmetic, or which words refuse it.
+"""Odd quantities, with their SI values or a part of the error message.
 
-Rows (value, unit, expected): a number is the value in that unit, a text is what the one line of the
-refusal must hold.
+Rows are (value, unit, expected).  A number is the value in the SI unit, computed by hand; a text is
+part of the error message.
 """
 
 import datetime
@@ -14,18 +14,18 @@ import pandas as pd
 import pint
 
 Q = pint.UnitRegistry().Quantity
-"""Of one registry for all tests, since to load one takes a while."""
+"""Quantities of one registry for all tests; loading a registry is slow."""
 
 
 class Uncertain:
-    """What stands for a number with an uncertainty."""
+    """An object that resembles a number with an uncertainty."""
 
     def __repr__(self):
         return "5.0+/-0.1"
 
 
 class Tagged(np.ndarray):
-    """An array of another library that keeps its unit to itself."""
+    """An array of another library, with a unit that numpy does not see."""
 
 
 INCH, POUND, GRAVITY = 0.0254, 0.45359237, 9.80665  # by definition
@@ -108,7 +108,7 @@ LENGTHS = [
     (Q(Uncertain(), "mm"), "Uncertain"),
     (Q(5, "mm").units, "Unit"),
 ]
-RATES = [  # unit, value in Hz; in rad/s it is 2 pi times as much
+RATES = [  # text, value in Hz; the value in rad/s is 2 pi times larger
     ("10 Hz", 10.0),
     ("10 cps", 10.0),
     ("10 cycles/s", 10.0),
@@ -170,7 +170,7 @@ OTHERS = [
 ]
 OTHERS += [
     ("5 inch", "m", 5 * INCH),
-    ("5 \N{MICRO SIGN}", "m", 5e-6),  # the micron of old
+    ("5 \N{MICRO SIGN}", "m", 5e-6),  # an old symbol of the micron
     ("5 m\N{SUPERSCRIPT THREE}/m^2", "m", 5.0),
     ("0e999999 m", "m", 0.0),
     ("1" + "0" * 5000 + "e-5000 m", "m", 1.0),
