@@ -48,12 +48,14 @@ RATES = ("Hz", "rad/s")
 """SI units of rates; a rate can be cyclic (Hz) or angular (rad/s)."""
 
 AMBIGUOUS = ", which may mean Hz or rad/s; they differ by 2 pi, so write one of them"
+PER_SECOND = (("second", -1),)
 HINTS = {
     ("N", (("gram", 1),)): ", of a mass; for its weight write gf or kgf, as in '500 gf'",
     ("m/s", (("radian", 1), ("second", -1))): (
         ", of a rotation; its speed is the rate in rad/s times a radius"
     ),
-    **dict.fromkeys(((rate, (("second", -1),)) for rate in RATES), AMBIGUOUS),
+    ("Hz", PER_SECOND): AMBIGUOUS,
+    ("rad/s", PER_SECOND): AMBIGUOUS,
 }
 """Hints for a wrong unit, by the required SI unit and the root units of the wrong one."""
 
