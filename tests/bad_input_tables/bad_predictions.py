@@ -16,7 +16,7 @@ MOTIONS = [
     ({"motion": "sideways"}, "MOTION = 'sideways': "),
     ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
     ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
-    ({"motion": "transverse-bore:angle=0.5"}, "for both see transverse-bore"),
+    ({"motion": "transverse-bore:angle=0.5"}, "for both use transverse-bore"),
     ({"amplitude": None}, "--amplitude: transverse needs it"),
     ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     ({"amplitude": "-1 um"}, "--amplitude = '-1 um': allowed is a finite value at least 0 m"),
@@ -68,7 +68,7 @@ CONTACTS = [
     (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': outside the range"),
     ({"contacts": "load=1;mass=1"}, "--contacts = 'load=1;mass=1'"),
     ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
-    ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed for one contact only"),
+    ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed only without contacts"),
     ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
     (
         {
