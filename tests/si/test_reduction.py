@@ -70,7 +70,7 @@ def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
             "^reduction = 0.99: no amplitude",
         ),
         # At vanishing speed and an amplitude of u_lim/100 more than 90 % of friction remains.
-        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed takes"),
+        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed reduces"),
         # The vibration has no effect on fast sliding.
         ({"load": None, "speed": "100 m/s"}, "^reduction = '50 %': no load of the search, down to"),
     ],
