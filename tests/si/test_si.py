@@ -192,7 +192,7 @@ def test_half_the_radius_is_where_hertz_ends(share):
         found = microslip.predict("transverse", **asked)
         assert any("0.49 of the smaller radius" in text for text in found.warnings)
     else:
-        with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of it"):
+        with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of this"):
             microslip.predict("transverse", **asked)
 
 
