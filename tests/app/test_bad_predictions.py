@@ -1,4 +1,4 @@
-"""Bad options of `microslip predict` get one line that names the option, before anything runs."""
+"""Bad options of `microslip predict`: an error message with the option, before any solve."""
 
 import pytest
 from bad_input_tables.bad_predictions import GOOD, PREDICTIONS, PROPULSIONS

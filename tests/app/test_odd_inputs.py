@@ -1,4 +1,4 @@
-"""Odd inputs: the right answer, or one line that says what is wrong with what was given."""
+"""Odd inputs: the right answer, or a one-line error message."""
 
 import numpy as np
 import pytest
@@ -13,9 +13,9 @@ from microslip.si.predict import predict
 from microslip.theory import paper
 
 LAST_DIGITS = 1e-15
-"""Relative: what rounding leaves in the expected value, which is made of a few floats."""
+"""Relative rounding error of the expected value, which is computed from a few floats."""
 LONGEST_LINE = 1500
-"""Characters; a value of a million of them is not written out."""
+"""Largest number of characters of an error message; longer values are shortened."""
 
 
 def short(value):
@@ -39,7 +39,7 @@ BALL |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
 
 @pytest.mark.parametrize(("changed", "same"), SAME, ids=short)
 def test_the_same_contact_in_other_words(changed, same, monkeypatch):
-    """What the solver is asked is the same to the last digits."""
+    """The arguments of the solver are equal to the last digits."""
 
     def asked(words):
         seen = []
@@ -90,7 +90,7 @@ def test_a_call_is_refused_in_one_line(function, changed, part, tmp_path, monkey
 
 
 def test_a_travel_as_long_as_allowed_ends_in_the_steady_state():
-    """Eq 21 whatever the length of the steps; the polar model is as far off with short ones."""
+    """The friction of the steady state is that of Eq 21 for any length of the steps."""
     ends = [
         microslip.history("continuous-bore", 0.5, cells=8, steps=16, travel=travel).force_forward
         for travel in (10.0, 1e6)
@@ -124,6 +124,6 @@ def test_a_question_to_a_map_is_refused_in_one_line(changed, part, friction):
 
 @pytest.mark.parametrize("velocity", NUMBERS, ids=short)
 def test_numbers_of_other_types_are_numbers(velocity, friction):
-    """A node of the map answers with its value, 0.3 / (0.5 + 0.3)."""
+    """The value at a node of the map is 0.3 / (0.5 + 0.3)."""
     found = friction.at(velocity, 0.5).mu_macro
     assert float(found.squeeze()) == pytest.approx(0.375, abs=1e-6)

@@ -1,4 +1,4 @@
-"""What `microslip point` prints beside the numbers."""
+"""Remarks in the output of `microslip point`."""
 
 import math
 
@@ -24,7 +24,7 @@ def test_what_is_right_does_not(words, capsys):
 
 
 def test_under_a_force_the_velocity_is_printed(capsys):
-    """At P = 0.6 a rigid slider drifts at (2/pi) A P / sqrt(1 - P^2)."""
+    """A rigid slider drifts at (2/pi) A P / sqrt(1 - P^2), here for P = 0.6."""
     assert main([*POINT[:2], "--force", "0.6", "--amplitude", "100", "--tolerance", "0.1"]) == 0
     velocity = capsys.readouterr().out.splitlines()[0].removeprefix("velocity = ")
     rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8

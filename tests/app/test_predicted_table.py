@@ -1,4 +1,4 @@
-"""`microslip predict --table`: a contact for every line."""
+"""`microslip predict --table`: one contact for each line."""
 
 import json
 import math
@@ -62,7 +62,7 @@ def test_a_bad_cell_is_named_by_its_column(text, said, folder, capsys):
 
 @pytest.mark.long
 def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, capsys):
-    """At 4 m/s no load has two fifths of its friction taken away by this vibration."""
+    """At 4 m/s this vibration reduces friction by two fifths under no load."""
     text = "mu,speed\n# two days\n0.3 +- 0.03,10 mm/s\n0.3 +- 0.03,4 m/s\n"
     (folder / "contacts.csv").write_text(text)
     words = ["--amplitude", "0.3 um", "--reduction", "40 %", "--output", "found.nc"]
@@ -73,15 +73,15 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert [first.split()[0], second.split()[0]] == ["3", "4"]
     told = [line for line in said if "warning" not in line]
     assert len(told) == 1 and told[0].startswith(
-        "line 4: NOT CONVERGED: load: of those tried, down to"
+        "line 4: NOT CONVERGED: load: no load of the search, down to"
     )
     kept = xr.load_dataset(folder / "found.nc")
     assert kept.converged.values.tolist() == [True, False]
     (load, none), (spread, _) = kept.load_N.values, kept.sought_spread.values
     assert math.isnan(none) and kept.sought_spread.attrs["units"] == "N"
     assert float(first.split()[-3]) == pytest.approx(load, rel=1e-3)
-    # u_lim and with it the amplitude over u_lim depend on mu times the load to the power 2/3: what
-    # mu is known to is what the load is known to.
+    # The amplitude over u_lim depends on mu times the load to the power 2/3.  So the relative
+    # uncertainty of the load is 3/2 times that of mu.
     assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
@@ -116,8 +116,8 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
 def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(folder, capsys):
     """Without vibration the threshold is mu times the load: 0.15 * 800 N = 120 N.
 
-    mu is 0.15 +- 0.05.  Forces of 90 N and 150 N are 0.75 standard deviations below and above the
-    threshold: the contact runs away with the probabilities 0.2266 and 0.7734.
+    For mu = 0.15 +- 0.05, forces of 90 N and 150 N are 0.75 standard deviations below and above the
+    threshold.  The contact runs away with probabilities of 0.2266 and 0.7734.
     """
     text = "load [N],amplitude [um],force [N],mu\n800,0,90,0.15 +- 0.05\n800,0,150,0.15 +- 0.05\n"
     (folder / "contacts.csv").write_text(text + "800,0,90,0.15\n")
@@ -155,7 +155,7 @@ def test_each_line_may_look_for_something_else(folder, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--load", "1 N"], "--load = '1 N': allowed once"),
+        (["--load", "1 N"], "--load = '1 N': not allowed"),
         (["--output", "found.txt"], "a name that ends in .csv or .nc"),
         (["--output", "contacts.csv"], "another file than the table"),
         (["--output", "nowhere/found.csv"], "a folder that can be written to"),

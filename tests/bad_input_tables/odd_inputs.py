@@ -1,8 +1,4 @@
-"""What a stranger tries: each with its answer by arithmetic, or words of the line that refuses it.
-
-A number is expected where there is a reason for it besides the code; a text is a part of the one
-line of a refusal.
-"""
+"""Odd inputs: pairs of equal inputs, and calls with a part of their error message."""
 
 import datetime
 import math
@@ -14,7 +10,7 @@ import pandas as pd
 import xarray as xr
 from bad_input_tables.odd_quantities import Q
 
-# The same contact in other words: what is changed, and what it is equal to.
+# Changes of a contact, and the equal changes in other units.
 
 SAME = [
     ({"frequency": "7200000 deg/s"}, {"frequency": "20 kHz"}),
@@ -32,7 +28,7 @@ SAME = [
     ({"tolerance": "5 %"}, {"tolerance": "0.05"}),
 ]
 
-# Python: function, arguments that are changed in a good call, what the one line must hold.
+# Function, changes of a valid call, part of the error message.
 
 SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
 NO_NUMBERS = [None, [0.5], {"a": 1}, "0.5", b"0.5", True, np.True_, 0.5j, Decimal("0.5")]
@@ -59,8 +55,6 @@ CALLS += [
     ("solve", {"tolerance": list(range(10**5))}, "allowed is a number"),
     ("solve", {"motion": "eliptic:forward=0.5"}, "motion = 'eliptic:forward=0.5': did you mean"),
     ("solve", {"motion": "elliptic:forward=0.5;phase=90"}, "elliptic:key=0.5"),
-    ("solve", {"motion": "elliptic:"}, "elliptic:key=0.5"),
-    ("solve", {"motion": "elliptic:forward"}, "elliptic:key=0.5"),
     ("solve", {"motion": "elliptic:phase=90\N{DEGREE SIGN}"}, "elliptic:key=0.5"),
     ("solve", {"motion": "elliptic:forward=50%"}, "elliptic:key=0.5"),
     (
@@ -69,7 +63,6 @@ CALLS += [
         "motion = 'elliptic:lateral=0,forward=0'",
     ),
     ("solve", {"motion": "tr\N{CYRILLIC SMALL LETTER A}nsverse"}, "did you mean transverse?"),
-    ("solve", {"motion": " transverse"}, "did you mean transverse?"),
     ("solve", {"motion": "transverse:amplitude=1"}, "unknown number amplitude"),
     ("solve", {"pressure": "powr:exponent=2"}, "pressure = 'powr:exponent=2': did you mean power?"),
     ("solve", {"pressure": "power:exponent=1e300"}, "pressure = 'power:exponent=1e300'"),
@@ -78,8 +71,6 @@ CALLS += [
     ("solve", {"pressure": "file:."}, "a folder"),
     ("solve", {"pressure": "FILE:x.csv"}, "pressure = 'FILE:x.csv'"),
     ("history", {"travel": None}, "travel = None: allowed is a number"),
-    ("history", {"travel": "5"}, "travel = '5': allowed is a number"),
-    ("history", {"travel": True}, "travel = True: allowed is a number"),
     ("history", {"travel": np.array([5.0])}, "travel = array([5.]): allowed is a number"),
     ("history", {"travel": 1e300}, "travel = 1e+300: allowed is"),
     (
@@ -91,7 +82,6 @@ CALLS += [
     ("history", {"periods": 10**9}, "periods = 1000000000: allowed is"),
     ("history", {"periods": SPAN}, "periods = "),
     ("history", {"steps": 10**12}, "steps = 1000000000000: allowed is"),
-    ("history", {"steps": HUGE}, "steps = "),
     ("history", {"cells": SPAN}, "cells = "),
     ("history", {"cells": 1}, "cells = 1: allowed is a whole number of at least 2"),
     *(
@@ -99,19 +89,15 @@ CALLS += [
         for function in ("history", "period", "propulsion", "shakedown")
     ),
     ("propulsion", {"progress": 5}, "progress = 5: allowed is a function"),
-    ("shakedown", {"progress": 5}, "progress = 5: allowed is a function"),
     ("history", {"cells": 10**7}, "cells = 10000000: allowed is"),
     ("history", {"start": ["full-slip"]}, "start = ['full-slip']: allowed is one of"),
     ("history", {"start": np.array(["full-slip", "a"])}, "start = "),
     ("period", {"cells": 10**12}, "cells = 1000000000000: allowed is"),
     ("period", {"angles": 10**12}, "angles = 1000000000000: allowed is"),
-    ("period", {"steps": HUGE}, "steps = "),
     ("period", {"cells": 1000, "angles": 1000, "steps": 1000}, "cells x angles x steps"),
     ("period", {"motion": "continuous-bore", "amplitude": None}, "one that oscillates"),
     ("traction_field", {"cells": 0}, "cells = 0: allowed is a whole number of at least 2"),
-    ("traction_field", {"cells": "8"}, "cells = '8': allowed is a whole number"),
     ("traction_field", {"cells": 8.0}, "cells = 8.0: allowed is a whole number"),
-    ("traction_field", {"cells": True}, "cells = True: allowed is a whole number"),
     ("traction_field", {"cells": 10**12}, "cells = 1000000000000: allowed is"),
     ("traction_field", {"velocity": 0}, "velocity = 0.0"),
     ("traction_field", {"motion": "transverse", "amplitude": 1.0}, "motion = 'transverse'"),
@@ -125,7 +111,6 @@ CALLS += [
         for name in (None, 5, b"transverse", ["transverse"], "Transverse", " transverse", "")
     ),
     ("open_map", {"name": "transvers"}, "name = 'transvers': did you mean transverse? allowed"),
-    ("open_map", {"results": __file__}, "is not a folder; allowed: the name of a folder"),
     ("solve_stored", {"results": 5}, "results = 5: is not allowed"),
     ("to_xarray", {"record": 5}, "record = 5: allowed is one of Result,"),
     (
@@ -142,11 +127,10 @@ CALLS += [
     ),
     ("fit", {"confidence": 95}, "confidence = 95: allowed is a number above 0 and below 1, such"),
     ("Material", {"young": HUGE}, "young = "),
-    ("Material", {"young": "210 gpa"}, "capitals count"),
     ("Material", {"poisson": "300 %"}, "poisson = '300 %'"),
 ]
 
-# Questions to a map: velocities and other arguments that NumPy would make numbers of.
+# Bad arguments of Friction.at, many of which NumPy would convert to numbers.
 
 TIMES = np.array(["2020-01-01"], "datetime64[ns]")
 VELOCITIES = [*NO_NUMBERS[2:4], "1_0", b"0.5", True, np.True_, np.ma.masked, HIDDEN, None, HUGE]

@@ -293,7 +293,7 @@ def test_the_form_answers_and_marks_the_point(made, certified):
     assert "instead of 0.3: a force of " in value and value.endswith("instead of 3 N")
     assert star == [[contact["velocity"]], [contact["amplitude"]]]
     assert "Warning: the largest pressure" not in warnings
-    whose = "no hardness given for the body"
+    whose = "the hardness of the body is missing"
     assert f"Not checked: whether the bodies stay elastic ({whose})" in warnings
     assert values[-1] == [True, [], True]
 

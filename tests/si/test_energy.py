@@ -1,4 +1,4 @@
-"""Torque, power and energy of contacts in SI units: balances, limits, closed forms."""
+"""Torque, power and energy of contacts in SI units: energy balances, limits, closed forms."""
 
 import math
 
@@ -20,7 +20,7 @@ SHAKEN = BALL | {"speed": "10 mm/s", "amplitude": "0.3 um", "frequency": "20 kHz
     ["transverse", "longitudinal", "bore", pytest.param("elliptic", marks=pytest.mark.long)],
 )
 def test_drag_and_vibration_are_what_slip_dissipates(motion):
-    """The balance: work in over a period is traction times slip, summed over the whole disc."""
+    """The work of drag and vibration in a period equals the integral of traction times slip."""
     velocity, amplitude = 0.3, 1.2
     power = vibration_power(motion, velocity, amplitude)
     assert power.reason == "" and power.value > 0.0
@@ -30,16 +30,16 @@ def test_drag_and_vibration_are_what_slip_dissipates(motion):
     slipped = slipped + period.traction_lateral * period.slip_lateral
     dissipated = float(np.sum(slipped[1:] @ period.area)) / (2.0 * math.pi)
     drift = (period.forward[-1] - period.forward[0]) / (2.0 * math.pi)
-    # The period is of one resolution, whose error is of the order of 1e-3 of mu F_z times the path.
+    # The period has one resolution; its error is about 1e-3 mu F_z times the path.
     put_in = power.value + found.mu_macro * drift
     assert put_in == pytest.approx(dissipated, abs=3e-3 * (amplitude + velocity))
 
 
 @pytest.mark.slow
 def test_a_rigid_contact_dissipates_its_way():
-    """At large amplitudes mu F_z times the mean speed, but for the elastic turns, of order u_lim.
+    """At large amplitudes the power is mu F_z times the mean speed, except at the two reversals.
 
-    In each of two turns in a period the contact sticks over no more than 2 u_lim.
+    In each reversal the contact sticks over at most 2 u_lim.
     """
     power = vibration_power("transverse", 3.0, 30.0)
     drag = 3.0 * microslip.solve("transverse", 3.0, 30.0).mu_macro
@@ -49,7 +49,7 @@ def test_a_rigid_contact_dissipates_its_way():
 
 
 def test_a_steady_spin_takes_a_torque():
-    """v~ = 1/2: torque 1 - v^2 + 3/8 v^4 of (3 pi/16) mu F a, force (3 pi/8)(v - v^3/4)."""
+    """At v = 1/2 the torque is 1 - v^2 + 3/8 v^4 times (3 pi/16) mu F a (Eq 21)."""
     at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
     a = at_rest.contact_radius_m
     asked = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
@@ -80,9 +80,9 @@ def test_power_is_in_watts():
     ("change", "said"),
     [
         ({"power": "yes"}, "power = 'yes': allowed is True or False"),
-        ({"speed": 0.0}, "speed = 0.0: allowed is more than 0"),
-        ({"amplitude": 0.0}, "amplitude = 0.0: allowed is more than 0"),
-        ({"drive_stiffness": "1 N/um"}, "power = True: allowed where a speed alone pulls"),
+        ({"speed": 0.0}, "speed = 0.0: allowed is above 0"),
+        ({"amplitude": 0.0}, "amplitude = 0.0: allowed is above 0"),
+        ({"drive_stiffness": "1 N/um"}, "power = True: allowed only without a force and a spring"),
     ],
 )
 def test_a_power_that_nothing_can_have_is_refused(change, said):

@@ -1,4 +1,4 @@
-"""What predict understands and says: a motion in any unit, what it repeats, its command line."""
+"""predict: units of a motion, the request in words, the command line and the records."""
 
 import io
 import json
@@ -26,13 +26,13 @@ SPIN = BALL | {"material": "steel", "mu": 0.3}
 
 
 def assert_same(one, other):
-    """All that two predictions say, what was asked apart, to the rounding of a float."""
+    """Two predictions are equal to rounding, except for the request in words."""
     one, other = one.to_dict(), other.to_dict()
     assert one.pop("understood").keys() == other.pop("understood").keys()
     assert one.keys() == other.keys()
     for name, value in one.items():
         near = isinstance(value, float) and not isinstance(value, bool)
-        # errors are estimates from differences of numbers that agree to many digits
+        # an error estimate is a small difference of large numbers
         expected = pytest.approx(other[name], rel=1e-9, abs=1e-9) if near else other[name]
         assert value == expected, name
 
@@ -79,7 +79,7 @@ def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
 def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
     asked = BALL | {"material": "steel", "rotation": "10 Hz"}
     for given, said in (
-        ({}, "rigid, as none was given"),
+        ({}, "rigid (default)"),
         ({"counterbody": "rigid"}, "rigid"),
         ({"counterbody": "glass"}, "glass (E = 70 GPa, nu = 0.2, hardness 6 GPa"),
         ({"counterbody": Material(70e9, 0.22)}, "E = 70 GPa, nu = 0.22"),
@@ -88,7 +88,7 @@ def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
         assert found.counterbody.startswith(said)
         assert found.understood["counterbody"] == found.counterbody
     assert found.understood["rotation"] == "10 Hz = 62.8319 rad/s"
-    assert found.understood["counter_radius"] == "flat, as none was given"
+    assert found.understood["counter_radius"] == "flat (default)"
 
 
 # Command line
@@ -109,7 +109,7 @@ def test_the_command_line_answers_in_json(capsys):
 
 
 def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
-    """In the amplitude that is asked for, and in the search for one."""
+    """The solver fails at the requested amplitude, and in the search for an amplitude."""
 
     def lost(*given, **settings):
         found = microslip.solve(*given, **settings)

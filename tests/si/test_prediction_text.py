@@ -1,4 +1,4 @@
-"""A prediction in words: print() and the command line show the same, each number with its error."""
+"""A prediction in words: units, errors, and remarks."""
 
 import re
 from dataclasses import replace
@@ -64,7 +64,7 @@ def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
     text = said(capsys, "longitudinal", **BALL | {"amplitude": "1 um", "speed": "1 mm/s"})
     assert re.search(r"^static friction +0 \+- ", text, re.MULTILINE)
     assert re.search(r"^force threshold +3 N: ", text, re.MULTILINE)
-    assert "it is not the force threshold, because the vibration is along the pull" in text
+    assert "it is not the force threshold, because the vibration is along the drive" in text
     text = said(capsys, "transverse", **BALL | SLOW)
     assert "not the force threshold" not in text
 
@@ -78,7 +78,7 @@ def failed(motion, velocity, *given, **settings):
 
 
 def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
-    """The static limit beside friction at a speed is not what was requested."""
+    """An unconverged static limit does not matter for friction at a speed."""
     monkeypatch.setattr(request, "solve", failed)
     text = said(capsys, "transverse", code=0, **BALL | SLOW)
     assert "NOT CONVERGED: static friction: lost on the way" in text
@@ -100,7 +100,7 @@ def test_static_friction_that_is_no_threshold_is_explained_where_the_threshold_i
     given = BALL | {"amplitude": "0.1 um", "forward-amplitude": "0.1 um", "speed": "1 mm/s"}
     text = said(capsys, "elliptic", **given, tolerance="0.05")
     assert "static friction" in text and "force threshold  " not in text
-    assert "it is not the force threshold, because part of the vibration is along the pull" in text
+    assert "it is not the force threshold, because part of the vibration is along the drive" in text
 
 
 @pytest.mark.slow
@@ -115,16 +115,16 @@ def test_a_contact_much_larger_than_the_other_lengths_has_a_unit_of_its_own(caps
 
 @pytest.mark.slow
 def test_a_threshold_of_rounding_errors_is_as_exact_as_the_static_friction(capsys):
-    """At 5 deg, dimensionless 31, all of the contact slides."""
+    """At 5 degrees (dimensionless 31) the whole contact slides."""
     given = BALL | {"amplitude": "5 deg", "speed": "1 mm/s", "tolerance": "0.01"}
     text = said(capsys, "bore", **given)
     assert "static friction   0: " in text and "force threshold   0 N: " in text
 
 
 def test_a_static_friction_below_rounding_is_zero(capsys):
-    """At 0.0412 rad, dimensionless 14.6: 6e-13 is left, less than numbers near 1 are rounded by."""
+    """At 0.0412 rad (dimensionless 14.6) the static limit is 6e-13, a rounding error of 1."""
     given = BALL | {"amplitude": "0.0412 rad", "speed": "1 mm/s", "tolerance": "0.01"}
     text = said(capsys, "bore", **given)
     assert re.search(r"^static friction +0 \+- \S+e-1[23]: ", text, re.MULTILINE)
-    zero = r"^force threshold +0 \+- \S+ N: any constant force beyond that moves"
+    zero = r"^force threshold +0 \+- \S+ N: any larger constant force moves"
     assert re.search(zero, text, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""A contact in SI units that a force or a spring pulls: groups, scaling laws, limits, regimes."""
+"""Contacts in SI units under a force or on a spring: groups, scaling laws, limits, regimes."""
 
 import json
 import math
@@ -24,11 +24,11 @@ BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0
 SIDEWAYS = BALL | {"frequency": "20 kHz"}
 CONTACT = TwoBodies(Material(210e9, 0.0), RIGID, 0.005, 10.0, 0.3)
 STILL = 3.0
-"""Newtons, mu F_z of the ball."""
+"""Friction mu F_z of the ball, N."""
 
 
 def stroke(share):
-    """An amplitude in metres, by its group."""
+    """The amplitude in metres for a dimensionless one."""
     return share * CONTACT.u_lim
 
 
@@ -36,8 +36,11 @@ def stroke(share):
 
 
 def test_the_groups_of_a_drive_by_hand():
-    """With a stiffness 2 G* a of the contact at rest, which is 1.5 mu F_z / u_lim (PHYSICS, Hertz):
-    a spring of it is 1.5, a mass that is in resonance with it 1.5, a dashpot likewise."""
+    """The stiffness of a sticking Hertz contact is 2 G* a = 1.5 mu F_z / u_lim.
+
+    A spring of this stiffness, a mass in resonance with it, and a dashpot of this impedance all
+    have a group of 1.5.
+    """
     motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
     stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
     drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
@@ -62,7 +65,7 @@ def test_the_unit_of_a_speed_undoes_its_group(motion):
 
 
 LENGTH, TIME, MASS = 7.0, 0.3, 11.0
-"""Factors between two problems that are one in other sizes."""
+"""Ratios of the units of two equivalent problems."""
 DIMENSIONS = {
     **{"radius": (1, 0, 0), "amplitude": (1, 0, 0), "speed": (1, -1, 0), "frequency": (0, -1, 0)},
     **{"load": (1, -2, 1), "force": (1, -2, 1), "young": (-1, -2, 1), "mass": (0, 0, 1)},
@@ -74,7 +77,7 @@ SIZES |= {"amplitude": 3e-7}
 
 
 def scaled(sizes):
-    """The same problem in other sizes."""
+    """An equivalent problem in other units."""
     found = {}
     for name, value in sizes.items():
         length, time, mass = DIMENSIONS[name]
@@ -93,8 +96,7 @@ def scaled(sizes):
     ids=lambda pulls: "-".join(pulls),
 )
 def test_answers_know_no_units(pulls):
-    """In other units of length, time and mass every number of the answer goes with its own
-    dimension, and the groups stay."""
+    """Under other units of length, time and mass each number scales with its dimension."""
     one = microslip.predict("transverse", **SIZES | pulls).to_dict()
     other = microslip.predict("transverse", **scaled(SIZES | pulls)).to_dict()
     dimensions = {
@@ -123,7 +125,7 @@ def test_answers_know_no_units(pulls):
     ],
 )
 def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
-    """Numbers of a prototype on some twenty rings by backward Euler, which are coarse."""
+    """The references are coarse: a prototype with about twenty rings and backward Euler."""
     found = microslip.predict(
         "transverse", amplitude=stroke(amplitude), force=force * STILL, **SIDEWAYS
     )
@@ -139,7 +141,7 @@ def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, veloc
 
 @pytest.mark.slow
 def test_at_a_large_stroke_the_contact_drifts_as_a_rigid_one():
-    """(2/pi) A P / sqrt(1 - P^2) in closed form; elastic contacts drift less, by about 1/A."""
+    """A rigid contact drifts by (2/pi) A P / sqrt(1 - P^2); an elastic one by about 1/A less."""
     found = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
     rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8 * 2.0 * math.pi * 20e3 * CONTACT.u_lim
     assert 0.97 * rigid < found.speed_m_s < rigid
@@ -147,7 +149,7 @@ def test_at_a_large_stroke_the_contact_drifts_as_a_rigid_one():
 
 @pytest.mark.parametrize("share", [0.9, 0.5, 1e-3])
 def test_a_force_below_the_threshold_moves_nothing(share):
-    """The threshold is the friction at vanishing speed, which is asked for by a speed of 0."""
+    """The threshold equals the friction at a speed of 0."""
     held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
     threshold = held.friction_force_N
     found = microslip.predict(
@@ -161,8 +163,7 @@ def test_a_force_below_the_threshold_moves_nothing(share):
 
 
 def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(monkeypatch):
-    """The independent threshold is the friction at vanishing speed; the force is below it by twice
-    the error of that.  The solver is not called for a drift: that would take minutes."""
+    """A force below the friction at speed 0 by twice its error needs no drift computation."""
     asked = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3}
     held = microslip.predict("transverse", speed=0.0, **asked)
     force = held.friction_force_N - 2.0 * held.friction_force_error_N
@@ -190,7 +191,7 @@ def test_all_of_friction_and_more_runs_away(force):
 @pytest.mark.parametrize("tolerance", [1e-2, 2e-2])
 @pytest.mark.parametrize("side", [-0.5, 0.0, 0.5])
 def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, side):
-    """A small relative error of so small a speed would take minutes."""
+    """A drift with a small relative error would take minutes there."""
     contact = SIDEWAYS | {"amplitude": stroke(0.5)}
     held = microslip.predict("transverse", speed=0.0, **contact)
     force = held.force_threshold_N + side * held.force_threshold_error_N
@@ -198,7 +199,7 @@ def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, s
     assert found.outcome == "undecided" and not found.converged
     assert found.displacement_m is None and not found.displacement_reason
     assert found.reason.startswith("the force differs from its threshold by less than")
-    assert "does not tell whether it moves" in str(found)
+    assert "undecided within the error" in str(found)
 
 
 def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
@@ -222,7 +223,7 @@ def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypa
     asked = SIDEWAYS | {"amplitude": stroke(0.5), "force": 1.0}
     heavy = microslip.predict("transverse", **asked, mass="1 mg")
     assert (heavy.outcome, heavy.displacement_m) == ("stays", None)
-    assert "displacement      not known: computed for one contact without mass only" in str(heavy)
+    assert "displacement      unknown: computed for one contact without mass only" in str(heavy)
 
     def endless(*given, **settings):
         return SimpleNamespace(converged=False, reason="lost on the way")
@@ -230,7 +231,7 @@ def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypa
     monkeypatch.setattr("microslip.si.predict.shakedown", endless)
     light = microslip.predict("transverse", **asked)
     assert (light.outcome, light.displacement_reason) == ("stays", "lost on the way")
-    assert "displacement      not known: lost on the way" in str(light)
+    assert "displacement      unknown: lost on the way" in str(light)
 
 
 def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():
@@ -244,7 +245,7 @@ def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force()
 
 
 def test_a_steady_spin_gives_way_to_any_force():
-    """Where the velocity belongs to the force by Eq 21."""
+    """The velocity and the force satisfy Eq 21."""
     found = microslip.predict("continuous-bore", rotation="10 Hz", force=0.5 * STILL, **BALL)
     assert float(paper.bore_forward(found.velocity)) == pytest.approx(0.5, abs=1e-8)
     edge = 2.0 * math.pi * 10.0 * found.contact_radius_m
@@ -277,8 +278,11 @@ EDGES = [
 def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
     expected, motion, velocity, amplitude, stiffness, mass
 ):
-    """Just within a limit of the rule, where it matters: between a velocity and a force friction
-    differs by more than SAME.  Along the direction of the pull a force leaves all of friction."""
+    """Drives just within a limit have the friction of the limit.
+
+    The friction at a constant velocity and under a constant force differ by more than SAME.  Under
+    a force along the vibration all of friction remains.
+    """
     drive = Spring(stiffness, mass)
     assert regime(motion, amplitude, drive) == expected
     found = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
@@ -291,10 +295,10 @@ def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
 
 
 def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
-    """Scaled as one, so that k / m, the square of its own frequency, stays."""
+    """Stiffness and mass are scaled by one factor, which keeps the natural frequency."""
     asked = pulled.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
     assert max(asked.values()) == LARGEST_BODY
-    for size in (3.3e25, 7e29, 1.1e30):  # whose division rounds up
+    for size in (3.3e25, 7e29, 1.1e30):  # the quotient is rounded up
         assert pulled.within_range({"stiffness": size})["stiffness"] == LARGEST_BODY
     assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
     as_given = {"stiffness": 4.0, "mass": 0.5}
@@ -321,7 +325,7 @@ def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argu
 
 def test_between_stiff_and_soft_it_may_resonate():
     assert regime("transverse", 1.0, Spring(1.0, 1.0)) == "between"
-    # stiff as they are, a spring and a mass that are in step with twice the vibration give way
+    # a spring and a mass in resonance with twice the vibration have no stiffness
     assert regime("transverse", 1.0, Spring(400.0, 100.0)) == "between"
     assert regime("transverse", 1.0, Spring(400.0, 100.0, 50.0)) == "velocity"
     assert natural_frequency(Spring(2.5, 1.0)) == 2.0
@@ -340,20 +344,20 @@ def test_the_command_line_says_what_comes_of_a_force(capsys):
     words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--young", "210 GPa", "--nu", "0"]
     words += ["--frequency", "20 kHz", "--amplitude", f"{stroke(0.5)!r} m"]
     stays = said(capsys, *words, "--force", "1 N")
-    assert "it stays: the force is below the threshold" in stays and "walks" not in stays
+    assert "it stays: the force is below the threshold" in stays and "travel" not in stays
     moves = said(capsys, *words, "--force", "2.5 N")
     assert "it moves, cycle by cycle" in moves and "1 mm in " in moves
     away = said(capsys, *words, "--force", "4 N", code=1)
-    assert "it runs away: friction holds no more than 3 N" in away and "CONVERGED" not in away
+    assert "it runs away: friction holds at most 3 N" in away and "CONVERGED" not in away
     words += ["--speed", "1 mm/s", "--drive-stiffness", "10 N/um", "--mass", "20 g"]
-    assert "stiff or heavy: the velocity is as good as constant" in said(capsys, *words)
+    assert "stiff or heavy: the velocity is nearly constant" in said(capsys, *words)
     found = json.loads(said(capsys, *words, "--json"))
     assert (found["mass_kg"], found["drive_stiffness_N_m"]) == (0.02, 1e7)
     assert found["regime"] == "velocity" and found["outcome"] is None
 
 
 def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():
-    """Of an ellipse the lateral part, whose closed form is known at nu = 0."""
+    """The threshold is that of the lateral part, whose closed form is exact at nu = 0."""
     parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
     found = {
         share: microslip.predict("elliptic", **SIDEWAYS, **parts, force=share * STILL)
@@ -371,4 +375,4 @@ def test_probabilities_that_are_not_known_are_said_to_be():
     parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
     found = microslip.predict("elliptic", **SIDEWAYS, **parts, force="1.2 N +- 0.1 N")
     assert found.probability_stays is None and found.probability_runs_away == 0.0
-    assert "not computed: that it stays or moves" in str(found)
+    assert "not computed for staying and moving" in str(found)

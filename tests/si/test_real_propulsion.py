@@ -1,4 +1,4 @@
-"""A motion that drives in SI units: groups by hand, powers that balance, other sizes, bad input."""
+"""Self-propelled motions in SI units: groups, powers, scaling, command line."""
 
 import json
 import math
@@ -15,14 +15,14 @@ PRESSED = "normal:forward=1,phase=150"
 BALL = {"radius": 5e-3, "load": 10.0, "mu": 0.3, "young": 210e9, "nu": 0.0}
 CONTACT_RADIUS = (0.75 * 10.0 * 5e-3 / 210e9) ** (1.0 / 3.0)
 U_LIM = 3.0 * 0.3 * 10.0 / (4.0 * 2.0 * 105e9 * CONTACT_RADIUS)
-"""Hertz's a, and 3 mu F / (4 G* a), G* = 4 G / (2 - nu) = 2 G and G = E / 2 at nu = 0."""
+"""u_lim is 3 mu F / (4 G* a) with Hertz's a; at nu = 0, G* = 2 G = E."""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("motion", "share"), [(EIGHT, 1.0), (PRESSED, 0.9)])
 def test_the_line_is_that_of_the_groups(motion, share):
-    """Newtons are mu F_z, metres a second omega u_lim, watts their product; the mean load of what
-    oscillates by less than itself is the load."""
+    """The unit of force is mu F_z, the unit of speed omega u_lim, the unit of power their
+    product."""
     frequency = 20e3
     given = {"amplitude": share * U_LIM, "frequency": frequency, "points": 3}
     real = microslip.predict_propulsion(motion, **BALL, **given)
@@ -41,7 +41,7 @@ def test_the_line_is_that_of_the_groups(motion, share):
 
 @pytest.mark.slow
 def test_holding_forces_are_in_newtons():
-    """mu F_z, 3 N, times those of the groups; the text has them with their errors."""
+    """Holding forces are 3 N, mu F_z, times the dimensionless ones; the text has their errors."""
     real = microslip.predict_propulsion(EIGHT, **BALL, amplitude=0.5 * U_LIM, frequency=20e3)
     line = microslip.propulsion(EIGHT, 0.5, tolerance=1e-2)
     for name in ("low", "high"):
@@ -54,7 +54,7 @@ def test_holding_forces_are_in_newtons():
 
 @pytest.mark.slow
 def test_twice_as_fast_takes_twice_the_power():
-    """Friction does not know how fast it goes."""
+    """Friction is independent of the rate, so forces stay and speeds and powers double."""
     slow, fast = (
         microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=f, points=3)
         for f in ("20 kHz", "40 kHz")

@@ -1,4 +1,4 @@
-"""The amplitude, the speed or the load at which vibration takes a share of friction away."""
+"""Searches for the amplitude, the speed or the load with a prescribed reduction of friction."""
 
 import math
 
@@ -19,7 +19,7 @@ RIGID = {"amplitude": "1 mm", "speed": "20 m/s", "load": "1 N", "frequency": "2 
 @pytest.mark.parametrize("sought", ["speed", "load"])
 @pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_whichever_is_left_out_is_found_again(motion, sought):
-    # Of a bore two loads feel the same, and the larger one is looked for.
+    # For a bore two loads have the same reduction; the search returns the larger one.
     given = GIVEN | ({"amplitude": 0.01, "load": 200.0} if motion == "bore" else {})
     there = microslip.predict(motion, **LATERAL, **given)
     rest = {name: value for name, value in given.items() if name != sought}
@@ -36,7 +36,7 @@ def test_whichever_is_left_out_is_found_again(motion, sought):
     [pytest.param({"radius_across": "8 mm"}, marks=pytest.mark.long), {"contact_radius": "60 um"}],
 )
 def test_a_load_is_found_of_other_contacts(shape):
-    """Hertz's ellipse grows with the load, a contact whose size is given does not."""
+    """Hertz's ellipse grows with the load; a contact with a prescribed size does not."""
     given = LATERAL | GIVEN | shape
     if "contact_radius" in shape:
         del given["radius"]
@@ -47,7 +47,7 @@ def test_a_load_is_found_of_other_contacts(shape):
 
 
 def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
-    """The mean of v / sqrt(v^2 + c^2 cos^2) with c = omega y0: the load does not count."""
+    """Friction is the mean of v / sqrt(v^2 + c^2 cos^2), c = omega y0, at any load."""
     from scipy.optimize import brentq
     from scipy.special import ellipk
 
@@ -69,10 +69,10 @@ def test_of_a_rigid_slider_the_speed_is_that_of_equation_6():
             {"amplitude": None, "speed": "1 m/s", "reduction": 0.99},
             "^reduction = 0.99: no amplitude",
         ),
-        # At vanishing speed an amplitude of u_lim/100 leaves more than nine tenths.
-        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed takes"),
-        # Fast sliding feels nothing of any vibration.
-        ({"load": None, "speed": "100 m/s"}, "^reduction = '50 %': of those tried, down to"),
+        # At vanishing speed and an amplitude of u_lim/100 more than 90 % of friction remains.
+        ({"speed": None, "amplitude": "3 nm"}, "^reduction = '50 %': no speed reduces"),
+        # The vibration has no effect on fast sliding.
+        ({"load": None, "speed": "100 m/s"}, "^reduction = '50 %': no load of the search, down to"),
     ],
 )
 def test_what_cannot_be_looked_for_is_refused(changed, said):
@@ -82,7 +82,7 @@ def test_what_cannot_be_looked_for_is_refused(changed, said):
 
 
 def test_a_load_that_hertz_theory_does_not_know_is_refused():
-    """A stroke of half of the ball needs a contact of its size to stick."""
+    """A contact sticks over a stroke of half the radius only if it is as large as the ball."""
     ball = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
     asked = ball | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}
     with pytest.raises(InputError, match="^reduction = '10 %': it takes a load of .*Hertz"):

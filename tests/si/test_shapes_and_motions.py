@@ -1,4 +1,4 @@
-"""Contacts that are no spheres and motions that are no lines, in SI units."""
+"""Contacts of other shapes and motions with several oscillations, in SI units."""
 
 import json
 import math
@@ -31,10 +31,10 @@ SPHERE = ASKED | {"radius": "5 mm"}
 
 @pytest.mark.parametrize("across", [1e-3, 2e-2])
 def test_the_ellipse_of_two_radii_is_pressed_into_shape(across):
-    """Hertz's pressure on that ellipse, integrated over it, makes a surface of both curvatures.
+    """The displacement under Hertz's pressure on the ellipse has both curvatures.
 
-    1/(pi E*) times the integral of p/rho in polar coordinates about the point: there p is a
-    semicircle along every chord, so that it is p0 pi/2 times the chord's largest over its width.
+    It is 1/(pi E*) times the integral of p/rho in polar coordinates about a point.  Along each
+    chord p is a semicircle, whose integral has a closed form.
     """
     contact = elliptic(BALL, across)
     ratio = ellipse_of_radii(5e-3, across)[0]
@@ -49,7 +49,7 @@ def test_the_ellipse_of_two_radii_is_pressed_into_shape(across):
             alpha = c * c + s * s
             beta = c * x / axes[0] + s * y / axes[1]
             gamma = 1.0 - (x / axes[0]) ** 2 - (y / axes[1]) ** 2
-            # the integral of sqrt(gamma - 2 beta s - alpha s^2) over the whole chord
+            # integral of sqrt(gamma - 2 beta s - alpha s^2) over the chord
             return 0.5 * math.pi * (gamma + beta * beta / alpha) / math.sqrt(alpha)
 
         found = dblquad(integrand, 0.0, math.pi, 0.0, 1.0, epsabs=0.0, epsrel=1e-10)[0]
@@ -71,7 +71,7 @@ def test_an_ellipse_of_equal_radii_is_the_circle():
 
 
 def test_u_lim_of_an_ellipse_is_what_full_slip_displaces_its_middle():
-    """mu times the displacement under the pressure, with G* in place of E*: K(m) and a by hand."""
+    """u_lim is mu times the displacement under the pressure, with G* in place of E*."""
     contact = elliptic(BALL, 2e-2)
     m = 1.0 - ellipse_of_radii(5e-3, 2e-2)[0] ** 2
     by_hand = 1.5 * 0.3 * 10.0 * ellipk(m) / (math.pi * contact.G_star * contact.contact_radius)
@@ -88,18 +88,18 @@ def test_a_circle_of_given_size_is_the_sphere_that_makes_it():
 
 
 def quartic(r):
-    """Pressure of an indenter r^4 over F/a^2: with s^2 = 1 - r^2 it is (5/2 pi) (s - 2 s^3/3)."""
+    """Pressure of an indenter r^4 divided by F/a^2: (5/2 pi) (s - 2 s^3/3), s^2 = 1 - r^2."""
     s = math.sqrt(1.0 - r * r)
     return 2.5 / math.pi * (s - 2.0 * s**3 / 3.0)
 
 
 def flat_end(r, b=0.8):
-    """Pressure of a punch with a flat end up to b over F/a^2, by Abel's integral (Sneddon)."""
+    """Pressure of a punch that is flat up to b, divided by F/a^2, by Abel's integral (Sneddon)."""
 
     def slope(x):
         return 2.0 * math.sqrt(max(x * x - b * b, 0.0)) - b * math.acos(min(b / x, 1.0))
 
-    def abel(s):  # x^2 = r^2 + s^2 takes the root out
+    def abel(s):  # with x^2 = r^2 + s^2 the integrand has no root
         x = math.hypot(r, s)
         return slope(x) / x
 
@@ -144,12 +144,12 @@ def test_the_largest_pressure_of_a_hertzian_ellipse():
 
 @pytest.mark.parametrize(("grid", "mean_height"), [("cells", 4.0), ("samples", 1.0)])
 def test_the_largest_pressure_of_a_file_is_its_largest_value(grid, mean_height, tmp_path):
-    """One value of 5 among four of 0 along each side: as a cell, or as a pyramid of that height."""
+    """A single nonzero value is the mean over a cell, or the height of a pyramid."""
     rows = [f"{x},{y},{5.0 * (x == y == 0)}" for x in (-1, 0, 1) for y in (-1, 0, 1)]
     path = tmp_path / "one.csv"
     path.write_text("\n".join(["forward,lateral,pressure", *rows]))
     contact = of_size(BALL, 1e-4, f"file:{path},grid={grid}")
-    # the load is 5 step^2 in both readings; a is half a step of a cell, and a step of a pyramid
+    # the load is 5 step^2 for both; a is half a step for a cell, and one step for a pyramid
     assert contact.largest_pressure == pytest.approx(BALL.load / 1e-8 / mean_height, rel=1e-12)
 
 
@@ -168,7 +168,7 @@ def test_a_cone_yields_at_its_tip_and_says_so_once():
 
 
 def test_u_lim_of_a_cone_is_that_of_its_depth():
-    """A cone's load is E* a d (Sneddon), and u_lim = mu d E*/G* for every indenter."""
+    """The load of a cone is E* a d (Sneddon), and u_lim = mu d E*/G* for all indenters."""
     contact = of_size(BALL, 1e-4, "power:exponent=1")
     depth = contact.load / (contact.E_star * 1e-4)
     assert contact.indentation == pytest.approx(depth, rel=1e-6)
@@ -232,14 +232,14 @@ def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
 
 @pytest.mark.long
 def test_an_oscillating_load_alone_is_its_closed_form():
-    """Under a load that oscillates by half of itself, at vanishing speed: what is left is 1 - A."""
+    """The static limit is 1 - A for an amplitude A of the load, here 0.5."""
     asked = {k: v for k, v in SPHERE.items() if k != "amplitude"}
     found = microslip.predict("normal", **asked | {"load_amplitude": "5 N"})
     assert found.mu_static == pytest.approx(0.5, abs=found.mu_static_error)
     assert found.mu_macro > found.mu_static and found.load_amplitude_N == 5.0
 
 
-# Motions of one's own
+# Motions from files
 
 OWN = {
     "sine_cubed": """from dataclasses import dataclass
@@ -270,7 +270,7 @@ class OwnBore(Bore):
 
 @pytest.fixture
 def own(tmp_path):
-    """Two motions in files of one's own: a translation of another shape, and the bore once more."""
+    """Two motions from files: a translation of another shape, and a copy of the bore."""
     known, path = dict(by_name.MOTIONS), list(motions.__path__)
     for name, text in OWN.items():
         (tmp_path / f"{name}.py").write_text(text)
@@ -313,21 +313,21 @@ def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
 
 @pytest.mark.slow
 def test_numbers_after_the_name_of_a_family_are_taken_as_by_solve():
-    """Without its forward half the ellipse is the transverse motion."""
+    """An ellipse without a forward oscillation is the transverse motion."""
     line = microslip.predict("elliptic:forward=0,phase=0", **SPHERE)
     assert line.mu_macro == microslip.predict("transverse", **SPHERE).mu_macro
 
 
-# A load that parts the bodies
+# Bodies that separate
 
 
 @pytest.mark.long
 def test_a_load_amplitude_above_the_load_parts_the_bodies():
-    """The load is 10 N + 15 N sin t where that is above 0: its mean is an integral by hand."""
+    """The mean load is the integral of 10 N + 15 N sin t over its positive part."""
     given = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}
     del given["amplitude"]
     found = microslip.predict("normal", **given, power=False)
-    gone = math.acos(10.0 / 15.0)  # half of the phases without contact, about 3 pi/2
+    gone = math.acos(10.0 / 15.0)  # half the phases without contact, around 3 pi/2
     mean = 10.0 * (1.0 - gone / math.pi) + 15.0 * math.sin(gone) / math.pi
     answer = microslip.solve("normal", found.velocity, 1.5, poisson=0.3)
     assert found.mu_macro == answer.mu_macro

@@ -1,4 +1,4 @@
-"""A table of contacts is each of its rows."""
+"""Tables of contacts equal the predictions of their rows."""
 
 import math
 
@@ -35,10 +35,10 @@ def test_each_case_is_its_prediction(tmp_path):
     [
         ({}, "a mapping of names to sequences"),
         ([1.0], "a mapping of names to sequences"),
-        ({"load": "10 N"}, "a sequence with a value for each case"),
+        ({"load": "10 N"}, "a sequence of one value for each case"),
         ({"load": ["10 N"], "speed": [0.1, 0.2]}, "columns of one length"),
         ({"load": []}, "1 to 100000 cases"),
-        ({"mu": [0.3]}, "allowed once"),
+        ({"mu": [0.3]}, "not allowed: the table has it"),
         (CASES | {"load": ["10 kg", "1 s"]}, "load = '10 kg': in case 0: the unit is kilogram"),
     ],
 )
@@ -48,19 +48,8 @@ def test_a_table_that_is_none_is_refused(cases, said):
 
 
 @pytest.mark.slow
-def test_a_case_that_cannot_be_has_its_error_and_the_others_their_answers(tmp_path):
-    cases = CASES | {"load": ["10 kg", "20 N"], "label": ["heavy", "light"]}
-    table = microslip.predict_table("transverse", cases, tolerance=0.01, **SHARED)
-    assert "load = '10 kg': the unit is kilogram" in str(table.error.values[0])
-    assert table.error.values[1] == "" and table.label.values.tolist() == ["heavy", "light"]
-    assert table.converged.values.tolist() == [False, True]
-    assert math.isnan(table.mu_macro.values[0]) and table.mu_macro.values[1] > 0.0
-    table.to_netcdf(tmp_path / "table.nc", engine="netcdf4")
-
-
-@pytest.mark.slow
 def test_pandas_tables_and_files_are_cases(tmp_path):
-    """A frame as pandas.read_csv makes it, and the file."""
+    """A DataFrame of pandas.read_csv and its file give equal datasets."""
     text = "label;load [N];speed [mm/s];amplitude [um];reduction\na;10;1,5;1;\nb;20;2,5;0,3;\n"
     (tmp_path / "cases.csv").write_text(text)
     shared = SHARED | {"tolerance": 0.01}

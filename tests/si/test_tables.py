@@ -1,4 +1,4 @@
-"""Tables of quantities: CSV as people write it, and columns of other types."""
+"""Tables of quantities from CSV files, mappings and DataFrames."""
 
 import numpy as np
 import pandas as pd
@@ -35,7 +35,7 @@ def test_lines_are_numbered_as_the_file_has_them():
 
 
 def test_a_decimal_comma_is_read_if_declared():
-    """A comma between two digits is decimal; in labels it stays."""
+    """A comma between two digits is a decimal mark; labels keep it."""
     text = (
         "name;load [N];mu;counterbody\n1,5 N;1,5;,3;70 GPa, 0,22\n2;1,5e1;0,3 +- 0,03;steel\n"
         '"3";1.5;0,3;steel\n'
@@ -112,7 +112,7 @@ def test_another_encoding_is_read_if_declared(tmp_path):
 
 
 def test_columns_of_a_frame_are_lists_with_units():
-    """Missing values are None, whichever of them pandas has."""
+    """Every missing value of pandas becomes None."""
     frame = pd.DataFrame({"load [N]": [1.5, np.nan], "mu": [0.3, None], "label": ["a", pd.NA]})
     found = table_of("table", frame, NAMES)
     assert found.columns == {"load": ["1.5 N", None], "mu": [0.3, None], "label": ["a", None]}

@@ -1,17 +1,16 @@
-"""From a real contact in SI units to its friction under vibration.
+"""Friction of real contacts under vibration, in SI units.
 
     import microslip
 
-    found = microslip.predict(
+    prediction = microslip.predict(
         "transverse", young="210 GPa", nu=0.3, counterbody="rigid", radius="5 mm", load="10 N",
         mu=0.3, speed="1 mm/s", amplitude="1 um", frequency="20 kHz",
     )
-    print(found.mu_apparent, found.force_reduction, found.warnings)
+    print(prediction.mu_apparent, prediction.force_reduction, prediction.warnings)
 
-The way of a request: `quantities` reads texts with units, `inputs` the bodies, the contact, the
-motion and the drive.  `request` holds them, makes them dimensionless and calls the solver.
-`reduction` looks for a missing amplitude, speed or load, `static_limit` computes the force
-threshold, and `pulled` the friction or the drift.  `predict` turns the answers into a record of
-`prediction`, and `uncertain` and `outcomes` add the uncertainty that follows from the inputs.
-`validity` has the limits of the theory.
+`quantities` reads texts with units, and `inputs` reads the bodies, the contact, the motion and the
+drive.  `request` makes them dimensionless and calls the solver.  `reduction` searches for a missing
+amplitude, speed or load.  `static_limit` computes the force threshold, and `pulled` the friction or
+the drift.  `predict` returns the answers as a record of `prediction`.  `uncertain` and `outcomes`
+add the uncertainty that follows from uncertain inputs.  `validity` has the limits of the theory.
 """

@@ -1,4 +1,4 @@
-"""Hertz contact of two elastic bodies in SI units, and what their mismatch couples."""
+"""Hertz contact of two elastic bodies in SI units, and their elastic mismatch."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from microslip.theory.hertz import checked
 class TwoBodies:
     """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
 
-    The tangential problem of two half-spaces is that of one whose compliance is the sum of both:
-    its G and Poisson's ratio follow from the sums of 1/G and nu/G.  Normal and tangential problem
-    are taken as uncoupled.
+    The tangential problem of two half-spaces equals that of one half-space with the sum of their
+    compliances.  Its G and Poisson's ratio follow from the sums of 1/G and nu/G.  The normal and
+    the tangential problem are assumed to be uncoupled.
 
     Attributes
     ----------
@@ -29,7 +29,8 @@ class TwoBodies:
     mu : float
         Coefficient of friction without vibration, dimensionless.
     radii : tuple of float
-        R1 and R2, m, negative if hollow, infinite if flat; empty: R1 is `radius`, R2 is flat.
+        R1 and R2, m, negative if hollow, infinite if flat.  Empty: R1 is `radius`, and the second
+        body is flat.
 
     Raises
     ------
@@ -44,13 +45,13 @@ class TwoBodies:
     mu: float
     radii: tuple = ()
     pressure = "hertz"
-    """How the load is spread, as microslip.solve takes it."""
+    """Name of the pressure for microslip.solve."""
 
     def __post_init__(self) -> None:
         for name in ("radius", "load", "mu"):
             checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:
-            allowed = "allowed is an elastic one for a rigid body"
+            allowed = "allowed is an elastic counterbody for a rigid body"
             raise InputError("counterbody", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:
@@ -68,14 +69,14 @@ class TwoBodies:
 
     @property
     def G(self) -> float:
-        """1/G = sum 1/G_i, Pa; what torsion feels."""
+        """1/G = sum 1/G_i, Pa; the modulus of torsion."""
         return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
 
     @property
     def poisson(self) -> float:
-        """Poisson's ratio of the equal half-space on a rigid one, sum(nu/G) / sum(1/G)."""
+        """Poisson's ratio of the equivalent half-space on a rigid one, sum(nu/G) / sum(1/G)."""
         compliances = [1.0 / body.shear_modulus for body in self.bodies]
-        total = sum(compliances)  # of one elastic body it is that body's ratio, to the last bit
+        total = sum(compliances)  # one elastic body keeps its ratio to the last bit
         return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property
@@ -90,7 +91,7 @@ class TwoBodies:
 
     @property
     def smallest_radius(self) -> float:
-        """The smaller |radius| of either body, m."""
+        """The smaller |radius| of the two bodies, m."""
         return min(map(abs, self.radii), default=self.radius)
 
     @property
@@ -110,9 +111,10 @@ class TwoBodies:
 
     @property
     def mismatch(self) -> float:
-        """Dundurs' constant beta, how far pressure moves the surfaces apart sideways, 0 if equal.
+        """Dundurs' constant beta, dimensionless; 0 for equal bodies.
 
-        Half of the difference of (1 - 2 nu)/G over the sum of (1 - nu)/G.
+        It is half the difference of (1 - 2 nu)/G divided by the sum of (1 - nu)/G, and measures the
+        sideways displacement by a pressure.
         """
         first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
         both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)

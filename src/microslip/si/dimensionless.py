@@ -1,4 +1,4 @@
-"""The dimensionless groups of a motion in SI units, and back."""
+"""Dimensionless groups of a motion and a drive in SI units."""
 
 from __future__ import annotations
 
@@ -14,10 +14,24 @@ from microslip.theory import hertz
 
 @dataclass(frozen=True)
 class RealMotion:
-    """A motion in SI units: forward speed, m/s; amplitude (half stroke), m or rad; frequency, Hz;
-    rotation, rad/s, of a steady bore.  Quantities that a motion lacks are None, and so is a speed
-    that follows from a force.  Motions that oscillate in several ways have further half strokes:
-    forward, m, in rotation, rad, of the load, N; and a phase, rad, see `solver_motion`."""
+    """A motion in SI units; a missing quantity is None.
+
+    Attributes
+    ----------
+    name : str
+        Name of the motion.
+    speed : float or None
+        Forward speed, m/s; None under a force.
+    amplitude : float or None
+        Half stroke of the oscillation, m, or rad for a rotation.
+    frequency : float or None
+        Frequency of the oscillation, Hz.
+    rotation : float or None
+        Angular speed of a steady spin, rad/s.
+    forward_amplitude, rotation_amplitude, load_amplitude, phase : float or None
+        Half strokes forward, m, in rotation, rad, and of the load, N, and the phase, rad, of a
+        motion with several oscillations.
+    """
 
     name: str
     speed: float | None
@@ -31,17 +45,17 @@ class RealMotion:
 
     @property
     def steady(self) -> bool:
-        """Whether nothing oscillates."""
+        """True if nothing oscillates."""
         return is_steady(self.name)
 
     @property
     def spins(self) -> bool:
-        """Whether the amplitude is an angle."""
+        """True if the amplitude is an angle."""
         return unit_of_amplitude(self.name) == "rad"
 
     @property
     def swing(self) -> tuple[float, float]:
-        """Half strokes along the surface, m, and in rotation, rad, each at its largest."""
+        """Largest displacement along the surface, m, and largest rotation, rad."""
         if self.spins:
             return 0.0, self.amplitude or 0.0
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
@@ -49,55 +63,53 @@ class RealMotion:
 
     @property
     def turn(self) -> float:
-        """Angular frequency of the oscillation, or angular speed of what is steady, rad/s."""
+        """Angular frequency of the oscillation, or angular speed of a steady spin, rad/s."""
         if self.frequency is not None:
             return 2.0 * math.pi * self.frequency
-        assert self.rotation is not None  # as of all that is steady
+        assert self.rotation is not None  # a steady motion has one
         return self.rotation
 
     @property
     def rate(self) -> float:
-        """Frequency of the oscillation, or turns a second of what is steady, Hz."""
+        """Frequency of the oscillation, or turns per second of a steady spin, Hz."""
         return self.turn / (2.0 * math.pi) if self.frequency is None else self.frequency
 
     @property
     def known_speed(self) -> float:
-        """The speed, m/s, of a motion whose speed is known."""
+        """The speed, m/s; it must not be None."""
         assert self.speed is not None
         return self.speed
 
 
 def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Amplitudes of a motion that oscillates in several ways, in the solver's groups, by the names
-    of their shares."""
+    """Dimensionless amplitudes of a motion with several oscillations, by the solver's name."""
     unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
-    found = {}
+    amplitudes = {}
     for name, (share, _) in PARTS.items():
         size = getattr(motion, name)
         if size is not None and share == "angle":
             angle = size * contact.contact_radius / contact.u_lim
-            found[share] = float(hertz.bore_amplitude(angle, contact.poisson))
+            amplitudes[share] = float(hertz.bore_amplitude(angle, contact.poisson))
         elif size is not None:
-            found[share] = size / unit[share]
-    return found
+            amplitudes[share] = size / unit[share]
+    return amplitudes
 
 
 def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
-    """Text of the motion for microslip.solve; several amplitudes become shares of the largest."""
+    """Text of the motion for microslip.solve; several amplitudes are divided by the largest one."""
     if motion.name not in COMBINED:
         return motion.name
-    found = parts(motion, contact)
-    largest = max(found.values()) or 1.0
-    shares = {name: size / largest for name, size in found.items()}
+    amplitudes = parts(motion, contact)
+    largest = max(amplitudes.values()) or 1.0
+    shares = {name: size / largest for name, size in amplitudes.items()}
     shares["phase"] = math.degrees(motion.phase or 0.0)
     return f"{motion.name}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
 
 
 def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float | None]:
-    """(velocity, amplitude) as microslip.solve takes them (Eqs 2, 4, 13, 27, 28).
+    """Velocity and amplitude of microslip.solve (Eqs 2, 4, 13, 27, 28).
 
-    motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.  velocity:
-    None where the speed is.
+    The velocity is None under a force, the amplitude for a steady motion.
     """
     unit = speed_unit(motion, contact)
     velocity = None if motion.speed is None else _over(motion.speed, unit)
@@ -107,12 +119,12 @@ def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float 
 
 
 def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
-    """The amplitude as microslip.solve takes it; None for a steady motion."""
+    """Amplitude of microslip.solve; None for a steady motion."""
     if motion.steady:
         return None
     if motion.name in COMBINED:
         return max(parts(motion, contact).values())
-    assert motion.amplitude is not None  # as of all that oscillate in one way
+    assert motion.amplitude is not None  # the motion has one oscillation
     if not motion.spins:
         return motion.amplitude / contact.u_lim
     angle = motion.amplitude * contact.contact_radius / contact.u_lim
@@ -121,12 +133,12 @@ def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
 
 def _known_size(motion: RealMotion, contact: TwoBodies) -> float:
     size = _size(motion, contact)
-    assert size is not None  # as of all that oscillate
+    assert size is not None  # the motion oscillates
     return size
 
 
 def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
-    """Forward speed whose group is 1, m/s; it may be rounded to nothing."""
+    """Forward speed whose dimensionless velocity is 1, m/s; it can underflow to 0."""
     if motion.steady:
         return motion.turn * contact.contact_radius
     omega = motion.turn
@@ -139,25 +151,23 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def _over(speed: float, unit: float) -> float:
-    """A speed over another one that may have been rounded to nothing."""
+    """A speed divided by its unit, which can be 0."""
     if speed == 0.0:
         return 0.0
     return speed / unit if unit > 0.0 else math.inf
 
 
 def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
-    """Mean normal load, N: more than the load where its oscillation parts the bodies."""
+    """Mean normal load, N; it is above the load if the bodies separate in each period."""
     if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
         return contact.load
-    record, pressure = (
-        motion_named(solver_motion(motion, contact)),
-        pressure_named(contact.pressure),
-    )
+    record = motion_named(solver_motion(motion, contact))
+    pressure = pressure_named(contact.pressure)
     return contact.load * float(record.mean_load(_known_size(motion, contact), pressure))
 
 
 def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
-    """mu times the mean normal load, N, the unit of mu_macro and of forces."""
+    """mu times the mean normal load, N: the unit of forces."""
     return contact.mu * mean_load(motion, contact)
 
 
@@ -168,11 +178,11 @@ class RealDrive:
     Attributes
     ----------
     force : float or None
-        Constant force, N; None: no force is prescribed.
+        Prescribed constant force, N.
     stiffness : float or None
-        Stiffness of a spring whose far end has the speed of the motion, N/m; None: no spring.
+        Stiffness of a spring whose far end has the speed of the motion, N/m.
     mass, damping : float or None
-        Mass of the driven body, kg, and damping of a dashpot on it, N s/m.
+        Mass of the body, kg, and damping of a dashpot beside the spring, N s/m.
     """
 
     force: float | None = None
@@ -182,27 +192,27 @@ class RealDrive:
 
 
 def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """force, stiffness, mass and damping as microslip.solve takes them, those that are not None.
+    """Force, stiffness, mass and damping of microslip.solve, without those that are None.
 
-    The force is over mu times the mean load, the others over mu F_z / u_lim, mu F_z / (u_lim
-    omega^2) and mu F_z / (u_lim omega), F_z the load.
+    The units are mu times the mean load, mu F_z / u_lim, mu F_z / (u_lim omega^2) and
+    mu F_z / (u_lim omega).  F_z is the load without oscillation.
     """
     still = contact.mu * contact.load
     stiffness = still / contact.u_lim
     omega = motion.turn
-    found = {
+    pairs = {
         "force": (drive.force, 1.0 / full_friction(motion, contact)),
         "stiffness": (drive.stiffness, 1.0 / stiffness),
         "mass": (drive.mass, omega * omega / stiffness),
         "damping": (drive.damping, omega / stiffness),
     }
-    return {name: value * unit for name, (value, unit) in found.items() if value is not None}
+    return {name: value * unit for name, (value, unit) in pairs.items() if value is not None}
 
 
 def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
-    """Upper bound of the speed between the surfaces, m/s: rigid, at the edge.
+    """Upper bound of the slip speed, m/s: that of rigid bodies at the edge of the contact.
 
-    NaN where the contact runs away.
+    NaN for a contact that runs away.
     """
     edge, speed = contact.contact_radius, motion.known_speed
     if motion.steady:

@@ -1,4 +1,4 @@
-"""Torque, powers and the energy of a cycle, in SI units."""
+"""Torque, power and energy per cycle in SI units."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from microslip.si.request import Request
 
 
 def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
-    """Fields of a Prediction that follow from a converged answer: the drag, the torque of a steady
-    spin, and its power, or that of an oscillation where it was requested.
+    """Fields of a Prediction for a converged answer.
 
-    Raises InputError for a requested power where the contact does not slide at a given speed.
+    They are the power of the drag, the torque and power of a steady spin, and the power of an
+    oscillation if it was requested.  Raises InputError if that power was requested under a force,
+    with a spring, or at a speed or amplitude of 0.
     """
     contact, motion, still = request.contact, request.motion, request.still
     speed, friction = motion.known_speed, answer.friction
@@ -31,9 +32,10 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         fields |= {"torque_N_m": torque, "torque_error_N_m": error}
         power, power_error, reason = torque * motion.turn, error * motion.turn, None
     elif request.arguments["power"] and not motion.steady:
-        found = _vibration_power(request, answer)
+        vibration = _vibration_power(request, answer)
         unit = still * contact.u_lim * motion.turn
-        power, power_error, reason = unit * found.value, unit * found.error, found.reason
+        power, power_error = unit * vibration.value, unit * vibration.error
+        reason = vibration.reason
     else:
         return fields
     total, total_error = drag + power, drag_error + power_error
@@ -44,10 +46,10 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
 def _vibration_power(request: Request, answer: Result) -> Answer:
     """The dimensionless power of an oscillation."""
     if answer.force is not None or answer.stiffness is not None:
-        raise InputError("power", True, "allowed where a speed alone pulls")
+        raise InputError("power", True, "allowed only without a force and a spring")
     velocity, size = request.groups
     if not velocity or not size:
         name = "amplitude" if velocity else "speed"
-        raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
+        raise InputError(name, 0.0, "allowed is above 0 with power")
     point = request.solver_motion, min(velocity, LARGEST["velocity"]), size
     return vibration_power(*point, tolerance=request.tolerance, **request.settings)

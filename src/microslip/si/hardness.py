@@ -1,4 +1,4 @@
-"""Hardness as it is measured: a pressure, Vickers (200 HV) or Rockwell C (60 HRC)."""
+"""Hardness: a pressure, Vickers (200 HV) or Rockwell C (60 HRC)."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.quantities import Given, read
+from microslip.si.quantities import Quantity, read
 
 KILOGRAM_FORCE_PER_SQUARE_MM = 9.80665e6
-"""Pa."""
+"""Unit of the Vickers number, Pa."""
 PROJECTED = 0.9272
-"""Area of a Vickers indent seen from above over that of its faces, sin(68 degrees): the mean
-pressure is the Vickers number over it."""
+"""Projected area of a Vickers indent divided by the area of its faces, sin(68 degrees).  The mean
+pressure is the Vickers number divided by this ratio."""
 ROCKWELL = np.array([20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 68.0])
+"""Rockwell C numbers of the table."""
 VICKERS = np.array([238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0])
-"""Vickers hardness of the steels with these Rockwell C numbers (ASTM E140, Table 1)."""
+"""Vickers numbers of steels with these Rockwell C numbers (ASTM E140, Table 1)."""
 
 VICKERS_OVER_BRINELL = 1.0 / 0.95
-"""Ratio for unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
+"""Ratio of both numbers for unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
 ALLOWED = (
     "allowed are Vickers and Rockwell C, as in '200 HV' and '60 HRC', and pressures, as '7 GPa'"
 )
@@ -29,14 +30,14 @@ _SCALE = re.compile(r"(.*?)\s*(HV|HRC)", re.S)
 _OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 
 
-def read_hardness(name: str, value: Any) -> Given:
+def read_hardness(name: str, value: Any) -> Quantity:
     """Mean pressure under a hardness indent, Pa; raises InputError.
 
-    name: of the argument.  value: a pressure, or a text such as "200 HV" or "60 HRC".
+    name: name of the argument; value: a pressure, or a text such as "200 HV" or "60 HRC".
     """
     scale = _SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
     if scale is None:
-        _refuse_other_scale(name, value)
+        _check_scale(name, value)
         return read(name, value, "Pa")
     try:
         number = read(name, scale[1], "").si
@@ -48,16 +49,16 @@ def read_hardness(name: str, value: Any) -> Given:
             raise InputError(name, value, f"allowed is {ends}, or a Vickers hardness")
         number = float(np.interp(number, ROCKWELL, VICKERS))
     pressure = number * KILOGRAM_FORCE_PER_SQUARE_MM / PROJECTED
-    return Given(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
+    return Quantity(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
 
 
-def _refuse_other_scale(name: str, value: object) -> None:
+def _check_scale(name: str, value: object) -> None:
     """Raise InputError for a hardness on another scale."""
     scale = _OTHER_SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
     if scale is None:
         return
-    hint = f"the scale {scale[2]} is not known; "
+    hint = f"the scale {scale[2]} is not supported; "
     if scale[2].startswith("HB"):
         number = VICKERS_OVER_BRINELL * read(name, scale[1], "").si
-        hint = f"a Brinell hardness; of steels it is about {number:.0f} HV; "
+        hint = f"this Brinell hardness is about {number:.0f} HV for steels; "
     raise InputError(name, value, f"{hint}{ALLOWED}")

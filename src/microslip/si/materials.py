@@ -16,7 +16,7 @@ from microslip.si.quantities import read
 class Material:
     """An isotropic elastic body.
 
-    Texts with units and pint quantities are taken, too, and kept as numbers in SI units.
+    Texts with units and pint quantities are converted to numbers in SI units.
 
     Attributes
     ----------
@@ -25,16 +25,16 @@ class Material:
     poisson : float
         Poisson's ratio, 0 to 0.5, dimensionless.
     density : float or None
-        kg/m^3; None: not known.
+        Density, kg/m^3; None if unknown.
     hardness : float or None
-        Mean pressure that it yields under at large, Pa; None: not known.
+        Mean pressure under a hardness indent, Pa; None if unknown.
     source : str
-        Where the numbers are from.
+        Source of the numbers.
 
     Raises
     ------
     InputError
-        For a value that is out of range or no number; it is a ValueError.
+        For a value that is out of range or not a number.
     """
 
     young: float
@@ -54,7 +54,7 @@ class Material:
             raise InputError("source", self.source, "allowed is a text")
 
     def _keep(self, name: str, value: float) -> None:
-        object.__setattr__(self, name, value)  # the record is frozen for everybody else
+        object.__setattr__(self, name, value)  # the record is frozen
 
     @property
     def rigid(self) -> bool:
@@ -68,31 +68,30 @@ class Material:
 
 RIGID = Material(math.inf, 0.0, source="by definition")
 TABLE = Path(__file__).with_name("materials.csv")
-"""The materials, in SI units; an empty cell is a property that is not known."""
+"""File of the materials in SI units; an empty cell is an unknown property."""
 
 
 def _materials() -> dict[str, Material]:
     with TABLE.open(encoding="utf-8", newline="") as file:
         _, *rows = csv.reader(file)
-    found = {}
+    materials = {}
     for name, young, poisson, *others, source in rows:
         density, hardness = (float(cell) if cell else None for cell in others)
-        found[name] = Material(float(young), float(poisson), density, hardness, source)
-    return found
+        materials[name] = Material(float(young), float(poisson), density, hardness, source)
+    return materials
 
 
 MATERIALS = _materials() | {"rigid": RIGID}
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
-"""Other names of the materials, in lower case, for hints."""
+"""Materials by other names in lower case, for hints."""
 
 
 def material_named(name: object) -> Material:
-    """The Material of this name; raises InputError, with all names and a hint, if there is none."""
+    """The Material of a name; raises InputError, with a hint, for another name."""
     if isinstance(name, str) and name in MATERIALS:
         return MATERIALS[name]
     allowed = f"allowed is one of {', '.join(MATERIALS)}"
-    names = {known.lower(): known for known in MATERIALS} | GRADES
-    near = difflib.get_close_matches(str(name).lower(), names, n=1)
-    raise InputError(
-        "material", name, allowed + (f" (did you mean {names[near[0]]}?)" if near else "")
-    )
+    names = {material.lower(): material for material in MATERIALS} | GRADES
+    for near in difflib.get_close_matches(str(name).lower(), names, n=1):
+        allowed += f" (did you mean {names[near]}?)"
+    raise InputError("material", name, allowed)

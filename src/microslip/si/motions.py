@@ -1,8 +1,7 @@
-"""The motions that have a meaning in SI units, in words.
+"""Motions in SI units: amplitudes, units and descriptions.
 
-Motions of a user's own, and families with numbers such as "elliptic:forward=0.5", are described by
-their records.  Their amplitude is a length (times u_lim) where they do not rotate, and an angle
-where they only rotate, as the bore does.
+A motion from a user's file, or with numbers such as "elliptic:forward=0.5", is described by its
+record.  Its amplitude is a length if it does not rotate, and an angle if it only rotates.
 """
 
 from __future__ import annotations
@@ -13,27 +12,27 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 
-if TYPE_CHECKING:  # the command line needs the tables alone
+if TYPE_CHECKING:  # the command line needs the tables only
     from microslip.motions.motion import Motion
 
 UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
-"""Motions that oscillate in one way, and the SI unit of what they oscillate in."""
+"""SI unit of the amplitude, by motion with one oscillation."""
 COMBINED = {
     "elliptic": ("amplitude", "forward_amplitude"),
     "transverse-bore": ("amplitude", "rotation_amplitude"),
     "normal": ("load_amplitude",),
 }
-"""Motions that oscillate in several ways at once, and which amplitudes they need."""
+"""Required amplitudes, by motion with several oscillations."""
 PARTS = {
     "amplitude": ("lateral", "m"),
     "forward_amplitude": ("forward", "m"),
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""Amplitudes of such motions: the share of the solver's amplitude that each is, and its unit."""
+"""Names of these amplitudes in the text of a solver's motion, and their SI units."""
 TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
-"""All that such motions take."""
+"""Allowed arguments, by motion with several oscillations."""
 MOTIONS = {
     "transverse": "slides forward and oscillates sideways",
     "longitudinal": "slides forward and oscillates along the same direction",
@@ -44,48 +43,48 @@ MOTIONS = {
     "normal": "slides forward while its normal load oscillates, alone or with a motion",
     "continuous-bore": "slides forward and spins steadily about the contact normal",
 }
-"""Motions of this module, and what the sphere does in each."""
-ALONG_THE_PULL = ("longitudinal", "elliptic", "normal")
-"""Motions that can vibrate along the drive, or whose load and so friction force oscillates."""
+"""Descriptions of the motions of the sphere."""
+ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
+"""Motions with a vibration along the drive, or with an oscillating load."""
 SAME = 1e-3
-"""Relative difference of two angles, one of them from 721 phases, that are equal."""
+"""Largest relative difference of two angles that count as equal; one is sampled at 721 phases."""
 
 
 def check_motion(motion: object) -> None:
-    """Raise InputError unless a motion names a motion that can be described in SI units."""
+    """Raise InputError unless a motion has amplitudes in SI units."""
     if not isinstance(motion, str) or motion not in MOTIONS:
         record = _record(motion)
         if record.loads:
-            allowed = "allowed is normal with a load_amplitude where the load oscillates"
+            allowed = "allowed is normal with a load_amplitude for an oscillating load"
             raise InputError("motion", motion, allowed)
         if record.periodic and not _unit(record):
-            allowed = "allowed is a translation, or a rotation whose amplitude is that of bore"
-            raise InputError("motion", motion, f"{allowed}; for both see transverse-bore")
+            allowed = "allowed is a translation or a rotation; for both use transverse-bore"
+            raise InputError("motion", motion, allowed)
 
 
 def is_steady(motion: str) -> bool:
-    """Whether nothing oscillates."""
+    """True if nothing oscillates."""
     return motion == "continuous-bore" or motion not in MOTIONS and not _record(motion).periodic
 
 
 def unit_of_amplitude(motion: str) -> str | None:
-    """SI unit of the amplitude; None of motions that are steady or oscillate in several ways."""
+    """SI unit of the amplitude; None for a steady motion or one with several oscillations."""
     if motion in MOTIONS:
         return UNIT_OF_AMPLITUDE.get(motion)
     record = _record(motion)
     return _unit(record) if record.periodic else None
 
 
-def is_along_the_pull(motion: str) -> bool:
-    """Whether the vibration is along the direction of the pull, or may be."""
+def is_along_the_drive(motion: str) -> bool:
+    """True if the vibration is, or can be, along the drive."""
     if motion in MOTIONS:
-        return motion in ALONG_THE_PULL
+        return motion in ALONG_THE_DRIVE
     ahead, _, _ = _oscillation(_record(motion))
     return bool(np.ptp(ahead) > 0.0)
 
 
 def description(motion: str) -> str:
-    """The motion of the sphere, in words."""
+    """Description of the motion of the sphere."""
     return MOTIONS.get(motion) or f"is {_record(motion).summary}"
 
 
@@ -96,7 +95,7 @@ def _record(motion: Any) -> Motion:
 
 
 def _oscillation(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forward, lateral and angle through a period at the amplitude 1."""
+    """Forward and lateral displacement and angle in a period, at amplitude 1."""
     from microslip.motions.motion import LOOP
 
     return motion.displacement(LOOP, 0.0, 1.0, 0.0)

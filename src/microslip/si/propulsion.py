@@ -21,49 +21,48 @@ from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
-"""Unless told otherwise: of a force, over mu times the mean load."""
+"""Default tolerance of a force, over mu times the mean load."""
 
 
 @dataclass(frozen=True, eq=False)
 class RealPropulsionLine:
-    """The line from stall force to no-load speed of a real contact.
+    """The line from the stall force to the no-load speed of a real contact.
 
-    Every error is the largest that the number before it may have, by estimate.  Negative forces and
-    speeds are backward.
+    Every quantity has an error estimate.  Negative forces and speeds are backward.
 
     Attributes
     ----------
     understood : dict of str
-        What was asked, as in prediction.Prediction.
+        The arguments in words, as in prediction.Prediction.
     motion : str
         The motion.
     contact_radius_m, u_lim_m : float
-        Radius of Hertz's contact, and the displacement at which all of it slides, m.
+        Contact radius, and displacement at which the whole contact slides, m.
     amplitude_m, frequency_Hz : float
-        Amplitude and frequency of the oscillation.
+        Amplitude, m, and frequency, Hz, of the oscillation.
     amplitude : float
-        Amplitude of the oscillation over u_lim.
+        Amplitude of the oscillation divided by u_lim, dimensionless.
     stall_force_N, stall_force_error_N : float
-        Load that stops the motion, N.
+        Opposing force that stops the motion, N.
     no_load_speed_m_s, no_load_speed_error_m_s : float
-        Speed without a load, m/s.
+        Speed without an opposing force, m/s.
     holding_force_low_N, holding_force_low_error_N : float or None
-        Lowest of the forces against which friction holds a body at rest, N, below 0: a pull
-        backward; None where the motion propels the contact.
+        Lowest force under which the body stays at rest, N, below 0 if it is backward.  None if the
+        motion propels the contact.
     holding_force_high_N, holding_force_high_error_N : float or None
-        Highest of these forces, N.
+        Highest force under which the body stays at rest, N.
     speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
-        From 0 to the no-load speed, m/s, and the force that is pulled with there, N.
+        Speeds from 0 to the no-load speed, m/s, and the force of the motion at each speed, N.
     power_out_W, power_out_error_W : np.ndarray, shape (points,)
-        Work on the load a second, W.
+        Power delivered to the opposing force, W.
     power_in_W, power_in_error_W : np.ndarray, shape (points,)
-        Work of the oscillation a second, W.
+        Power of the oscillation, W.
     efficiency, efficiency_error : np.ndarray, shape (points,)
-        Power out over power in, dimensionless.
+        Power out divided by power in, dimensionless.
     converged, reason : bool, str
-        As in propulsion.PropulsionLine.
+        True if all error estimates are within the tolerance, else the reason.
     warnings, not_checked : tuple of str
-        Where an assumption of the theory breaks, and what was not looked at.
+        Assumptions that the contact violates, and checks that need a missing property.
     """
 
     understood: dict = field(repr=False)
@@ -96,11 +95,11 @@ class RealPropulsionLine:
     not_checked: tuple
 
     def __str__(self) -> str:
-        """The lines that `microslip predict --propulsion` prints."""
+        """The output of `microslip predict --propulsion`."""
         return propulsion_text(self)
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict, arrays as lists."""
+        """The fields as a dict, with lists in place of arrays."""
         fields = dict(vars(self))
         return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
@@ -132,25 +131,25 @@ def predict_propulsion(
     motion : str
         A self-propelled motion, as for `microslip.propulsion`, without a rotation.
     amplitude : quantity
-        A length: what a share 1 of the motion oscillates by to either side, m.  Where the normal
-        load oscillates, `load` is that without oscillation, and its share counts by the amplitude
-        over u_lim.
+        Half stroke of a component of the motion whose number is 1, m.  For an oscillating normal
+        load, `load` is the load without oscillation, and the load oscillates by its number times
+        `load` times the amplitude over u_lim.
     tolerance : quantity
         Largest accepted error of a force, over mu times the mean load.
     points : int
-        On the line, its ends included.
+        Number of points on the line, both ends included.
 
-    The rest is as for `microslip.predict`.
+    The other arguments are those of `microslip.predict`.
 
     Returns
     -------
     RealPropulsionLine
-        The line of `microslip.propulsion`, with units.
+        The line of `microslip.propulsion` in SI units.
 
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        For an argument that is missing, out of range or not allowed.
     """
     arguments = dict(locals())
     refuse_uncertainty(arguments, "propulsion")
@@ -198,14 +197,14 @@ def predict_propulsion(
 
 
 def _in_si(line: PropulsionLine, unit: float, name: str, *quantities: str) -> dict[str, Any]:
-    """Fields of quantities and their errors in a unit of the SI, and its name."""
+    """Fields of quantities and their errors; unit: factor to SI units, name: name of the unit."""
     stems = [part for quantity in quantities for part in (quantity, f"{quantity}_error")]
     values = {stem: getattr(line, stem) for stem in stems}
     return {f"{stem}_{name}": None if one is None else unit * one for stem, one in values.items()}
 
 
 def _holding_forces(line: PropulsionLine, newtons: float) -> tuple[dict[str, Any], str]:
-    """Fields of the holding forces, and the reason of a line; newtons: the unit of its forces."""
+    """Fields of the holding forces, and the reason; newtons: unit of the forces, N."""
     names = [f"holding_force_{name}" for name in ("low", "high")]
     fields = _in_si(line, newtons, "N", *names)
     low, low_error, high, high_error = fields.values()

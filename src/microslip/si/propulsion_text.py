@@ -1,4 +1,4 @@
-"""A RealPropulsionLine in words, as `microslip predict --propulsion` and print() show it."""
+"""A RealPropulsionLine in words: the output of `microslip predict --propulsion`."""
 
 from __future__ import annotations
 
@@ -18,41 +18,36 @@ from microslip.si.printed_lines import (
 )
 
 
-def propulsion_text(found: Any) -> str:
+def propulsion_text(real: Any) -> str:
     """All lines of a propulsion.RealPropulsionLine."""
-    unit = length_unit(found.u_lim_m)
-    force = force_unit(found.stall_force_N)
-    lines = [line(name.replace("_", " "), text) for name, text in found.understood.items()]
-    lines += ["", line("contact radius", in_unit(found.contact_radius_m, 0.0, unit))]
-    lines.append(line("u_lim", in_unit(found.u_lim_m, 0.0, unit)))
-    lines.append(line("amplitude", f"dimensionless {number_text(found.amplitude)}"))
-    if found.motion.startswith("normal"):
+    unit = length_unit(real.u_lim_m)
+    force = force_unit(real.stall_force_N)
+    lines = [line(name.replace("_", " "), text) for name, text in real.understood.items()]
+    lines += ["", line("contact radius", in_unit(real.contact_radius_m, 0.0, unit))]
+    lines.append(line("u_lim", in_unit(real.u_lim_m, 0.0, unit)))
+    lines.append(line("amplitude", f"dimensionless {number_text(real.amplitude)}"))
+    if real.motion.startswith("normal"):
         lines.append(line("groups", REFERENCE_LOADS_OF_DRIVING))
-    stall = in_unit(found.stall_force_N, found.stall_force_error_N, force)
+    stall = in_unit(real.stall_force_N, real.stall_force_error_N, force)
     lines.append(line("stall force", stall))
     speed = ("mm/s", 1e-3)
-    if math.isfinite(found.no_load_speed_m_s):
-        text = in_unit(found.no_load_speed_m_s, found.no_load_speed_error_m_s, speed)
+    if math.isfinite(real.no_load_speed_m_s):
+        text = in_unit(real.no_load_speed_m_s, real.no_load_speed_error_m_s, speed)
         lines.append(line("no-load speed", text))
-    if len(found.speed_m_s):
-        power = prefixed(float(np.max(np.abs(found.power_in_W))), "W")
+    if len(real.speed_m_s):
+        power = prefixed(float(np.max(np.abs(real.power_in_W))), "W")
+        watts = power[1]
         columns = {
-            "speed mm/s": (found.speed_m_s / speed[1], None),
-            f"force {force[0]}": (found.force_N / force[1], found.force_error_N / force[1]),
-            f"power out {power[0]}": (
-                found.power_out_W / power[1],
-                found.power_out_error_W / power[1],
-            ),
-            f"power in {power[0]}": (
-                found.power_in_W / power[1],
-                found.power_in_error_W / power[1],
-            ),
-            "efficiency": (found.efficiency, found.efficiency_error),
+            "speed mm/s": (real.speed_m_s / speed[1], None),
+            f"force {force[0]}": (real.force_N / force[1], real.force_error_N / force[1]),
+            f"power out {power[0]}": (real.power_out_W / watts, real.power_out_error_W / watts),
+            f"power in {power[0]}": (real.power_in_W / watts, real.power_in_error_W / watts),
+            "efficiency": (real.efficiency, real.efficiency_error),
         }
         lines += aligned(columns)
-    if found.reason:
-        failed = f"NOT CONVERGED: force or power: {found.reason}"
-        lines.append(found.reason if found.converged else failed)
-    lines += [f"warning: {text}" for text in found.warnings]
-    lines += [f"not checked: {text}" for text in found.not_checked]
+    if real.reason:
+        failed = f"NOT CONVERGED: force or power: {real.reason}"
+        lines.append(real.reason if real.converged else failed)
+    lines += [f"warning: {text}" for text in real.warnings]
+    lines += [f"not checked: {text}" for text in real.not_checked]
     return "\n".join(lines)

@@ -14,24 +14,24 @@ from microslip.si.request import Request
 from microslip.si.static_limit import largest_force
 
 SLOWEST = 1e-3
-"""Velocity, in the unit of the motion, below which the accepted error is no longer relative."""
+"""Dimensionless velocity below which the accepted error is constant instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run, since its velocity may be smaller."""
+"""Safety factor on the accepted error of a second run, whose velocity can be smaller."""
 
 
 def answer_of(request: Request, limit: Result | None, threshold: Estimate | None) -> Result:
     """Friction at the speed, or the velocity under the force.
 
-    A force below the threshold by more than the error of the threshold lets the contact come to
-    rest: no drift is computed.  If the force differs from the threshold by less, the result is not
-    converged: to compute so small a speed to a small relative error would take minutes.
+    Under a force below the threshold by more than its error, the contact comes to rest, and no
+    drift is computed.  If the force is within this error of the threshold, the result is not
+    converged: the small speed would take minutes.
 
     Parameters
     ----------
     limit : Result or None
-        Friction at a vanishing speed, None for a steady motion.
+        Friction in the limit of vanishing speed; None for a steady motion.
     threshold : Estimate or None
-        Smallest force that moves the contact, over mu F_z; None: unknown.
+        Smallest force that moves the contact, over mu F_z; None if it is unknown.
     """
     drive: dict[str, Any] = within_range(request.drive_groups)
     velocity, tolerance = request.groups[0], request.tolerance
@@ -62,15 +62,15 @@ def answer_of(request: Request, limit: Result | None, threshold: Estimate | None
 
 
 def within_range(drive: dict[str, float]) -> dict[str, float]:
-    """The groups of a drive within the range of the solver.
+    """The dimensionless drive, limited to the range of the solver.
 
-    Nothing holds a larger force.  A heavier or stiffer body hardly moves: its parts are scaled as
-    one, so that it swings as it did.
+    Above the largest force the contact runs away.  A heavier or stiffer body hardly moves; its
+    mass, stiffness and damping are scaled by one factor, which keeps its natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
     groups = {name: min(value / scale, LARGEST_BODY) for name, value in body.items()}
-    if "stiffness" in groups:  # a softer spring pulls with the force of the softest
+    if "stiffness" in groups:  # a softer spring exerts nearly the same force
         groups["stiffness"] = max(groups["stiffness"], SMALLEST_STIFFNESS)
     if "force" in drive:
         groups["force"] = min(drive["force"], LARGEST_FORCE)

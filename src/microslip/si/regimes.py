@@ -1,15 +1,14 @@
-"""Whether what pulls a contact keeps its velocity, keeps its force, or swings with the vibration.
+"""Regimes of a drive: nearly constant velocity, nearly constant force, or an oscillation.
 
-A vibration makes the forward force swing, by up to mu F_z, with a basic frequency and its multiples
-n.  The body that is pulled answers with the stiffness |k - m n^2 + i c n|, in working units, where
-that of the contact is 1.5.  Where it is ten times as stiff as the contact at all n that count, the
-body hardly moves; where the force that it takes to go along is small against mu F_z, the force
-hardly changes.  An oscillation along the direction of the pull swings the force all the way, and
-takes ten times more.
+A vibration makes the forward force oscillate, by up to mu F_z, at multiples n of a basic frequency.
+The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless; that of the contact
+is 1.5.  If the body is ten times as stiff as the contact at all relevant n, its velocity is nearly
+constant.  If the force that makes it follow is small against mu F_z, the force is nearly constant.
+A vibration along the drive reverses the force, and its limits are ten times stricter.
 
-Measured on some hundred random drives just within these limits, at amplitudes of 0.3 to 10 and
-velocities of 0.01 to 3: friction is within SAME of that at a constant velocity, or of that of the
-softest and lightest drive.  That a soft drive along the vibration is as good as a force is an
+Measured for some hundred random drives just within these limits, at amplitudes of 0.3 to 10 and
+velocities of 0.01 to 3: friction differs by less than SAME from that at a constant velocity, or
+from that of the softest and lightest drive.  The limit for a soft drive along the vibration is an
 estimate: the force changes by the stiffness times the amplitude.
 """
 
@@ -18,41 +17,41 @@ from __future__ import annotations
 import math
 
 from microslip.motions.drive import Drive
-from microslip.si.motions import is_along_the_pull
+from microslip.si.motions import is_along_the_drive
 
 SAME = 0.01
-"""Difference of mu_macro below which two drives are equivalent."""
+"""Largest difference of mu_macro between equivalent drives, dimensionless."""
 CONTACT_STIFFNESS = 1.5
-"""Stiffness of a sticking Hertz contact, 2 G* a over mu F_z / u_lim."""
+"""Stiffness of a sticking Hertz contact, 2 G* a divided by mu F_z / u_lim."""
 STIFFER = 10.0
-"""Than the contact: how stiff a body hardly moves."""
+"""Stiffness of a body with a nearly constant velocity, divided by that of the contact."""
 LEAST_FORCE = 0.03
-"""Over mu F_z: a force that changes by this hardly changes."""
+"""Change of a nearly constant force, over mu F_z."""
 ALONG = 10.0
-"""How much further both are where the vibration is along the direction of the pull."""
+"""Factor on both limits for a vibration along the drive."""
 HARMONICS = 4
-"""Multiples of the basic frequency that count."""
+"""Number of multiples of the basic frequency."""
 REGIMES = {
-    "velocity": "stiff or heavy: the velocity is as good as constant",
-    "force": "soft and light: the force is as good as constant",
-    "between": "neither stiff nor soft: it swings with the vibration, and may resonate",
+    "velocity": "stiff or heavy: the velocity is nearly constant",
+    "force": "soft and light: the force is nearly constant",
+    "between": "neither stiff nor soft: the body oscillates, and can resonate",
 }
 """Descriptions of the regimes."""
 
 
 def regime(motion: str, amplitude: float, drive: Drive) -> str:
-    """A key of REGIMES.
+    """The regime of a drive, a key of REGIMES.
 
     Parameters
     ----------
     motion : str
-        As for microslip.predict, not a steady one.
+        A motion of microslip.predict that oscillates.
     amplitude : float
-        In the group of the motion.
+        Dimensionless amplitude.
     drive : drive.Drive
-        With stiffness, mass and damping in working units.
+        Dimensionless stiffness, mass and damping.
     """
-    first, further = (1, ALONG) if is_along_the_pull(motion) else (2, 1.0)
+    first, further = (1, ALONG) if is_along_the_drive(motion) else (2, 1.0)
     swings = [n * first for n in range(1, HARMONICS + 1)]
     answers = [math.hypot(drive.stiffness - drive.mass * n * n, drive.damping * n) for n in swings]
     if min(answers) >= STIFFER * CONTACT_STIFFNESS * further:
@@ -64,8 +63,10 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
 
 
 def natural_frequency(drive: Drive) -> float | None:
-    """Natural frequency of the body on its spring and the sticking contact, over the frequency of
-    the vibration; None without a mass."""
+    """Natural frequency of the body on its spring and the sticking contact.
+
+    It is divided by the frequency of the vibration; None without a mass.
+    """
     if drive.mass == 0.0:
         return None
     return math.sqrt((drive.stiffness + CONTACT_STIFFNESS) / drive.mass)

@@ -1,8 +1,7 @@
-"""A body on several contacts in SI units: what each of them has of the load and of the drive.
+"""A body on several contacts in SI units.
 
-All groups are those of the contact that carries the mean load, see solver.body_problem: so a drive
-counts by its share for each contact, and forces of the body are those of that contact times their
-number.
+All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The drive
+of the body is divided by the number of contacts, and forces are multiplied by it.
 """
 
 from __future__ import annotations
@@ -20,16 +19,16 @@ from microslip.si.shapes import ShapedContact
 
 @dataclass(frozen=True)
 class Carriers:
-    """The contacts that carry a body.
+    """The contacts of a body.
 
     Attributes
     ----------
     text : str or None
-        As microslip.solve takes them, None where it is one.
+        Text for microslip.solve; None for a single contact.
     count : int
-        How many there are.
+        Number of contacts.
     heaviest, widest : float
-        Largest load over the mean, and largest share of the amplitude.
+        Largest load divided by the mean load, and largest amplitude divided by that of the body.
     """
 
     text: str | None = None
@@ -43,7 +42,7 @@ class Carriers:
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
-        """The contact that carries most, of the one that carries the mean."""
+        """The contact with the largest load; contact: the one with the mean load."""
         if self.heaviest == 1.0:
             return contact
         load = contact.load * self.heaviest
@@ -55,16 +54,16 @@ class Carriers:
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and a dict of texts of what was understood; raises InputError.
+    """The Carriers, and a dict of their text by argument; raises InputError.
 
-    alone: values, as they were given, of arguments that go with one contact only.
+    alone: values of arguments that are allowed for a single contact only.
     """
     if contacts is None:
         return Carriers(), {}
-    found = contacts_of(contacts)
+    carriers = contacts_of(contacts)
     for name, value in alone.items():
         if value:
-            raise InputError(name, value, "allowed for one contact only, without contacts")
-    text = contacts_text(found)
-    most = (max(one.load for one in found), max(one.amplitude for one in found))
-    return Carriers(text, len(found), *most), {"contacts": " ".join(contacts.split())}
+            raise InputError(name, value, "allowed only without contacts")
+    text = contacts_text(carriers)
+    most = (max(one.load for one in carriers), max(one.amplitude for one in carriers))
+    return Carriers(text, len(carriers), *most), {"contacts": " ".join(contacts.split())}

@@ -1,4 +1,4 @@
-"""Contacts that are no spheres, in SI units: two principal radii, or a pressure of known size."""
+"""Contacts of other shapes in SI units: two principal radii, or a prescribed size and pressure."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from microslip.pressures.pressure import Pressure
 from microslip.si.bodies import TwoBodies
 
 ROUND = 1e-6
-"""Relative difference of two radii that make a circle."""
+"""Largest relative difference of two radii that count as equal."""
 
 
 @dataclass(frozen=True)
 class ShapedContact(TwoBodies):
-    """Two bodies whose contact has a size and a pressure that are known.
+    """Two bodies with a prescribed size and pressure of the contact.
 
     Attributes
     ----------
     pressure : str
-        How the load is spread, as microslip.solve takes it.
+        Name of the pressure for microslip.solve.
     size : float
-        a of that pressure, m: the outer radius, or half the longer side of what bounds it.
+        Outer radius of the contact, or half its longer side, m.
     """
 
     pressure: str = "hertz"
     size: float = 0.0
 
     def with_load(self, load: float) -> TwoBodies:
-        """A copy under another load, N; a contact size that was given stays as it is."""
+        """A copy under another load, N; a prescribed size stays constant."""
         over = load / self.load
-        if self.radii:  # of the bodies, which Hertz's ellipse follows from
+        if self.radii:  # the size of Hertz's ellipse depends on the load
             return replace(self, load=load, size=self.size * over ** (1.0 / 3.0))
         return replace(self, load=load, radius=self.radius / over)
 
     @property
     def contact_radius(self) -> float:
-        """Contact radius, m, as it was given."""
+        """The size, m."""
         return self.size
 
     @cached_property
@@ -49,12 +49,12 @@ class ShapedContact(TwoBodies):
 
     @property
     def u_lim(self) -> float:
-        """Displacement at which the whole contact slides, m: that of full slip."""
+        """Displacement at which the whole contact slides, m."""
         return self.mu * self.load * self._record.G_star / (self.G_star * self.size)
 
     @property
     def indentation(self) -> float:
-        """u_lim G*/(mu E*), m, of an indenter; NaN where the load alone tells no approach."""
+        """Indentation u_lim G*/(mu E*) of an indenter, m; NaN for another pressure."""
         if not (self._record.is_indenter or self._record.hertzian):
             return math.nan
         return self.u_lim * self.G_star / (self.mu * self.E_star)
@@ -66,7 +66,7 @@ class ShapedContact(TwoBodies):
 
 
 def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
-    """Ratio of the semi-axes of Hertz's ellipse, and the long one over that of a circle.
+    """Semi-axes of Hertz's ellipse.
 
     Parameters
     ----------
@@ -76,8 +76,8 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        b/a <= 1, and a over (3 F R / (4 E*))^(1/3), R the larger radius (K. L. Johnson, Contact
-        Mechanics, 4.2).
+        b/a <= 1, and a divided by (3 F R / (4 E*))^(1/3) with the larger radius R (K. L. Johnson,
+        Contact Mechanics, 4.2).
     """
     from scipy.optimize import brentq
     from scipy.special import ellipe, ellipk
@@ -87,7 +87,7 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
         return 1.0, 1.0
 
     def curvatures(ratio: float) -> float:
-        """That along the long axis over that along the short one."""
+        """Curvature along the long axis divided by that along the short one."""
         m = 1.0 - ratio**2
         return ratio**2 * (ellipk(m) - ellipe(m)) / (ellipe(m) - ratio**2 * ellipk(m))
 
@@ -100,7 +100,7 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
 def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
     """The contact with another radius of relative curvature across the forward direction, m.
 
-    Raises InputError for an ellipse more slender than the solver knows.
+    Raises InputError for an ellipse that is too slender for the solver.
     """
     ratio, stretch = ellipse_of_radii(contact.radius, radius_across)
     if ratio < SMALLEST_RATIO:
@@ -117,9 +117,9 @@ def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
 
 
 def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
-    """The contact with a size, m, and a pressure that are known.
+    """The contact with a prescribed size, m, and pressure.
 
-    Its radius is that of the sphere which would touch as large an area under the same load.
+    Its radius is that of a sphere with the same contact radius under the same load.
     """
     radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
     shared = (contact.first, contact.second, radius, contact.load, contact.mu)

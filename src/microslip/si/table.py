@@ -1,4 +1,4 @@
-"""Many contacts at once: arrays of quantities in, a dataset out."""
+"""Predictions for a table of contacts, as a dataset."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "power"}
-"""Columns of a file: arguments of predict, none of which needs a unit in its heading."""
+"""Columns of a file, each an argument of predict.  No heading needs a unit."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
-"""Columns of texts that no case may have; what no case has besides is a number."""
+"""Columns of texts.  Another column without a value is a column of numbers."""
 
 
 def predict_table(
@@ -40,28 +40,28 @@ def predict_table(
     Parameters
     ----------
     motion : str
-        As for `microslip.predict`.
+        Motion of all contacts, as for `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}, or
-        {"load [N]": [1, 10]}; None or NaN is what a case does not have.  Columns named label, name,
-        id, sample or comment are carried through.
+        Sequences of equal length by argument of predict: {"load": ["1 N", "10 N"]} or
+        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
+        sample or comment are copied to the dataset.
     decimal, encoding : str
-        The decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
+        Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
-        What all cases have in common, as for `microslip.predict`.
+        Arguments of `microslip.predict` for all cases.
 
     Returns
     -------
     xarray.Dataset
-        Every column of a Prediction over `case`, NaN for what a case does not have, with units;
-        texts joined by semicolons.  `case_` and a name in front is what was given; `error` says
-        what is wrong with a case that has no prediction, and is empty for the others.
+        Every column of a Prediction over the dimension `case`, with units; NaN for a missing value.
+        Several texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is the
+        error message of a case without a prediction, else empty.
 
     Raises
     ------
     InputError
-        For what is no table, and where no case can be answered: as predict does for the first one,
-        with its number in front of what is allowed.
+        For an invalid table, and for a table without a valid case.  The error is then that of the
+        first case, with its number.
     """
     table = Table({}, [], {})
     if is_table(cases):
@@ -80,8 +80,8 @@ def predictions(
 ) -> Iterator[Prediction | NoPrediction]:
     """The prediction of each case in turn.
 
-    All cases are read before the first one is solved.  A case that nothing has the wanted reduction
-    of is not converged, and says so.  The arguments and errors are those of predict_table.
+    All cases are read before the first one is solved.  A search without a solution gives a
+    Prediction that is not converged.  The arguments and errors are those of predict_table.
     """
     count = _count(table.columns, shared)
     wrong: dict[int, str | InputError] = dict(table.errors)
@@ -117,7 +117,7 @@ def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | No
 
 
 def _request(motion: str, arguments: Mapping[str, object]) -> Request:
-    """The checked request; raises the errors that predict raises before it solves anything."""
+    """The checked request of a case; raises the errors that need no solve."""
     for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
@@ -126,12 +126,12 @@ def _request(motion: str, arguments: Mapping[str, object]) -> Request:
 
 
 def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
-    """How many cases there are; raises InputError for a table that is none."""
+    """Number of cases; raises InputError for an invalid table."""
     for name, values in columns.items():
         if name in shared:
-            raise InputError(name, shared[name], "allowed once: it is in the table, too")
+            raise InputError(name, shared[name], "not allowed: the table has it")
         if isinstance(values, str) or not hasattr(values, "__len__"):
-            raise InputError(name, values, "allowed is a sequence with a value for each case")
+            raise InputError(name, values, "allowed is a sequence of one value for each case")
     counts = sorted({len(values) for values in columns.values()})
     if len(counts) > 1:
         lengths = " and ".join(map(str, counts))
@@ -142,11 +142,11 @@ def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
     return counts[0]
 
 
-def as_dataset(motion: str, table: Table, found: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-    """The Dataset that predict_table returns, from the predictions of all cases."""
+def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
+    """The Dataset of predict_table; cases: the predictions."""
     import xarray as xr
 
-    rows = [one.to_dict() if isinstance(one, Prediction) else vars(one) for one in found]
+    rows = [one.to_dict() if isinstance(one, Prediction) else vars(one) for one in cases]
     variables = {
         name: _variable(name, [row.get(name) for row in rows])
         for name in COLUMNS
@@ -156,19 +156,19 @@ def as_dataset(motion: str, table: Table, found: Sequence[Prediction | NoPredict
         texts = ["" if one is None else str(one) for one in values]
         variables[name if name in LABELS else f"case_{name}"] = "case", texts, {}
     errors = [str(row.get("error", "")) for row in rows]
-    variables["error"] = "case", errors, {"long_name": "what is wrong with the case"}
+    variables["error"] = "case", errors, {"long_name": "error message of the case"}
     amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(motion) or "m"
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     sought = {row["sought"] for row in rows if row.get("sought")}
-    if sought:  # one for all cases, or another for some, which `sought` tells
-        unit = units[sought.pop()] if len(sought) == 1 else "SI unit of what is sought"
+    if sought:  # the quantity of the search, `sought`, can vary between cases
+        unit = units[sought.pop()] if len(sought) == 1 else "SI unit of the quantity in sought"
         for name in ("sought_error", "sought_spread"):
             variables[name][2]["units"] = unit
-    return xr.Dataset(variables, {"case": np.arange(len(found))}, {"motion": motion})
+    return xr.Dataset(variables, {"case": np.arange(len(cases))}, {"motion": motion})
 
 
 def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
-    """A column over the cases, with its unit where it is one of numbers."""
+    """A variable over the cases; numbers have a unit."""
     if name in ("warnings", "not_checked"):
         return "case", ["; ".join(texts) for texts in values], {}
     if any(isinstance(value, bool) for value in values):

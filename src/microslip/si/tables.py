@@ -1,12 +1,12 @@
-"""Tables of quantities from a CSV file, a mapping or a DataFrame: columns of texts with units.
+"""Tables of quantities from a CSV file, a mapping or a DataFrame.
 
 load [N],speed [mm/s],counterbody
 10,1,steel
 20,1,"70 GPa, 0.22"
 
-`pandas.read_csv` does not serve here.  Under the heading "load [N],mu" it reads the line "1" as a
-load with an empty mu, and the line "1,5,0.3" as a load of 5; an unclosed quote refuses the whole
-file, a column that is there twice gets another name, and no message has the line of its cell.
+`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a load
+with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an unclosed
+quote, renames a duplicate column, and its messages do not have the line of a cell.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
-"""Text that looks like a number; whether it is valid is decided when it is read."""
+"""Text that resembles a number; `quantities.read` checks it later."""
 LABELS = ("label", "name", "id", "sample", "comment")
-"""Columns of texts that are carried through to the output."""
+"""Columns of texts that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
-"""Columns whose cells are no quantities."""
+"""Columns of texts; all others are quantities."""
 PURE = {"", "1", "-"}
-"""Units that say that there is none."""
+"""Units in a heading that mean a pure number."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Columns by their names, and where their rows come from.
+    """A table.
 
     Attributes
     ----------
     columns : dict of list
-        Texts with their units, or values of other types; None for an empty cell.
+        Values by name: texts with units, or other objects; None for an empty cell.
     lines : list of int
-        Numbers of the lines of the file, the first one being 1; empty without a file.
+        Line number of each row in the file, from 1; empty without a file.
     errors : dict of str
-        Messages about rows that cannot be read, by the index of the row.
+        Error messages of invalid rows, by index of the row.
     """
 
     columns: dict[str, list[Any]]
@@ -52,12 +52,12 @@ class Table:
 
     @property
     def labels(self) -> dict[str, list[Any]]:
-        """Columns of texts that are carried through."""
+        """Columns of texts that are copied to the output."""
         return {name: texts for name, texts in self.columns.items() if name in LABELS}
 
 
 def is_table(value: object) -> bool:
-    """Whether a value is a path, a mapping of columns or a pandas DataFrame."""
+    """True for a path, a mapping of columns or a pandas DataFrame."""
     frame = hasattr(value, "columns") and hasattr(value, "iloc")
     return isinstance(value, str | os.PathLike | Mapping) or frame
 
@@ -77,16 +77,16 @@ def table_of(
     argument : str
         Name of the table in messages.
     source : path, mapping or pandas DataFrame
-        A file, or columns under such headings as "load [N]".
+        A file, or columns with headings such as "load [N]".
     names : mapping of bool
-        Columns that a file may have besides labels, and whether they need a unit.
+        Allowed columns of a file besides labels; True for a column that needs a unit.
     decimal, encoding : str
-        The decimal mark and the encoding of the file.
+        Decimal mark and encoding of the file.
 
     Raises
     ------
     InputError
-        For what is no table, and for a file of which no line can be read.
+        For an invalid table, and for a file without a valid line.
     """
     csv_text.check_format(decimal, encoding)
     if not isinstance(source, str | os.PathLike):
@@ -105,15 +105,15 @@ def read_table(
 ) -> Table:
     """The table of the content of a file.
 
-    Columns are parted by commas, semicolons or tabs, and a cell that has one of these in it is in
-    double quotes.  Cells under a heading with a unit are numbers in that unit, others are texts
-    with their units.  Lines that are empty or begin with # do not count, and empty columns at the
-    end neither.  The arguments are those of `table_of`.
+    Commas, semicolons or tabs separate the columns; a cell that contains one of them is in double
+    quotes.  Cells under a heading with a unit are numbers in that unit, other cells are texts with
+    units.  Empty lines, lines that begin with #, and empty columns at the end are skipped.  The
+    arguments are those of `table_of`.
 
     Raises
     ------
     ValueError
-        For what is no table, and where no line can be read; the message begins with the line.
+        For an invalid table, and if no line is valid.  The message begins with the line number.
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
@@ -140,7 +140,7 @@ def read_table(
             table.columns[name].append(text)
     thousands.refuse()
     if not table.lines:
-        raise ValueError(f"line {where}: no line follows the heading; allowed: one for each row")
+        raise ValueError(f"line {where}: no line follows the heading; allowed: one or more")
     if len(table.errors) == len(table.lines):
         raise ValueError(table.errors[0])
     return table
@@ -149,7 +149,7 @@ def read_table(
 def _headings(
     where: int, heading: str, names: Mapping[str, bool]
 ) -> tuple[str, dict[str, str | None]]:
-    """The separator of a table, and the unit of each of its columns, None without brackets."""
+    """The separator of a table, and the unit of each column; None without brackets."""
     units_are = "each with its unit" if any(names.values()) else "with a unit or without"
     allowed = f"allowed: some of {', '.join(names)}, {units_are}, as in speed [mm/s]"
     for separator in csv_text.SEPARATORS:
@@ -163,8 +163,8 @@ def _headings(
     for match in matches:
         name, unit = match[1].lower(), _unit(match)
         if name not in names and name not in LABELS:
-            carried = f"a column of texts to carry through is named one of {', '.join(LABELS)}"
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {carried}")
+            copied = f"names of other columns, which are copied: {', '.join(LABELS)}"
+            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {copied}")
         if name in units:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
         if names.get(name) and not unit:
@@ -174,7 +174,7 @@ def _headings(
 
 
 def _unit(heading: re.Match) -> str | None:
-    """The unit in a match of HEADING: empty for a pure number, None without brackets."""
+    """The unit of a heading: empty for a pure number, None without brackets."""
     unit = heading[2] if heading[3] is None else heading[3]
     if unit is None:
         return None
@@ -184,7 +184,7 @@ def _unit(heading: re.Match) -> str | None:
 def _text(
     where: int, name: str, cell: str, unit: str | None, decimal: str, needed: bool
 ) -> str | None:
-    """A cell with its unit, None where it is empty; needed: whether the heading needs a unit."""
+    """The text of a cell with its unit, None if it is empty; needed: the heading needs a unit."""
     if not cell:
         return None
     if name not in TEXTS:
@@ -192,9 +192,8 @@ def _text(
     if unit is None:
         return cell
     if not NUMBER.fullmatch(cell):
-        allowed = "allowed is a number" + (
-            "" if needed else f", or a heading without a unit: {name}"
-        )
+        other = "" if needed else f", or a heading without a unit: {name}"
+        allowed = f"allowed is a number{other}"
         raise ValueError(f"line {where}: {name} is {cell!r} in a column in {unit}; {allowed}")
     return f"{cell} {unit}".strip()
 
@@ -202,10 +201,10 @@ def _text(
 def _by_names(argument: str, table: Any) -> dict[str, Any]:
     """Columns of a mapping or a DataFrame as lists, None for missing values.
 
-    Numbers under a heading with a unit become texts with it.  Values that are no sequences stay as
-    they are.
+    Numbers under a heading with a unit become texts with this unit.  A value that is not a sequence
+    is returned unchanged.
     """
-    found: dict[str, Any] = {}
+    columns: dict[str, Any] = {}
     for name, values in table.items():
         if not isinstance(name, str):
             allowed = "names of columns must be texts, such as 'load [N]'"
@@ -217,14 +216,14 @@ def _by_names(argument: str, table: Any) -> dict[str, Any]:
             if heading and unit is not None:
                 name = heading[1].lower()
                 values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
-        if name in found:
+        if name in columns:
             raise InputError(argument, name, "is there twice; allowed: once")
-        found[name] = values
-    return found
+        columns[name] = values
+    return columns
 
 
 def _is_missing(value: object) -> bool:
-    """Whether a value is None, or the NaN, NA or NaT of pandas, which differ from themselves."""
+    """True for None, and for NaN, NA and NaT."""
     if value is None or type(value).__name__ in ("NAType", "NaTType"):
         return True
     return isinstance(value, float) and value != value

@@ -1,7 +1,7 @@
-"""Warnings about assumptions of the theory that a real contact breaks, one sentence each.
+"""Warnings for a real contact that violates an assumption of the theory.
 
-The measures of a contact are numbers by name.  A rule has the limit of a measure, and the sentence
-for a contact beyond it.  The explorer's page evaluates the measures itself with the same rules.
+The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence for
+contacts beyond this limit.  The page of the explorer evaluates the rules too.
 """
 
 from __future__ import annotations
@@ -14,45 +14,48 @@ from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, largest_slip_speed, mean_load
 
 YIELDS_AT = 0.57
-"""Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
-yield stress, with a hardness of 2.8 times that (K. L. Johnson, Contact Mechanics, 6.1 and 6.3)."""
+"""Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  The
+pressure is 1.6 times the yield stress, the hardness 2.8 times (K. L. Johnson, Contact Mechanics,
+6.1 and 6.3)."""
 HARDEST = 0.1
-"""Hardness over Young's modulus that no metal, ceramic or glass is above: it is 2.8 times the yield
-stress, which is a few per cent of the modulus at most."""
+"""Largest hardness of metals, ceramics and glasses, divided by Young's modulus.  The hardness is
+2.8 times the yield stress, which is at most a few per cent of the modulus."""
 RUBBERY = 0.45
-"""Poisson's ratio from which on a body is taken for a rubber, which does not yield but loses energy
-inside: its modulus rises with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
+"""Smallest Poisson's ratio of a rubber.  A rubber does not yield but has internal losses, and its
+modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
-"""Work of adhesion of clean smooth surfaces that only van der Waals forces hold, N/m, of that order
+"""Order of magnitude of the work of adhesion of clean smooth surfaces by van der Waals forces, N/m
 (J. N. Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
-"""Range of van der Waals forces, m, which is of the order of the distance of atoms."""
+"""Range of van der Waals forces, m, of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
-"""Tabor's numbers above which JKR's theory holds, and below which DMT's does (K. L. Johnson and
-J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
+"""Smallest Tabor number of JKR's theory and largest one of DMT's (K. L. Johnson and J. A.
+Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
+"""Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""A ratio that the theory takes to vanish."""
+"""Largest value of a ratio that the theory neglects."""
 STEEP = 0.2
-"""Contact radius over the smaller radius of either body, or over that of relative curvature, beyond
-which half-spaces are a poor picture: Hertz's theory is for a << R1, R2 and a << R (K. L. Johnson,
-Contact Mechanics, 4.2)."""
+"""Contact radius a divided by the smaller radius of the bodies, or by the radius R of relative
+curvature, above which half-spaces are a poor approximation.  Hertz's theory assumes a << R1, R2 and
+a << R (K. L. Johnson, Contact Mechanics, 4.2)."""
 SENSELESS = 0.5
-"""Contact radius over the smaller radius of either body from which on there is no answer: the
-surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there than the parabola that
-Hertz takes for it."""
+"""Contact radius divided by the smaller radius of the bodies from which on predict raises an error.
+There the surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Hertz's
+parabola."""
 
 
 class Rule(NamedTuple):
-    """When an assumption breaks, and what is said then.
+    """A condition that violates an assumption, and its warning.
 
     Attributes
     ----------
     where : tuple of tuple
-        Conditions (left, factor, right): left > factor * right, each a number or the name of a
-        measure.  All have to hold, and none does of a measure that there is not.
+        Conditions (left, factor, right): left > factor * right.  Each side is a number or the name
+        of a measure.  The rule applies if all conditions are true; a condition on a missing measure
+        is false.
     text : str
-        The sentence, with measures in braces as str.format takes them.
+        The sentence, a template of str.format with the measures.
     """
 
     where: tuple[tuple, ...]
@@ -63,15 +66,15 @@ def _too_hard(side: str) -> Rule:
     return Rule(
         (("largest_pressure", YIELDS_AT * HARDEST, f"{side}_young"),),
         f"the largest pressure, {{largest_pressure:.2g}} Pa, is {{{side}_pressure:.2g}} of Young's "
-        "modulus: no metal, ceramic or glass is so hard that it stays elastic",
+        "modulus: every metal, ceramic or glass yields under it",
     )
 
 
 def _steep(radius: str, whose: str) -> Rule:
     return Rule(
         (("contact_radius", STEEP, radius),),
-        f"the contact radius is {{over_{radius}:.2g}} of the {whose}: the bodies are no "
-        "half-spaces",
+        f"the contact radius is {{over_{radius}:.2g}} of the {whose}: half-spaces are a poor "
+        "approximation",
     )
 
 
@@ -86,8 +89,8 @@ def _adhesive(theory: str, *where: tuple) -> Rule:
 def _atomic(measure: str, name: str) -> Rule:
     return Rule(
         ((measure, 1.0, 0.0), (RANGE, 1.0, measure)),
-        f"{name} is {{{measure}:.2g}} m, less than the distance of atoms: the surfaces are no "
-        "continua there",
+        f"{name} is {{{measure}:.2g}} m, less than the distance between atoms, where the theory of "
+        "continua fails",
     )
 
 
@@ -95,13 +98,13 @@ CHECKS = (
     (
         Rule(
             (("largest_pressure", 1.0, sys.float_info.max),),
-            "the pressure is infinite at the tip of the indenter, so that the contact yields there "
+            "the pressure is infinite at the tip of the indenter, so the contact yields there "
             "under any load; the mean pressure is {mean_pressure:.2g} Pa",
         ),
         Rule(
             (("largest_pressure", YIELDS_AT, "hardness"),),
             f"the largest pressure, {{largest_pressure:.2g}} Pa, is above {YIELDS_AT:g} of the "
-            "hardness, {hardness:.2g} Pa: the contact yields, and is larger than Hertz's",
+            "hardness, {hardness:.2g} Pa: the contact yields, and is larger than in Hertz's theory",
         ),
     ),
     (_too_hard("first"), _too_hard("second")),
@@ -112,25 +115,27 @@ CHECKS = (
     (
         Rule(
             (("stroke", 1.0, SMALL),),
-            "the amplitude is {stroke:.2g} of the contact radius: tractions are carried along by "
-            "the material in a stroke, which the theory leaves out",
+            "the amplitude is {stroke:.2g} times the contact radius: the material carries the "
+            "tractions along in a stroke, which the theory neglects",
         ),
     ),
     (
         Rule(
             (("crossing", 1.0, SMALL),),
-            "a shear wave crosses the contact in {crossing:.2g} of a radian: inertia counts",
+            "a shear wave crosses the contact in {crossing:.2g} radians of the oscillation: "
+            "inertia is not negligible",
         ),
         Rule(
             (("slip_speed", 1.0, SMALL),),
-            "the slip speed is {slip_speed:.2g} of that of shear waves: inertia counts",
+            "the slip speed is {slip_speed:.2g} times that of shear waves: inertia is not "
+            "negligible",
         ),
     ),
     (
         Rule(
             (("mismatch", 1.0, SMALL),),
-            "the bodies are elastically unlike (Dundurs' beta {mismatch:.2g}): pressure moves "
-            "their surfaces sideways, which the theory leaves out",
+            "the bodies are elastically dissimilar (Dundurs' beta {mismatch:.2g}): pressure moves "
+            "their surfaces sideways, which the theory neglects",
         ),
     ),
     (
@@ -141,8 +146,8 @@ CHECKS = (
     (
         Rule(
             (("mean_load", 1.0 + 1e-9, "load"),),
-            "the load oscillates to below 0: the bodies part in every cycle, and friction is over "
-            "the mean load as it is then, {mean_load:.4g} N",
+            "the amplitude of the load is above the load: the bodies separate in every cycle, and "
+            "the mean load is {mean_load:.4g} N",
         ),
     ),
     (_atomic("u_lim", "u_lim"),),
@@ -150,37 +155,37 @@ CHECKS = (
     (
         Rule(
             (("mu", 1.0, LARGE_MU),),
-            f"mu is {{mu:.3g}}: above {LARGE_MU:g} it is rare but for rubber and clean metals that "
-            "weld, of which Coulomb's law is a poor picture",
+            f"mu is {{mu:.3g}}: above {LARGE_MU:g} it is rare except for rubber and clean metals "
+            "that weld, for which Coulomb's law is a poor approximation",
         ),
     ),
     (
         Rule(
             (("rubbers", 1.0, 0.0),),
-            f"Poisson's ratio from {RUBBERY:g} on is that of rubber and soft polymers, whose "
-            "modulus rises with the frequency and whose losses inside rub too: give Young's "
-            "modulus at this frequency; the losses are left out",
+            f"a Poisson's ratio of {RUBBERY:g} or more is that of rubber and soft polymers, whose "
+            "modulus increases with the frequency: give Young's modulus at this frequency; "
+            "internal losses, which add to friction, are neglected",
         ),
     ),
 )
-"""Rules in the order in which they are told; of those that stand together the first that holds."""
+"""Groups of rules in the order of the warnings; the first rule of a group that applies counts."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
-"""Optional properties of a body, and the check that needs each of them."""
-NOT_GIVEN = "{what} (no {name} given for {whose})"
+"""Checks that need an optional property of a body, by the name of the property."""
+MISSING = "{what} (the {name} of {whose} is missing)"
 SIDES = ("the body", "the counterbody")
-"""How the two bodies are called in sentences."""
+"""Names of the two bodies in sentences."""
 
 
 def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
-    """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
-    known = measures(contact, motion)
-    found = (next((rule for rule in rules if _holds(rule, known)), None) for rules in CHECKS)
-    return [rule.text.format(**known) for rule in found if rule is not None]
+    """The warnings for a contact and its motion."""
+    values = measures(contact, motion)
+    first = (next((rule for rule in rules if _applies(rule, values)), None) for rules in CHECKS)
+    return [rule.text.format(**values) for rule in first if rule is not None]
 
 
-def _holds(rule: Rule, known: dict[str, float | None]) -> bool:
+def _applies(rule: Rule, values: dict[str, float | None]) -> bool:
     def value(side: float | str) -> float | None:
-        return known[side] if isinstance(side, str) else side
+        return values[side] if isinstance(side, str) else side
 
     return all(
         value(left) is not None and value(right) is not None and value(left) > factor * value(right)
@@ -189,19 +194,19 @@ def _holds(rule: Rule, known: dict[str, float | None]) -> bool:
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
-    """Checks that were not possible, each with the missing property and its body: list of texts."""
-    sides, found = list(zip(SIDES, contact.bodies, strict=True)), []
+    """Texts of the checks that need a missing property."""
+    sides, texts = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
         if whose and not (name == "hardness" and math.isinf(contact.largest_pressure)):
-            found.append(NOT_GIVEN.format(what=what, name=name, whose=" and ".join(whose)))
-    return found
+            texts.append(MISSING.format(what=what, name=name, whose=" and ".join(whose)))
+    return texts
 
 
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """Measures that the rules check, by name; None: does not apply, or is not known.
+    """Measures of a contact by name; None for a measure that is unknown or does not apply.
 
-    Pressures and the contact radius are those under the largest load of a period.
+    Pressures and the contact radius belong to the largest load of a period.
     """
     largest = contact.with_load(contact.load + (motion.load_amplitude or 0.0))
     bodies = _of_bodies(largest) | {"load": contact.load}
@@ -211,7 +216,7 @@ def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
 def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
     a, pressure = contact.contact_radius, contact.largest_pressure
     hard = [body.hardness for body in contact.bodies if body.hardness is not None]
-    found = {
+    values = {
         "largest_pressure": pressure,
         "mean_pressure": contact.load / (math.pi * a**2),
         "hardness": min(hard, default=None),
@@ -227,11 +232,11 @@ def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
         "rubbers": sum(b.poisson >= RUBBERY and not b.rigid for b in contact.bodies),
     }
     for side, body in zip(("first", "second"), contact.bodies, strict=True):
-        known = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
-        known = known or math.isinf(pressure)  # a warning of its own
-        found[f"{side}_young"] = None if known else body.young
-        found[f"{side}_pressure"] = None if known else pressure / body.young
-    return found
+        other = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
+        other = other or math.isinf(pressure)  # this has its own warning
+        values[f"{side}_young"] = None if other else body.young
+        values[f"{side}_pressure"] = None if other else pressure / body.young
+    return values
 
 
 def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
@@ -248,20 +253,20 @@ def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
 
 
 def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """Measures of the motion against the contact, and wave speeds where a density is known."""
+    """Measures of the motion; those of inertia are None without a density."""
     steady, along = motion.frequency is None, motion.swing[0]
-    found: dict[str, float | None]
-    found = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
-    found["mean_load"] = mean_load(motion, contact)
-    known = [
+    values: dict[str, float | None]
+    values = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
+    values["mean_load"] = mean_load(motion, contact)
+    waves = [
         (b.shear_modulus, b.density)
         for b in contact.bodies
         if b.density is not None and not b.rigid
     ]
-    if not known:
-        return found | {"crossing": None, "slip_speed": None}
-    wave = min(math.sqrt(shear / density) for shear, density in known)
-    return found | {
+    if not waves:
+        return values | {"crossing": None, "slip_speed": None}
+    wave = min(math.sqrt(shear / density) for shear, density in waves)
+    return values | {
         "crossing": motion.turn * contact.contact_radius / wave,
         "slip_speed": largest_slip_speed(motion, contact) / wave,
     }

@@ -93,7 +93,7 @@ def packed() -> dict:
         "materials": {name: _material(body) for name, body in MATERIALS.items()},
         "checks": [[rule._asdict() for rule in rules] for rules in validity.CHECKS],
         "properties": validity.PROPERTIES,
-        "not_given": validity.NOT_GIVEN,
+        "not_given": validity.MISSING,
         "whose": validity.SIDES,
         "adhesion": validity.ADHESION,
         "range": validity.RANGE,
