@@ -22,14 +22,13 @@ def test_every_method_has_a_contest_by_the_part_that_it_exchanges():
 
 
 def table(*rows):
-    """Columns of the table of trials, from (point, model, method, level, error, seconds)."""
+    """Rows of the table of trials, from (point, model, method, level, error, seconds)."""
     names = ("trial_point", "trial_model", "trial_method", "trial_level", "error", "seconds")
-    columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
-    return columns | {"converged": [True] * len(rows)}
+    return [dict(zip(names, row, strict=True)) | {"converged": True} for row in rows]
 
 
-def ratio(columns, tolerances=(1e-3,), points=("p", "q")):
-    made = profiles.variables(columns, list(points), tolerances)
+def ratio(rows, tolerances=(1e-3,), points=("p", "q")):
+    made = profiles.variables(rows, list(points), tolerances)
     contests, names = (made[n][1] for n in ("competitor_contest", "competitor"))
     values = np.asarray(made["profile_ratio"][1], float)
     return dict(zip(zip(contests, names, strict=True), values, strict=True))
@@ -62,10 +61,10 @@ def test_a_coarse_run_that_is_right_by_chance_does_not_count():
         )
     )
     assert found["models", "polar"].tolist() == [[1.0, np.inf]]
-    columns = table(("p", "polar", "shipped", 0, 1e-6, 1.0), ("p", "dahl", "shipped", 0, 1e-4, 5.0))
-    assert ratio(columns, points=("p",))["models", "dahl"].tolist() == [[5.0]]
-    columns["converged"] = [False, True]
-    found = ratio(columns, points=("p",))
+    rows = table(("p", "polar", "shipped", 0, 1e-6, 1.0), ("p", "dahl", "shipped", 0, 1e-4, 5.0))
+    assert ratio(rows, points=("p",))["models", "dahl"].tolist() == [[5.0]]
+    rows[0]["converged"] = False
+    found = ratio(rows, points=("p",))
     assert found["models", "polar"].tolist() == [[np.inf]]
     assert found["models", "dahl"].tolist() == [[1.0]]
 
