@@ -26,7 +26,7 @@ TRAVEL = 10.0
 CELLS = {"fine": 32, "coarse": 16}
 """Rings of transients and steady tractions; the difference of both gives the error."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Velocities of steady tractions. Except at the last, the contact contains the centre of rotation."""
+"""Velocities of steady tractions. Up to 0.8 the contact contains the centre of rotation."""
 
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
@@ -104,7 +104,7 @@ def limited(study: Claims, motion: str) -> list[float]:
 
 
 def sliding(study: Claims) -> list[float]:
-    """List of the largest transverse amplitude if the contact slides in every stroke, else empty."""
+    """List of the largest transverse amplitude; empty if the contact sticks in some strokes."""
     largest = study.amplitude["transverse"][-1]
     return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
 
