@@ -1,10 +1,9 @@
-"""Make the pictures of these pages from figures of the workflow, as PNG of 200 dpi.
+"""Make the images of these pages from figures of the workflow, as PNG files of 200 dpi.
 
     python docs/make_images.py results [NAME ...]
 
-NAME: names of figures, without .png; by default all figures of the pages that the folder has.
-Figures have 300 dpi, which is more than a page needs. With a palette of 64 colours a picture is
-a quarter as large.
+NAME: name of a figure without .png; default: all figures of the pages that exist in the folder.
+The figures have 300 dpi. A palette of 64 colours reduces the size of a file to a quarter.
 """
 
 import sys
@@ -14,21 +13,22 @@ import numpy as np
 from PIL import Image
 
 IMAGES = Path(__file__).parent / "images"
-SHARE = 200 / 300
+SCALE = 200 / 300
 COLOURS = {Image.Quantize.FASTOCTREE: 48, Image.Quantize.MEDIANCUT: 16}
 
 
-def shrunk(path):
-    """The picture of a figure."""
+def reduced(path):
+    """The smaller image of a figure file."""
     with Image.open(path) as image:
-        size = [round(SHARE * side) for side in image.size]
+        size = [round(SCALE * side) for side in image.size]
         return with_palette(image.convert("RGB").resize(size, Image.Resampling.LANCZOS))
 
 
 def with_palette(image):
-    """The picture with fewer colours; a dither would make it larger and its lines rough.
+    """The image with fewer colours, without dithering, which enlarges files and roughens lines.
 
-    An octree keeps rare colours, such as those of lines, the median cut large pale areas.
+    The octree method preserves rare colours such as those of lines, the median cut method pale
+    areas.
     """
     palette = Image.new("P", (1, 1))
     colours = [
@@ -43,15 +43,15 @@ def with_palette(image):
 
 
 def main(results, *names):
-    """Write the pictures and say how large they are."""
+    """Write the images and print their sizes."""
     for name in names or sorted(path.stem for path in IMAGES.glob("*.png")):
         figure = Path(results, "figures", f"{name}.png")
         if figure.is_file():
             target = IMAGES / figure.name
-            shrunk(figure).save(target, optimize=True)
+            reduced(figure).save(target, optimize=True)
             print(f"{target.name}: {target.stat().st_size / 1e3:.0f} kB")
         elif names:
-            sys.exit(f"{figure} is not there: run the workflow first")
+            sys.exit(f"{figure} does not exist: run the workflow first")
 
 
 if __name__ == "__main__":

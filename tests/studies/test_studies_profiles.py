@@ -1,4 +1,4 @@
-"""Performance profiles: who competes with whom, and what a ratio is."""
+"""Performance profiles: contests and ratios."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():
         ),
         tolerances=(1e-2, 1e-3),
     )
-    # by hand: at 1e-2 the coarse polar run does in 1 s, at 1e-3 it takes the one of 4 s
+    # by hand: polar needs 1 s at 1e-2 with the coarse run, and 4 s at 1e-3
     assert found["models", "polar"].tolist() == [[1.0, 3.0], [2.0, 1.0]]
     assert found["models", "radial"].tolist() == [[2.0, 1.0], [1.0, np.inf]]
 
@@ -82,7 +82,7 @@ def test_methods_are_compared_with_what_ships_where_both_were_run():
         points=("p",),
     )
     assert found["integrators", "euler"].item() == pytest.approx(3.0)
-    assert found["integrators", "shipped"].item() == 1.0  # mdr took no part
+    assert found["integrators", "shipped"].item() == 1.0  # not compared with mdr
     assert found["searches", "shipped"].item() == pytest.approx(2.0)
     assert found["models", "paper"].item() == pytest.approx(500.0)
     assert found["models", "auto"].item() == pytest.approx(4.0)
