@@ -277,21 +277,16 @@ VALIDATION = (
         contacts=COUPLES,
         **NEAR | {"tolerances": TOLERANCES[:2]},
     ),
-    Stratum(
-        "several contacts, force",
-        0.03,
-        ("transverse", "longitudinal", "zigzag", *LOOPS),
-        contacts=COUPLES,
-        drive=_force,
-        **MOVING,
-    ),
-    Stratum(
-        "several contacts, spring with a mass",
-        0.03,
-        ("transverse", "longitudinal", "zigzag", *LOOPS),
-        contacts=COUPLES,
-        drive=_together(_spring, _mass),
-        **MOVING,
+    *(
+        Stratum(
+            f"several contacts, {name}",
+            0.03,
+            ("transverse", "longitudinal", "zigzag", *LOOPS),
+            contacts=COUPLES,
+            drive=drive,
+            **MOVING,
+        )
+        for name, drive in (("force", _force), ("spring with a mass", _together(_spring, _mass)))
     ),
     Stratum(
         "several contacts, bore",
@@ -301,21 +296,19 @@ VALIDATION = (
         drive=_force,
         **MOVING | {"tolerances": COARSE},
     ),
-    Stratum(
-        "lateral, ranges of the paper",
-        0.04,
-        ("transverse",),
-        velocity=(-3.0, 1.0),
-        largest_amplitude=3.0,
-        tolerances=TOLERANCES[2:],
-    ),
-    Stratum(
-        "bore, ranges of the paper",
-        FEW,
-        ("bore",),
-        velocity=(-3.0, 1.0),
-        largest_amplitude=5.0,
-        tolerances=TOLERANCES[2:],
+    *(
+        Stratum(
+            f"{name}, ranges of the paper",
+            weight,
+            (motion,),
+            velocity=(-3.0, 1.0),
+            largest_amplitude=largest,
+            tolerances=TOLERANCES[2:],
+        )
+        for name, weight, motion, largest in (
+            ("lateral", 0.04, "transverse", 3.0),
+            ("bore", FEW, "bore", 5.0),
+        )
     ),
 )
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
