@@ -136,7 +136,7 @@ STEEP = ("hertz", *OTHERS, "power:exponent=30", "punch:flat=0.95")
 """Pressures, most of them with a steep edge."""
 CYCLES = ((1, 1), (1, 1), (2, 1), (1, 2), (3, 1), (3, 2))
 PHASES = (0, 10, 30, 45, 60, 90, 120)
-"""Cycles forward and sideways in a period, and phases between them in degrees, of loops."""
+"""Loops: cycles forward and sideways in a period, and phases between them in degrees."""
 SLOW = {"velocity": (-4.5, -1.0), "tolerances": (1e-2, 5e-3, 2e-3)}
 STRAIGHT = ("transverse", "transverse", "zigzag", *LOOPS)
 MOVING = {"velocity": (-2.0, 0.5), "amplitude": (-0.5, 1.0), "tolerances": TOLERANCES[:2]}

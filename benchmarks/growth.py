@@ -1,7 +1,7 @@
 """Time and memory of the workflow for a sweep of very many cheap points.
 
 Run ``python benchmarks/growth.py --points 100000 --markdown docs/measured/growth.md``. The steady
-bore has closed forms, so the workflow dominates and not the solver. Measured are planning, storing
+bore has closed forms, so nearly all time is spent in the workflow. Measured are planning, storing
 and collecting, a run with nothing to do, and one more value on an axis.
 """
 

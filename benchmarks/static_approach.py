@@ -5,8 +5,8 @@
 Each motion (transverse and bore, nu = 0) and amplitude has a table with velocity, mu_macro, its
 error estimate and its excess over the closed form of the limit. The last column is the local
 exponent p of excess ~ velocity^p between a velocity and the next larger one. It is empty where an
-excess is not much larger than its error estimate, which happens at smaller velocities for smaller
-tolerances.
+excess is not much larger than its error estimate. Smaller tolerances show the exponent at smaller
+velocities.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def test_verdicts_on_made_up_results(claims):
 
 
 def point_of(request, motion, static=None):
-    """True for the request of a point of a motion; static: only (or except) the static limit."""
+    """True for the request of a point of a motion; static: True requires the static limit."""
     if request["kind"] != "point" or request["motion"] != motion:
         return False
     return static is None or static == (request["velocity"] == "0")
