@@ -105,7 +105,7 @@ def D_half() -> float:
 
 
 def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
-    """Angle of pure torsion from rest at which the stick radius has a value (Eq 24).
+    """Angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
     0 < stick_radius <= 1, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
     """
@@ -116,8 +116,9 @@ def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.n
 def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
-    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns 0 < c <= 1: 1
-    at angle 0. The centre never slips, so a value that underflows is the smallest normal float.
+    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a radius
+    above 0 and at most 1, which is 1 at angle 0. The centre never slips, so a radius that
+    underflows is the smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
     # Newton's method in ln c. D has the slope -E(k), between -pi/2 and -1, and is concave. So the
@@ -212,7 +213,7 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
 
 
 def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Circumferential traction at radius r in pure torsion from rest, by its stick radius.
+    """Circumferential traction at radius r in pure torsion from rest.
 
     r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; equal to the
     friction bound in the slip annulus. See lubkin_share.
@@ -221,11 +222,12 @@ def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> 
 
 
 def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Torque of pure torsion from rest, by its stick radius (integral of lubkin_traction).
+    """Torque of pure torsion from rest as a function of the stick radius.
 
     0 <= stick_radius <= 1 (any shape), else ValueError. In mu*F_z*a: 0 at stick radius 1 and
-    TORQUE_FULL_SLIP at 0, independent of Poisson's ratio. It is the sum of the torques of punches
-    (16/3) G s^3 (-d phi_lk(s)) from s = c to 1 (Lubkin 1951).
+    TORQUE_FULL_SLIP at 0, independent of Poisson's ratio. It is the integral of lubkin_traction,
+    and the sum of the torques of punches (16/3) G s^3 (-d phi_lk(s)) from s = c to 1 (Lubkin
+    1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s the integrand is s^2 E(k). After s = t^2 its only singularity, s^4 ln s

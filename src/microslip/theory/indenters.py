@@ -1,6 +1,6 @@
 """Static limits and torsion of any axisymmetric indenter, by quadrature to about 1e-8.
 
-The limits apply at Poisson's ratio 0, for the bore at any Poisson's ratio. For a sphere they agree
+The limits apply at Poisson's ratio 0, and that of the bore at any ratio. For a sphere they agree
 with the closed forms of `paper`, which are faster. Quantities are dimensionless as in `paper`.
 """
 
@@ -48,7 +48,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
 
 
 def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
-    """Angle of pure torsion from rest at which the stick radius has a value (Eq 24 for a sphere).
+    """Angle of pure torsion from rest as a function of the stick radius (Eq 24 for a sphere).
 
     Torsion is a superposition of rotating flat punches. Abel's inversion gives
     phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.

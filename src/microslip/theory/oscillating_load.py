@@ -7,10 +7,10 @@ radius x: x^2 for a sphere. The stretch of a spring that came into contact at th
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because the stretch is at most that of yielding at every tau. With phi(t) = d(t) - v t it is smaller
-than that of yielding by phi(t) - min phi, at any x. So the mean over the springs is an integral
-over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of
-an indenter's pressure.Pressure.
+because the stretch is at most that of yielding at every tau. So the stretch of yielding exceeds the
+stretch by phi(t) - min phi with phi(t) = d(t) - v t, at any x. The mean over the springs is an
+integral over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working
+units of an indenter's pressure.Pressure.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
-        # springs that are always in contact, or come into contact while phi falls, lack as much as
-        # springs that come into contact at the next minimum of phi
+        # springs that are always in contact, or come into contact while phi falls, have the lack of
+        # those that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one

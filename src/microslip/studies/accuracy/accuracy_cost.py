@@ -1,12 +1,12 @@
 """Accuracy against cost: requests for trials at points, maps of models and the cost of a step.
 
 At each point every model is run at all levels of its ladder with the shipped method. Every other
-method is run at the levels of the model that `model="auto"` selects. Solves at a tolerance and a
-reference complete the point. The maps of two motions need trials of all models on a grid of points.
+method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
+a tolerance and a reference. The maps of two motions need trials of all models on a grid of points.
 The cost of a step is measured over a series of sizes.
 
-Requests are grouped into pieces, one for each job. A piece is large compared with the start of a
-job. A new method in the configuration adds pieces and changes no other piece.
+Requests are grouped into pieces, one for each job. A piece takes much longer than the start of
+a job. A new method in the configuration adds pieces and changes no other piece.
 """
 
 from collections.abc import Iterator

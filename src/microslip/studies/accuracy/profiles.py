@@ -106,10 +106,11 @@ def _least_costs(
     points: list[str],
     tolerances: np.ndarray,
 ) -> np.ndarray:
-    """Smallest cost within each tolerance, shape (competitors, tolerances, points), else infinite.
+    """Smallest cost of runs within each tolerance, shape (competitors, tolerances, points).
 
-    A run counts if its own error and those of all finer runs of its competitor and model are
-    within the tolerance, because the error of a coarse run can be small by chance.
+    It is infinite without such a run. A run counts if its own error and the errors of all finer
+    runs of its competitor and model are within the tolerance, because the error of a coarse run
+    can be small by chance.
     """
     least = np.full((len(competitors), len(tolerances), len(points)), np.inf)
     largest: dict[tuple, float] = {}

@@ -14,7 +14,7 @@ from microslip.studies.ladders import exact_model
 PAPER_VELOCITY = 0.005
 """Smallest velocity in the paper's maps of both motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Squares along a side in the paper, and steps in a period of its run here."""
+"""Squares along a side in the paper, and steps in a period of our run of its method."""
 PAPER_TOLERANCE = 1e-3
 """Error of the stresses in the paper."""
 
