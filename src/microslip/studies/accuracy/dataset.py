@@ -239,7 +239,7 @@ def _candidates(
     return trials, confirmed(models, error, exact_model(point.motion, point.poisson))
 
 
-SCALING = {
+SCALING: dict[str, tuple] = {
     "unknowns": ("tractions that a step solves for",),
     "iterations": ("iterations of the step solver in a step",),
     "seconds": ("median CPU time of a step", float, "s"),
