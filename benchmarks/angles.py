@@ -1,10 +1,10 @@
-"""How many angles do rotations need, and how many translations at nu > 0?
+"""Error of the friction by the number of angles, for rotations and for translations at nu > 0.
 
     python benchmarks/angles.py [--points N] [--markdown FILE]
 
-Random points of several motions and pressures are solved with few angles and with many, over the
-same rings and in the same steps.  One line of the table for each motion: the largest difference of
-the friction for each number of angles on half the disc.
+Random points of several motions and pressures are solved with few and with many angles, with equal
+rings and steps. The table has one line for each motion: the largest difference of the friction for
+each number of angles on half the disc.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import one_thread  # noqa: F401
 
 # isort: split
 
-import argparse
 
 import numpy as np
 import tables
@@ -36,22 +35,21 @@ DISTANCE = 1e-7
 
 
 def differences(motion: str, place: tuple, poisson: float, pressure: str) -> list[float]:
-    """Friction with ANGLES less that with MANY; place: velocity and amplitude."""
+    """Friction with ANGLES minus that with MANY; place: velocity and amplitude."""
     problem = Problem(motion_named(motion), *place, poisson, pressure_named(pressure))
     settings = Settings(focus=edge_focus(problem, "polar"))
     steps = round(STEPS * max(problem.stroke, 1.0) ** 0.5)
-    found = [
+    mu = [
         simulate(problem, "polar", Resolution(RINGS, angles, steps), DISTANCE, settings=settings).mu
         for angles in (*ANGLES, MANY)
     ]
-    return [one - found[-1] for one in found[:-1]]
+    return [one - mu[-1] for one in mu[:-1]]
 
 
 def main() -> None:
     """Solve all points and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--points", type=int, default=12, help="of each motion")
-    tables.add_markdown(parser)
+    parser = tables.parser_of(__doc__)
+    parser.add_argument("--points", type=int, default=12, help="number of points of each motion")
     options = parser.parse_args()
     random, rows = np.random.default_rng(1), []
     for motion in MOTIONS:
@@ -63,8 +61,9 @@ def main() -> None:
                 10 ** random.uniform(-0.5, -0.05 if loads else 1.0),
             )
             pressure = "hertz" if loads else PRESSURES[k % len(PRESSURES)]
-            found = differences(motion, place, 0.0 if rotates else (0.3, 0.5)[k % 2], pressure)
-            worst = np.maximum(worst, np.abs(found))
+            poisson = 0.0 if rotates else (0.3, 0.5)[k % 2]
+            errors = differences(motion, place, poisson, pressure)
+            worst = np.maximum(worst, np.abs(errors))
         rows.append({"motion": motion})
         rows[-1] |= {str(n): f"{one:.0e}" for n, one in zip(ANGLES, worst, strict=True)}
         print(rows[-1], flush=True)

@@ -1,9 +1,9 @@
-"""Random points of all kinds, stratified: there are many of them where error estimates are at risk.
+"""Random points of all kinds in strata, with many points where error estimates can be too small.
 
-`point(seed, k)` is point k of the sample of a seed, whatever was drawn before it: a longer sample
-begins with a shorter one.  The seed 3 has strata of its own, which the estimate was calibrated on.
-All other seeds have strata that also cover drives, several contacts, slow loops under steep
-pressures, the neighbourhood of full sliding, and the ranges of the paper at 1e-4.
+`point(seed, k)` is point k of the sample of a seed. It depends on seed and k only, so that a long
+sample begins with a short one. Seed 3 has the strata that calibrate the error estimate. All other
+seeds have strata that also cover drives, several contacts, slow loops under steep pressures, the
+neighbourhood of full sliding, and the ranges of the paper at 1e-4.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 TOLERANCES, SHARES = (1e-2, 1e-3, 1e-4), (0.45, 0.45, 0.1)
 COARSE = (1e-2,)
-"""Tolerance of points whose references at a finer one are too expensive."""
+"""Tolerance of points whose references at smaller tolerances are too expensive."""
 ROUND = ("hertz", "power:exponent=1", "power:exponent=8", "punch", "ring")
 OTHERS = ROUND[1:]
 TURNING = (
@@ -42,28 +42,28 @@ class Stratum:
     Attributes
     ----------
     name : str
-        What the points have in common.
+        Common property of the points.
     weight : float
-        Number of these points over the number of all, times the sum of all weights.
+        Fraction of the points, times the sum of all weights.
     motions : tuple of str, or callable
-        Motions drawn with equal chances, or a function of the generator that draws one.
+        Motions with equal probability, or a function of the generator that draws one.
     pressures : tuple of str
-        Pressures drawn with equal chances.
+        Pressures with equal probability.
     poisson : tuple of float
-        Poisson's ratios drawn with equal chances.
+        Poisson's ratios with equal probability.
     velocity : (float, float) or None
         Decimal logarithms of the range of the velocity; None: the static limit.
     amplitude : (float, float)
         Decimal logarithms of the range of the amplitude.
     tolerances : tuple of float
-        Tolerances drawn with the chances SHARES, as far as there are as many.
+        Tolerances with the probabilities SHARES, of which the first ones are used.
     largest_amplitude : float or None
-        Amplitudes are drawn evenly from 0 to this one, instead of by their logarithm.
+        If not None, amplitudes are uniform between 0 and this one instead of log-uniform.
     drive : callable or None
-        Function of the generator that draws the drive, a dict of arguments of `microslip.solve`.
-        A force takes the place of the velocity.
+        Function of the generator that draws a drive: a dict of arguments of `microslip.solve`.
+        A force replaces the velocity.
     contacts : tuple of str
-        Texts of several contacts, drawn with equal chances.
+        Texts of several contacts, with equal probability.
     """
 
     name: str
@@ -80,9 +80,9 @@ class Stratum:
 
 
 LATE = np.log10(0.6), np.log10(1.05)
-"""Amplitudes at which the stick zone of a translation to and fro is small."""
+"""Range of amplitudes at which the stick zone of a translation is small, as decimal logarithms."""
 NEAR = {"velocity": (-3.0, 1.0), "amplitude": (-1.3, 0.7)}
-"""Range where partial slip decides the friction, as decimal logarithms."""
+"""Range in which friction depends on partial slip, as decimal logarithms."""
 CALIBRATION_SEED = 3
 CALIBRATION = (
     Stratum("lateral, nu = 0", 0.14, ("transverse",)),
@@ -133,14 +133,14 @@ CALIBRATION = (
 
 
 STEEP = ("hertz", *OTHERS, "power:exponent=30", "punch:flat=0.95")
-"""Pressures most of which have a steep edge."""
+"""Pressures, most of them with a steep edge."""
 CYCLES = ((1, 1), (1, 1), (2, 1), (1, 2), (3, 1), (3, 2))
 PHASES = (0, 10, 30, 45, 60, 90, 120)
-"""Cycles forward and sideways in a period, and phases between them in degrees, of loops."""
+"""Loops: cycles forward and sideways in a period, and phases between them in degrees."""
 SLOW = {"velocity": (-4.5, -1.0), "tolerances": (1e-2, 5e-3, 2e-3)}
 STRAIGHT = ("transverse", "transverse", "zigzag", *LOOPS)
 MOVING = {"velocity": (-2.0, 0.5), "amplitude": (-0.5, 1.0), "tolerances": TOLERANCES[:2]}
-"""Range where a force moves most contacts, and a spring changes the friction."""
+"""Range in which a force moves most contacts, and a spring changes the friction."""
 COUPLES = (
     "phase=0;phase=180",
     "phase=0;phase=180",
@@ -152,7 +152,7 @@ FULL_SLIDING = {
     "velocity": tuple(np.log10((0.06, 0.17))),
     "amplitude": tuple(np.log10((0.95, 1.5))),
 }
-"""Neighbourhood of full sliding of a translation, where levels agree by chance."""
+"""Neighbourhood of full sliding of a translation, where levels can agree by chance."""
 BORE_FULL_SLIDING = {
     "velocity": tuple(np.log10((0.05, 0.4))),
     "amplitude": tuple(np.log10((0.9, 3.0))),
@@ -170,7 +170,7 @@ def _loop(draw):
 
 
 def _between(draw, low, high):
-    """A number drawn evenly by its logarithm, with four digits."""
+    """A log-uniform number with four digits."""
     return float(f"{10.0 ** draw.uniform(np.log10(low), np.log10(high)):.4g}")
 
 
@@ -199,7 +199,7 @@ def _together(*drives):
 
 
 def _driven(name, drive, weights, **changes):
-    """Strata of translations and rotations under a drive, with their weights."""
+    """Strata of translations and rotations under a drive."""
     both = (("translations", STRAIGHT, ROUND), ("bore", ("bore",), ("hertz", *ROUND)))
     return tuple(
         Stratum(
@@ -216,7 +216,7 @@ def _driven(name, drive, weights, **changes):
 
 
 FEW = 0.011
-"""Weight of strata whose references are expensive: about 60 of 6,000 points."""
+"""Weight of strata with expensive references: about 60 of 6,000 points."""
 WEIGHTS = {
     "lateral, nu = 0": 0.04,
     "lateral, nu = 0, stick zone small": 0.06,
@@ -227,7 +227,7 @@ WEIGHTS = {
     "oscillating load": 0.015,
     "static limit": 0.015,
 }
-"""Weights in the validation of strata that the calibration has, FEW for the others."""
+"""Weights in the validation of strata of the calibration; FEW for the others."""
 VALIDATION = (
     *(replace(stratum, weight=WEIGHTS.get(stratum.name, FEW)) for stratum in CALIBRATION),
     Stratum(
@@ -277,21 +277,16 @@ VALIDATION = (
         contacts=COUPLES,
         **NEAR | {"tolerances": TOLERANCES[:2]},
     ),
-    Stratum(
-        "several contacts, force",
-        0.03,
-        ("transverse", "longitudinal", "zigzag", *LOOPS),
-        contacts=COUPLES,
-        drive=_force,
-        **MOVING,
-    ),
-    Stratum(
-        "several contacts, spring with a mass",
-        0.03,
-        ("transverse", "longitudinal", "zigzag", *LOOPS),
-        contacts=COUPLES,
-        drive=_together(_spring, _mass),
-        **MOVING,
+    *(
+        Stratum(
+            f"several contacts, {name}",
+            0.03,
+            ("transverse", "longitudinal", "zigzag", *LOOPS),
+            contacts=COUPLES,
+            drive=drive,
+            **MOVING,
+        )
+        for name, drive in (("force", _force), ("spring with a mass", _together(_spring, _mass)))
     ),
     Stratum(
         "several contacts, bore",
@@ -301,25 +296,23 @@ VALIDATION = (
         drive=_force,
         **MOVING | {"tolerances": COARSE},
     ),
-    Stratum(
-        "lateral, ranges of the paper",
-        0.04,
-        ("transverse",),
-        velocity=(-3.0, 1.0),
-        largest_amplitude=3.0,
-        tolerances=TOLERANCES[2:],
-    ),
-    Stratum(
-        "bore, ranges of the paper",
-        FEW,
-        ("bore",),
-        velocity=(-3.0, 1.0),
-        largest_amplitude=5.0,
-        tolerances=TOLERANCES[2:],
+    *(
+        Stratum(
+            f"{name}, ranges of the paper",
+            weight,
+            (motion,),
+            velocity=(-3.0, 1.0),
+            largest_amplitude=largest,
+            tolerances=TOLERANCES[2:],
+        )
+        for name, weight, motion, largest in (
+            ("lateral", 0.04, "transverse", 3.0),
+            ("bore", FEW, "bore", 5.0),
+        )
     ),
 )
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-"""Multiples of this number, without their whole parts, fill the interval from 0 to 1 evenly."""
+"""The fractional parts of the multiples of this number fill the interval from 0 to 1 evenly."""
 
 
 def strata_of(seed: int) -> tuple[Stratum, ...]:

@@ -1,28 +1,28 @@
-"""Are errors within their estimates?  Random points of all kinds, each against a reference.
+"""Validate the error estimates at random points of all kinds, each against a reference.
 
     python benchmarks/error_estimates.py [--points N] [--first K] [--seed S] [--workers W]
                                          [--output FILE] [--markdown FILE] [--again] [--keep]
                                          [--start F] [--safety S] [--smallest S]
 
-The points are those of `blind_points.py`.  The quantity is the friction, or the velocity under a
-force, whose tolerance is relative above 1.  A point fails if it is converged and its error is above
+The points are those of `blind_points.py`. The quantity is the friction, or the velocity under a
+force, whose tolerance is relative above 1. A point fails if it is converged and its error exceeds
 its estimate by more than the uncertainty of the reference.
 
-A first reference is the same point at a tenth of the tolerance, at a quarter of it from 1e-4 on.
-It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
-may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
-contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
-The second reference is also used where the first one would take too much work, for example for
-rotations at 1e-4.
-The most certain reference judges.  References that contradict each other are listed.
+The first reference is the same point at a tenth of the tolerance, or at a quarter of it for 1e-4
+and below. It is computed by the same rules as the estimate. So every twentieth point, and every
+point whose error may exceed its estimate, has a second reference that shares no run with the
+result. This is `finer.py` for one contact at a prescribed velocity, else two runs with more cells
+and steps than the first reference. The second reference is also used if the first one would take
+too much work, for example for rotations at 1e-4. The reference with the smallest uncertainty judges
+the point. References that contradict each other are listed.
 
-Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
-If the sources have changed since then, so that other bits come out, it ends.  --again solves all
-points anew and keeps their references, also those in `docs/measured/references-SEED.csv`; the file
-before is kept as FILE.before.  --keep writes all references to that table.
+Results are written to a file of JSON lines, point by point, and an interrupted run can be
+continued. The run ends if changed sources give other values. --again solves all points again and
+uses the existing references, including those in `docs/measured/references-SEED.csv`. The previous
+file is renamed to FILE.before. --keep writes all references to this table.
 
---start multiplies the first level of every ladder, --safety and --smallest replace the safety
-factor and the smallest share of the tolerance: with seed 3 they calibrate the estimate.
+--start multiplies the first level of every ladder. --safety and --smallest replace the safety
+factor and the smallest estimate over the tolerance. With seed 3 they calibrate the estimate.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ import one_thread  # noqa: F401
 
 # isort: split
 
-import argparse
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -53,34 +52,34 @@ from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 
 TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
-"""Tolerance of a first reference over that of the point: 1e-5 is too expensive for rotations."""
+"""Tolerance of the first reference over that of the point; 1e-5 is too expensive for rotations."""
 TWICE = 20
-"""Every point whose number is a multiple of this has a second reference."""
+"""Points whose number is a multiple of TWICE have a second reference."""
 MOST_WORK = 3e7
-"""Work of a first reference, and of a run of another one without `finer.py`: some ten seconds."""
+"""Largest work of a first reference and of other runs except those of `finer.py`: about 10 s."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
-"""Cells and steps of a second reference over those of the first: no level of a ladder has them."""
+"""Cells and steps of a second reference over those of the first; no level has these numbers."""
 EXACT = 1e-7
-"""Uncertainty up to which a reference is a closed form, which no run could improve."""
+"""Largest uncertainty of a closed form, which runs cannot improve."""
 CONFIDENCE = 0.95
-"""Probability that the share of failures is below its limit."""
+"""Probability that the rate of failures is below its limit."""
 AGAIN = 24
-"""Points solved again where a run goes on, to see whether the sources have changed."""
+"""Number of points solved again when a run is continued, to detect changed sources."""
 EVERY = 500
-"""Points between two summaries."""
+"""Number of points between two summaries."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
 LADDER_FOR = friction.ladder_for
-"""Ladders as they are."""
+"""The unchanged function of the package."""
 KEPT = "all_references"
-"""Key of all references of a point in its line."""
+"""Key of the list of all references in a line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
-"""Parts of the error estimate."""
+"""Sources of the error estimate."""
 
 
 def arguments_of(point: dict) -> dict:
-    """Arguments of `microslip.solve`."""
+    """Arguments of `microslip.solve` of a point."""
     return {name: value for name, value in point.items() if name != "stratum"}
 
 
@@ -95,23 +94,23 @@ def allowed(line: dict) -> float:
 
 
 def off(line: dict) -> float:
-    """Error of a line by its reference."""
+    """Distance of the value of a line from its reference."""
     return abs(line["value"] - line["reference"])
 
 
 def ratio(line: dict) -> float:
-    """Error of a line beyond the uncertainty of its reference, over its estimate."""
+    """Error of a line, less the uncertainty of its reference, over its error estimate."""
     beyond = off(line) - line["uncertainty"]
     return beyond / max(line["error"], 1e-12) if beyond > 0.0 else 0.0
 
 
 def is_judged(line: dict) -> bool:
-    """Whether a line has an estimate that is within the tolerance, and a reference."""
+    """True if a line is converged and has a reference."""
     return line["converged"] and bool(line["by"])
 
 
 def failed(line: dict) -> bool:
-    """Whether a converged point has an estimate that is too small."""
+    """True if the error estimate of a converged point is too small."""
     return is_judged(line) and ratio(line) > 1.0
 
 
@@ -120,18 +119,18 @@ def calibrate(
     safety: float = richardson.SAFETY,
     smallest: float = refinement.SMALLEST_SHARE,
 ) -> None:
-    """Set the constants of the error estimate in this process; without arguments, reset them."""
+    """Set the constants of the error estimate in this process; the defaults reset them."""
 
     def scaled(*arguments) -> ladder.Ladder:
-        given = LADDER_FOR(*arguments)
-        return given if given.imposed else replace(given, start=start * given.start)
+        plain = LADDER_FOR(*arguments)
+        return plain if plain.imposed else replace(plain, start=start * plain.start)
 
     friction.ladder_for = driven_contact.ladder_for = scaled
     richardson.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
 
 
 def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
-    """One line of the output: point k, its result, and the reference, computed where it is None."""
+    """One line of the output: point k, its result and its reference, which is computed if None."""
     point = blind_points.point(seed, k)
     calibrate(**constants)
     began = time.process_time()
@@ -155,9 +154,9 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
 
 
 def judged(k: int, point: dict, line: dict, result: microslip.Result, before: dict | None) -> dict:
-    """The most certain reference of point k, all of its references, and their CPU seconds.
+    """The reference of point k with the smallest uncertainty, all references, and CPU seconds.
 
-    line: with the value and the error of the point; result: its microslip.Result; before: the
+    line: contains the value and the error of the point; result: its microslip.Result; before:
     references of an earlier run.
     """
     began = time.process_time()
@@ -190,7 +189,7 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
 
 
 def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microslip.Result]:
-    """A reference at a tighter tolerance, and its microslip.Result; by: empty if it failed."""
+    """A reference at a tighter tolerance, and its Result; `by` is empty if it did not converge."""
     tolerance = point["tolerance"] * (TIGHTER if point["tolerance"] > 1e-4 else TIGHTER_AT_1E_4)
     arguments = arguments_of(point) | {"tolerance": tolerance}
     result = microslip.solve(**arguments, most_work=most_work)
@@ -200,7 +199,7 @@ def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microsli
 
 
 def independent(point: dict, result: microslip.Result, first: microslip.Result) -> dict:
-    """A reference that shares no run with a result and with a first reference of the point."""
+    """A reference that shares no run with the result and the first reference of a point."""
     if not NOT_FINER & point.keys():
         pressure = pressure_named(point["pressure"])
         place = (point["velocity"], point["amplitude"], point["poisson"])
@@ -228,7 +227,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
 
 
 def contradict(line: dict) -> bool:
-    """Whether two references of a line are further apart than their uncertainties."""
+    """True if two references of a line differ by more than the sum of their uncertainties."""
     every = line.get(KEPT, ())
     return any(
         abs(one["reference"] - other["reference"]) > one["uncertainty"] + other["uncertainty"]
@@ -238,7 +237,7 @@ def contradict(line: dict) -> bool:
 
 
 def summary(seed: int, lines: list[dict]) -> str:
-    """Markdown tables of errors over estimates by stratum and tolerance, and all failures."""
+    """Markdown: table of errors over estimates by stratum and tolerance, and all failures."""
     rows = []
     names = [stratum.name for stratum in blind_points.strata_of(seed)]
     for tolerance in sorted({line["tolerance"] for line in lines}, reverse=True):
@@ -252,7 +251,7 @@ def summary(seed: int, lines: list[dict]) -> str:
 
 
 def _verdict(lines):
-    """Sentences on how many estimates are too small, and by how much."""
+    """Sentences about the number of estimates that are too small, and the largest errors."""
     converged = [line for line in lines if is_judged(line)]
     failures = [line for line in converged if failed(line)]
     n, x = len(converged), len(failures)
@@ -272,7 +271,7 @@ def _verdict(lines):
 
 
 def _over_tolerance(line):
-    """Error beyond the uncertainty of the reference, over the tolerance."""
+    """Error less the uncertainty of the reference, over the tolerance."""
     return max(off(line) - line["uncertainty"], 0.0) / allowed(line)
 
 
@@ -295,7 +294,7 @@ def _row(stratum, tolerance, lines):
 
 
 def _exceptions(lines):
-    """Sentences on failures, points that are not converged, and contradicting references."""
+    """Sentences about failures, points that are not converged, and contradicting references."""
     text = []
     for line in sorted(filter(failed, lines), key=ratio, reverse=True):
         text.append(
@@ -323,30 +322,27 @@ def _named(line):
 
 
 def refuse_changed(lines: list[dict], constants: dict) -> None:
-    """End the run if some of the lines would not come out so again."""
+    """End the run if some of the lines have other values with the present sources."""
     calibrate(**constants)
     for i in np.linspace(0, len(lines) - 1, min(AGAIN, len(lines))).astype(int):
         point = blind_points.point(lines[i]["seed"], lines[i]["k"])
-        if quantity(microslip.solve(**arguments_of(point))) != (
-            lines[i]["value"],
-            lines[i]["error"],
-        ):
-            raise SystemExit(f"{_named(lines[i])} comes out otherwise now: see --again")
+        before = lines[i]["value"], lines[i]["error"]
+        if quantity(microslip.solve(**arguments_of(point))) != before:
+            raise SystemExit(f"{_named(lines[i])} has other values with these sources: see --again")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("--points", type=int, default=6000)
     parser.add_argument("--first", type=int, default=0, help="number of the first point")
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--output", type=Path, help="default: results/error-estimates-SEED.jsonl")
-    parser.add_argument("--again", action="store_true", help="solve anew, keep the references")
+    parser.add_argument("--again", action="store_true", help="solve again, use existing references")
     parser.add_argument("--keep", action="store_true", help="write the references to docs")
     parser.add_argument("--start", type=float, default=1.0)
     parser.add_argument("--safety", type=float, default=richardson.SAFETY)
     parser.add_argument("--smallest", type=float, default=refinement.SMALLEST_SHARE)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     constants = {name: getattr(options, name) for name in ("start", "safety", "smallest")}
     output = options.output or Path(f"results/error-estimates-{options.seed}.jsonl")

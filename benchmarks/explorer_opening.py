@@ -1,12 +1,11 @@
-"""How large the explorer is and how soon it opens in Chromium, from a file and without a network.
+"""Size of the explorer and its opening time in Chromium, from a file without a network.
 
 Run ``python benchmarks/explorer_opening.py results/explorer.html --markdown
-docs/measured/explorer.md`` after ``snakemake explorer``.  Every opening has a new profile, so that
-nothing is cached.  The page is open when all of its charts are drawn and it answers a click.
-``--pictures docs/images`` keeps what it shows then, and with the form for a real contact.
+docs/measured/explorer.md`` after ``snakemake explorer``. Every opening has a new profile without a
+cache. The page is open when all of its charts are drawn and it reacts to a click.
+``--pictures docs/images`` saves pictures of the page and of its form for a real contact.
 """
 
-import argparse
 import os
 import shutil
 import statistics
@@ -22,7 +21,7 @@ FLAGS = ["--disable-gpu", "--disable-background-networking", "--no-first-run"]
 
 
 def open_once(playwright, path, pictures=None):
-    """Wall and CPU seconds (of the page's main thread) from the request to the last chart."""
+    """Wall time and CPU time of the main thread, in s, from the request to the last chart."""
     with tempfile.TemporaryDirectory() as profile:
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, args=FLAGS, viewport={"width": 1280, "height": 800}
@@ -44,30 +43,28 @@ def open_once(playwright, path, pictures=None):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("page", type=Path)
     parser.add_argument("--times", type=int, default=9)
     parser.add_argument("--pictures", type=Path, help="folder for two pictures of the page")
-    tables.add_markdown(parser)
-    given = parser.parse_args()
+    options = parser.parse_args()
     with sync_playwright() as playwright:
         wall, cpu = zip(
-            *(open_once(playwright, given.page) for _ in range(given.times)), strict=True
+            *(open_once(playwright, options.page) for _ in range(options.times)), strict=True
         )
-        if given.pictures is not None:
-            open_once(playwright, given.page, given.pictures)
+        if options.pictures is not None:
+            open_once(playwright, options.page, options.pictures)
     rows = [
-        ("size (MB), at most 15", f"{given.page.stat().st_size / 1e6:.1f}"),
+        ("size (MB), at most 15", f"{options.page.stat().st_size / 1e6:.1f}"),
         ("wall time (s), at most 3: median", f"{statistics.median(wall):.2f}"),
         ("wall time (s): smallest, largest", f"{min(wall):.2f}, {max(wall):.2f}"),
         ("load average of the machine meanwhile", f"{os.getloadavg()[0]:.1f}"),
         ("cores", f"{os.cpu_count()}"),
         ("CPU time of the page's thread (s): median", f"{statistics.median(cpu):.2f}"),
     ]
-    head = (
-        f"The explorer, opened {given.times} times in Chromium by `benchmarks/explorer_opening.py`."
-    )
-    tables.publish(f"{head}\n\n{tables.measured(rows)}", given)
+    by = "in Chromium by `benchmarks/explorer_opening.py`"
+    head = f"The explorer, opened {options.times} times {by}."
+    tables.publish(f"{head}\n\n{tables.measured(rows)}", options)
 
 
 if __name__ == "__main__":

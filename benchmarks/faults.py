@@ -1,19 +1,18 @@
-"""Do sweeps survive?  Kills, signals and damage at random moments, each followed by a re-run.
+"""Test sweeps with kills, signals and damaged files at random moments, each with a re-run.
 
     python benchmarks/faults.py [--rounds N] [--seed S] [--markdown FILE]
 
-The project is copied to a temporary folder, and the sweeps of config/smoke.yaml are run there once
-undisturbed.  In every round a random part of the results is removed; then Snakemake is killed, with
-its jobs or alone, or gets SIGINT or SIGTERM, or files are damaged.  After one plain re-run (where
-Snakemake says to unlock, that is done first) all files of the results but logs have to be those of
-the undisturbed run, bit for bit, and no point that had been stored before a signal may be lost or
-written again.  Processes are told apart as on Linux.  What a full or read-only disk does is tested
-in tests/sweeps and tests/app.
+The project is copied to a temporary folder, and the sweeps of config/smoke.yaml are run once
+without a fault. Every round removes a random part of the results. Then Snakemake is killed, with
+its jobs or alone, or gets SIGINT or SIGTERM, or files are damaged. The plain re-run unlocks the
+folder first if Snakemake asks for it. Afterwards all results except logs must be equal to those of
+the first run, bit for bit. No point that was stored before a signal may be lost or written again.
+The processes are found as on Linux. Full and read-only disks are tested in tests/sweeps and
+tests/app.
 """
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
 import random
@@ -31,9 +30,9 @@ import tables
 from tqdm import tqdm
 
 ROOT = Path(__file__).parent.parent
-SAYS_UNLOCK = "can be removed with the --unlock argument"
-UNREAD = ("warm_up", "logs")
-"""Folders of results whose content nothing depends on."""
+UNLOCK_MESSAGE = "can be removed with the --unlock argument"
+IGNORED = ("warm_up", "logs")
+"""Folders of results that are not compared."""
 SIGNALS = {
     "SIGKILL, Snakemake and all its jobs": (signal.SIGKILL, True),
     "SIGKILL, Snakemake alone": (signal.SIGKILL, False),
@@ -54,9 +53,9 @@ class Project:
             shutil.copy2(ROOT / name, folder / name)
 
     def start(self, *arguments):
-        """Snakemake at work, in a session of its own so that all its processes can be told."""
+        """Start Snakemake in its own session, so that all its processes can be found."""
         command = [sys.executable, "-m", "snakemake", "-j2", "--configfile", "config/smoke.yaml"]
-        with open(self.folder.parent / "said", "wb") as out:
+        with open(self.folder.parent / "output", "wb") as out:
             return subprocess.Popen(
                 [*command, *arguments],
                 cwd=self.folder,
@@ -68,39 +67,41 @@ class Project:
             )
 
     def run(self, *arguments):
-        """Run Snakemake to its end, after --unlock where it asks for that; what it said if it
-        failed, else empty."""
+        """Run Snakemake to its end, after --unlock if necessary.
+
+        Returns its output if it failed, else an empty string.
+        """
         running = self.start(*arguments)
         wait_for_all(running)
-        said = (self.folder.parent / "said").read_text("utf-8", "replace")
-        if running.returncode and SAYS_UNLOCK in " ".join(said.split()) and not arguments:
+        output = (self.folder.parent / "output").read_text("utf-8", "replace")
+        if running.returncode and UNLOCK_MESSAGE in " ".join(output.split()) and not arguments:
             return self.run("--unlock") or self.run()
-        return said if running.returncode else ""
+        return output if running.returncode else ""
 
     def files(self):
-        """All results by name; not logs, files that were set aside and halves of files."""
+        """All results by name, except logs, damaged files and incomplete files."""
         return {
             path.relative_to(self.results).as_posix(): path
             for path in sorted(self.results.rglob("*"))
             if path.is_file() and path.suffix not in (".damaged", ".part")
-            if path.name != ".again"  # which is another one after each run
-            if path.relative_to(self.results).parts[0] not in UNREAD
+            if path.name != ".again"  # its content changes with each run
+            if path.relative_to(self.results).parts[0] not in IGNORED
         }
 
     def digests(self):
         """SHA-256 of all results by name."""
-        found = self.files().items()
-        return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in found}
+        files = self.files().items()
+        return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files}
 
     def stored(self):
-        """Points and single runs that are there, each with what changes when it is rewritten."""
-        found = self.files().items()
-        kept = {n: path.stat() for n, path in found if n.startswith(("points/", "histories/"))}
-        return {name: (about.st_ino, about.st_mtime_ns) for name, about in kept.items()}
+        """Inode and time of all stored points and single runs, by name."""
+        folders = ("points/", "histories/")
+        stats = {n: path.stat() for n, path in self.files().items() if n.startswith(folders)}
+        return {name: (stat.st_ino, stat.st_mtime_ns) for name, stat in stats.items()}
 
 
 def processes(running):
-    """Numbers of the processes of its session that still run."""
+    """Yield the ids of the running processes in the session of a process."""
     for process in psutil.process_iter():
         with suppress(ProcessLookupError, psutil.NoSuchProcess):
             same = os.getsid(process.pid) == running.pid
@@ -115,7 +116,7 @@ def wait_for_all(running):
 
 
 def damage(path, rng):
-    """Truncate or empty a file, flip a bit of it, or write something else into it."""
+    """Truncate a file, empty it, flip one bit, or replace its content."""
     whole = path.read_bytes()
     flipped = bytearray(whole or b"\0")
     flipped[rng.randrange(len(flipped))] ^= 1 << rng.randrange(8)
@@ -124,7 +125,7 @@ def damage(path, rng):
 
 
 def round_of(project, fault, reference, seconds, rng):
-    """Findings after one fault: a list of sentences, empty if all is as it was."""
+    """Findings after one fault: a list of sentences, empty if all results are unchanged."""
     chosen = rng.choice([1.0, 0.5, 0.2])
     for path in project.files().values():
         if rng.random() < chosen:
@@ -144,37 +145,40 @@ def round_of(project, fault, reference, seconds, rng):
         wait_for_all(running)
         after = project.stored()
         findings += [f"lost or written again: {n}" for n in before if after.get(n) != before[n]]
-    said = project.run()
-    findings += [f"the plain re-run failed: {said[-2000:]}"] if said else []
-    found = project.digests()
-    names = sorted(found.keys() | reference.keys())
-    return findings + [f"not as it was: {n}" for n in names if found.get(n) != reference.get(n)]
+    output = project.run()
+    findings += [f"the plain re-run failed: {output[-2000:]}"] if output else []
+    digests = project.digests()
+    names = sorted(digests.keys() | reference.keys())
+    return findings + [f"changed: {n}" for n in names if digests.get(n) != reference.get(n)]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--rounds", type=int, default=20, help="of each kind of fault")
+    parser = tables.parser_of(__doc__)
+    parser.add_argument(
+        "--rounds", type=int, default=20, help="number of rounds for each kind of fault"
+    )
     parser.add_argument("--seed", type=int, default=1)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         project = Project(Path(folder, "project"))
         for _ in range(2):  # the first one compiles
             shutil.rmtree(project.results, ignore_errors=True)
             started = time.perf_counter()
-            if said := project.run():
-                sys.exit(f"the undisturbed run failed:\n{said}")
+            if output := project.run():
+                sys.exit(f"the run without a fault failed:\n{output}")
         seconds, reference = time.perf_counter() - started, project.digests()
-        rows, all_found = [], []
+        rows, all_findings = [], []
         for fault in (*SIGNALS, DAMAGE):
-            found = []
+            findings = []
             for index in tqdm(range(options.rounds), desc=fault):
                 rng = random.Random(f"{options.seed} {fault} {index}")
-                found += round_of(project, fault, reference, seconds, rng)
-            rows.append({"fault": fault, "times": options.rounds, "findings": len(found) or "none"})
-            all_found += [f"- {fault}: {one}" for one in found]
-    tables.publish("\n".join([tables.markdown(rows), "", *all_found]), options)
-    return int(bool(all_found))
+                findings += round_of(project, fault, reference, seconds, rng)
+            rows.append(
+                {"fault": fault, "times": options.rounds, "findings": len(findings) or "none"}
+            )
+            all_findings += [f"- {fault}: {one}" for one in findings]
+    tables.publish("\n".join([tables.markdown(rows), "", *all_findings]), options)
+    return int(bool(all_findings))
 
 
 if __name__ == "__main__":

@@ -1,14 +1,15 @@
-"""Reference of a point four times as fine, which shares no run with the result that it judges.
+"""Reference of a point on a mesh four times as fine as that of the result that it judges.
 
-It has four times the rings, angles and steps of the result, up to 192 rings or squares, 32 angles
-and 2048 steps in half a period, or twice those of the result.  Each axis is refined by itself, from
-a base that is finer than the first level of any result.  Every periodic state is searched for from
-scratch, to a tenth of the tolerance.  The joint effect of two axes is measured from the base, too.
-The uncertainty is estimated from runs with half of the refinement.  Where a state does not become
-periodic, half of the refinement is taken.
+The reference shares no run with the result. It has four times the rings, angles and steps of the
+result, up to 192 rings or squares, 32 angles and 2048 steps in half a period, and at least twice
+those of the result. Each axis is refined alone, from a base that is finer than the first level of
+any result. The mixed difference of two axes is also computed at the base. Every search for a
+periodic state has a new start and goes to a tenth of the tolerance. The uncertainty is estimated
+from runs with half of the refinement. If a state does not become periodic, half of the refinement
+is used.
 
-A static limit over rings alone scatters about its value, since the edge of the stick zone is
-somewhere within a ring.  There the mean over many numbers of rings is taken.
+A static limit over rings scatters, because the edge of the stick zone lies within a ring. Its
+reference is the mean over many numbers of rings.
 """
 
 from __future__ import annotations
@@ -29,32 +30,32 @@ from microslip.solver.stick_edge import edge_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4
-"""Rings and angles of their reference, and steps in half a period over rings: all are refined
-together."""
+"""Rings and angles of references under an oscillating load, and steps in half a period over rings.
+All three are refined together."""
 STATIC_RINGS = range(160, 513, 32)
-"""Rings of static limits that no march tells."""
+"""Numbers of rings of static limits."""
 ROUNDED = 1e-9
-"""Difference of two torques below which their pressures are one."""
+"""Difference of the torques of full slip below which two pressures count as equal."""
 FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
 LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
 BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
 PEAKED = 48
-"""Rings of the base of rotations under pressures whose peak or edge coarser ones see by chance."""
+"""Rings of the base of rotations under pressures with a peak or a steep edge."""
 MOST = Resolution(192, 32, 2048)
-"""Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
+"""Resolutions (steps in half a period) of the reference: base, and limits of the finest run."""
 PERIODICITY = 0.1
-"""Distance of the reference from its periodic states, over the tolerance."""
+"""Largest distance of the runs of a reference from their periodic states, over the tolerance."""
 
 
 def reference(problem, tolerance, certified):
-    """(mu, uncertainty) four times as fine as the ``certified`` Result."""
+    """(mu, uncertainty) on a mesh four times as fine as that of the Result `certified`."""
     kind = problem.motion
     model = choose_model(replace(problem, velocity=1.0))
     stroke = min(max(problem.stroke, 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
-    # on a loop the limit finds the edges of what sticks by itself, at the resolution of the run
+    # the static limit of a loop determines the edge of its stick zone itself
     by_itself = problem.velocity == 0.0 and not at_turning_points(problem)
     settings = Settings(focus=None if by_itself else edge_focus(problem, model))
 
@@ -72,23 +73,24 @@ def reference(problem, tolerance, certified):
         )
         return fine.mu, abs(fine.mu - coarse.mu)
     if problem.velocity == 0.0 and not by_itself and model == "radial":
-        found = [run(replace(BASE[model], cells=rings)).mu for rings in STATIC_RINGS]
-        scattered = 2.0 * np.std(found, ddof=1) / len(found) ** 0.5
-        trend = abs(np.mean(found[len(found) // 2 :]) - np.mean(found[: len(found) // 2]))
-        return float(np.mean(found)), float(scattered + trend)
+        limits = [run(replace(BASE[model], cells=rings)).mu for rings in STATIC_RINGS]
+        half = len(limits) // 2
+        scatter = 2.0 * np.std(limits, ddof=1) / len(limits) ** 0.5
+        trend = abs(np.mean(limits[half:]) - np.mean(limits[:half]))
+        return float(np.mean(limits)), float(scatter + trend)
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
     if model == "polar" and kind.rotates and abs(problem.pressure.torque - HERTZ.torque) > ROUNDED:
         base = replace(base, cells=PEAKED)
 
-    left = []  # distances from the periodic states
+    distances = []  # from the periodic states
 
     def mean(**changes):
-        found = run(replace(base, **changes))
-        left.append(found.distance)
-        return found.mu
+        solved = run(replace(base, **changes))
+        distances.append(solved.distance)
+        return solved.mu
 
     def settled(axis, finest):
-        """The finest count along an axis, by halves, whose state becomes periodic."""
+        """The largest of finest, finest/2, ... along an axis with a periodic state."""
         while finest > 2 * getattr(base, axis):
             if run(replace(base, **{axis: finest})).converged:
                 break
@@ -112,4 +114,4 @@ def reference(problem, tolerance, certified):
         one, other = (mean(**{axis: count}) for axis, count in twice.items())
         mixed = mean(**twice) - one - other + at_base
         mu, uncertainty = mu + mixed, uncertainty + 0.5 * abs(mixed)
-    return at_base + mu, uncertainty + max(left)
+    return at_base + mu, uncertainty + max(distances)

@@ -1,4 +1,4 @@
-"""How long the first run of the workflow takes, when nothing is compiled and nothing is solved.
+"""Time of the first run of the workflow, without compiled code and stored results.
 
     python benchmarks/first_run.py [--cores N] [--markdown FILE]
 
@@ -7,7 +7,6 @@ Runs the default configuration in an empty folder with an empty cache of compile
 
 from __future__ import annotations
 
-import argparse
 import os
 import resource
 import subprocess
@@ -27,26 +26,25 @@ STEPS = {
         for kernels in ("rings", "angles")
     ],
     "solve all points, collect and draw": ["all"],
-    "the same again: nothing to do": ["all"],
+    "second run: nothing to do": ["all"],
 }
 
 
 def row(step, targets, folder, cores):
-    """Run some targets; one row of the table."""
+    """Run targets and return one row of the table."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "compiled")}
     environment["PYTHONPATH"] = str(ROOT / "src")
     command = [sys.executable, "-m", "microslip", "sweep", *targets, "--cores", str(cores)]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     subprocess.run(command, cwd=folder, env=environment, check=True, stdout=subprocess.DEVNULL)
-    took, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return {"step": step, "wall clock, s": f"{took:.0f}", "CPU time, s": f"{seconds:.0f}"}
+    return {"step": step, "wall clock, s": f"{wall:.0f}", "CPU time, s": f"{seconds:.0f}"}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("--cores", type=int, default=2)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         rows = [row(*step, Path(place), options.cores) for step in STEPS.items()]

@@ -1,11 +1,10 @@
-"""How the workflow grows: a sweep of very many points, each of them next to nothing to compute.
+"""Time and memory of the workflow for a sweep of very many cheap points.
 
-Run ``python benchmarks/growth.py --points 100000 --markdown docs/measured/growth.md``.  The steady
-bore has closed forms, so that what is measured is the workflow and not the solver: planning,
-storing, collecting, doing nothing, and adding one value to an axis.
+Run ``python benchmarks/growth.py --points 100000 --markdown docs/measured/growth.md``. The steady
+bore has closed forms, so nearly all time is spent in the workflow. Measured are planning, storing
+and collecting, a run with nothing to do, and one more value on an axis.
 """
 
-import argparse
 import re
 import resource
 import subprocess
@@ -23,7 +22,7 @@ VELOCITIES = 1000
 
 
 def configuration(points, per_job, more=0):
-    """A steady bore at 1,000 velocities and as many Poisson's ratios as it takes; more: ratios."""
+    """Configuration of a steady bore at 1,000 velocities; more: number of additional ratios."""
     ratios = -(-points // VELOCITIES)
     poisson = [round(0.5 * k / ratios, 9) for k in range(ratios + more)]
     velocity = {"log": {"start": 0.01, "stop": 100, "count": VELOCITIES}}
@@ -38,13 +37,13 @@ def configuration(points, per_job, more=0):
 
 
 class Project:
-    """The workflow of this tree, run in a folder of its own."""
+    """The workflow of this repository in a separate folder."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
 
     def snakemake(self, *arguments):
-        """Run it on two cores: what it said, seconds, and the largest memory of a process, MB."""
+        """Run the workflow on two cores: output, seconds, largest memory of a process in MB."""
         command = [sys.executable, "-m", "snakemake", "-s", ROOT / "Snakefile", "-j2"]
         command += ["--workflow-profile", ROOT / "profiles/default", "--configfile", "many.yaml"]
         began = time.perf_counter()
@@ -52,27 +51,27 @@ class Project:
             [*command, *arguments], cwd=self.folder, capture_output=True, text=True, check=False
         )
         seconds = time.perf_counter() - began
-        said = done.stdout + done.stderr
+        output = done.stdout + done.stderr
         if done.returncode:
-            sys.exit(said)
+            sys.exit(output)
         largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-        return said, seconds, largest
+        return output, seconds, largest
 
     def computed(self):
-        """Points computed by all jobs of the last run, as their logs tell."""
+        """Number of points that all jobs of the last run computed, from their logs."""
         logs = self.folder.glob("results/logs/solve/continuous_bore/*.log")
         return sum(int(n) for log in logs for n in re.findall(r"(\d+) computed", log.read_text()))
 
 
 def measure(points, per_job):
-    """Rows (what, value) of the table."""
+    """Rows (quantity, value) of the table."""
     with tempfile.TemporaryDirectory() as folder:
         project = Project(folder)
         write = Path(folder, "many.yaml").write_text
         write(yaml.safe_dump(configuration(points, per_job)))
         rows = [("points", f"{points:,}"), ("points a job", f"{per_job:,}")]
         _, seconds, largest = project.snakemake("--dry-run")
-        rows.append(("planning it all (dry run), s", f"{seconds:.1f}"))
+        rows.append(("planning (dry run), s", f"{seconds:.1f}"))
         rows.append(("largest memory while planning, MB", f"{largest:.0f}"))
         _, seconds, largest = project.snakemake()
         rows.append(("all points, dataset and figures, s", f"{seconds:.0f}"))
@@ -82,23 +81,22 @@ def measure(points, per_job):
             assert data.mu_macro.size == points and bool(data.converged.all())
             rows.append(("chunks of a variable", f"{data.mu_macro.data.npartitions}"))
         rows.append(("size of the dataset, MB", f"{dataset.stat().st_size / 1e6:.1f}"))
-        said, seconds, _ = project.snakemake()
-        assert "Nothing to be done" in said
-        rows.append(("the same again, nothing to do, s", f"{seconds:.1f}"))
+        output, seconds, _ = project.snakemake()
+        assert "Nothing to be done" in output
+        rows.append(("second run, nothing to do, s", f"{seconds:.1f}"))
         write(yaml.safe_dump(configuration(points, per_job, more=1)))
         for log in Path(folder).glob("results/logs/solve/continuous_bore/*.log"):
             log.unlink()
         _, seconds, _ = project.snakemake()
         rows.append(("one more Poisson's ratio: new points computed", f"{project.computed():,}"))
-        rows.append(("that run with its collecting, s", f"{seconds:.0f}"))
+        rows.append(("this run with collecting, s", f"{seconds:.0f}"))
         return rows
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("--points", type=int, default=100_000)
     parser.add_argument("--per-job", type=int, default=500)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     rows = measure(options.points, options.per_job)
     head = "# A sweep of many points\n\nMade by `benchmarks/growth.py`.\n\n"

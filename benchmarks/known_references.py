@@ -1,8 +1,8 @@
-"""References of the random points: values that judge error estimates, kept apart from them.
+"""Table of the references of random points.
 
-A reference costs far more than the result that it judges, and does not depend on how estimates are
-made.  So the references in `docs/measured/references-SEED.csv` serve every later state of the
-sources, and other codes for the same contact.  A row holds its point in full.
+A reference is far more expensive than the result that it judges, and does not depend on the error
+estimate. So the references in `docs/measured/references-SEED.csv` also judge later versions of this
+package, and other codes for the same contact. A row contains all arguments of its point.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ COLUMNS = (
     *("motion", "pressure", "poisson", "velocity", "amplitude", "tolerance"),
     *("force", "stiffness", "mass", "contacts"),
 )
-"""Arguments of `microslip.solve` that a point may have."""
+"""Possible arguments of a point."""
 REFERENCE = ("reference", "uncertainty", "by")
-"""The friction, or the velocity under a force, its uncertainty, and the method that gave it."""
+"""Friction, or velocity under a force; its uncertainty; method of the reference."""
 DIGITS = {"reference": ".12f", "uncertainty": ".2e"}
 
 
 def read(path, seed: int) -> dict[int, dict]:
-    """Reference of each point, by its number; a row of another point ends the run."""
+    """References by the number of the point. Ends the run if a row belongs to another point."""
     references = {}
     if not path.exists():
         return references
@@ -38,7 +38,7 @@ def read(path, seed: int) -> dict[int, dict]:
 
 
 def write(path, references: dict[int, dict], seed: int) -> None:
-    """Write references in the order of the points, except those less certain than a tolerance."""
+    """Write references whose uncertainty is at most the tolerance, in the order of the points."""
     points = {k: blind_points.point(seed, k) for k in sorted(references)}
     columns = [name for name in COLUMNS if any(name in point for point in points.values())]
     with path.open("w", encoding="utf-8", newline="") as file:

@@ -1,10 +1,10 @@
-"""How long 10^8 questions to a certified map take, in chunks, and how much memory.
+"""Time and memory of 10^8 queries of a certified map in chunks.
 
     python benchmarks/many_questions.py MAP.nc [--questions N] [--chunk N] [--threads N]
                                         [--markdown FILE]
 
-Velocities, or forces, and amplitudes are random and never in memory as a whole:
-dask makes a chunk of them, asks the map, keeps the sum and the largest error, and forgets them.
+Velocities, or forces, and amplitudes are random and never in memory as a whole. For each chunk dask
+draws them, queries the map, and keeps the sum and the largest error only.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import one_thread  # noqa: F401
 
 # isort: split
 
-import argparse
 import resource
 import time
 from pathlib import Path
@@ -28,7 +27,7 @@ from microslip.datasets import certified_map
 
 
 def questions(dataset, count, chunk):
-    """Random requests by the names of the arguments, in chunks."""
+    """Random arguments of `at` by name, in chunks."""
     across = "force" if certified_map.is_of_drift(dataset) else "velocity"
     draw = dask.array.random.default_rng(3)
     return {
@@ -48,12 +47,11 @@ def memory():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("map", type=Path)
     parser.add_argument("--questions", type=int, default=10**8)
     parser.add_argument("--chunk", type=int, default=10**5)
     parser.add_argument("--threads", type=int, default=1)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     dataset = microslip.open_map(options.map).load()
     drifts = certified_map.is_of_drift(dataset)
@@ -67,15 +65,15 @@ def main():
     seconds = time.process_time() - begun
     rows = [
         ("map", f"{options.map.stem}, {dataset.points} points, {dataset.sizes['cell']} cells"),
-        ("questions", f"{options.questions:.0e}, {options.chunk:.0e} in a chunk"),
+        ("queries", f"{options.questions:.0e}, {options.chunk:.0e} in a chunk"),
         ("threads", options.threads),
         ("CPU seconds", f"{seconds:.0f}"),
-        ("questions in a CPU second", f"{options.questions / seconds:.1e}"),
+        ("queries per CPU second", f"{options.questions / seconds:.1e}"),
         ("largest memory after one chunk, MB", f"{before / 1e6:.0f}"),
         ("largest memory after all, MB", f"{memory() / 1e6:.0f}"),
         ("mean of the answers, largest error", f"{float(mean):.4f}, {float(error):.1e}"),
     ]
-    head = "# Many questions to a certified map\n\nMade by `benchmarks/many_questions.py`."
+    head = "# Many queries of a certified map\n\nMade by `benchmarks/many_questions.py`."
     tables.publish(f"{head}\n\n{tables.measured(rows)}", options)
 
 

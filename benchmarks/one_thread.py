@@ -1,4 +1,4 @@
-"""One thread a process: imported first, before NumPy reads these variables."""
+"""Limit each process to one thread. Import this module before NumPy reads the variables."""
 
 import os
 
@@ -7,6 +7,6 @@ for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):
 
 
 def stay_on_one_core():
-    """Keep the process from moving between cores, where the system can."""
+    """Bind the process to one core, if the system supports this."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})

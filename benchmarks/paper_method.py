@@ -1,20 +1,18 @@
-"""The paper's method beside a certified point, in one process on one core.
+"""Time of the paper's method and of a point with an error estimate, on one core.
 
     python benchmarks/paper_method.py [--steps N] [--repeats N] [--markdown FILE]
 
-The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020): 32 x 32 squares, backward Euler,
-up to 8,000 time steps marched plainly from full forward slip, stresses to 0.1 %.  Here the steps
-are 100 a period, each solved until the tractions are off Coulomb's law by 0.1 % of the total
-friction; the mean is that of the last period.  The certified point: ``microslip.solve`` with an
-error of at most 1e-3 on the same friction.  Both are compiled before the clock starts, take turns,
-and the median of the repeats counts.
+The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020) has 32 x 32 squares, backward Euler,
+up to 8,000 time steps from full forward slip, and stresses to 0.1 %. Here a period has 100 steps.
+Each step is solved until the residual of Coulomb's law is 0.1 % of the total friction. The result
+is the mean over the last period. The certified point is ``microslip.solve`` with an error of at
+most 1e-3. Both are compiled before they are timed and run alternately. The times are medians.
 """
 
 from __future__ import annotations
 
 import one_thread  # isort: split
 
-import argparse
 import time
 from statistics import median
 
@@ -38,7 +36,7 @@ POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Motion and amplitude."""
 VELOCITY = 0.005
 TOLERANCE = 1e-3
-"""Tolerance of the certified point, absolute, on the friction."""
+"""Absolute tolerance of the friction of the certified point."""
 
 
 def timed(function):
@@ -49,7 +47,7 @@ def timed(function):
 
 
 def compare(name, amplitude, steps, repeats):
-    """One row of the table: the two methods in turns, ``repeats`` times."""
+    """One row of the table; the two methods run alternately, ``repeats`` times."""
     contact = CartesianContact(CELLS)
     motion = Problem(motion_named(name), VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
@@ -81,8 +79,8 @@ def compare(name, amplitude, steps, repeats):
         "ratio": step * STEPS / certified_time,
         "mu, paper's method": last_means(march)[0],
         "mu, certified": point.mu_macro,
-        "its error, at most": point.mu_macro_error,
-        "certified?": "yes" if point.converged else f"no: {point.reason}",
+        "its error estimate": point.mu_macro_error,
+        "converged?": "yes" if point.converged else f"no: {point.reason}",
     }
 
 
@@ -91,16 +89,15 @@ def shown(value):
 
 
 def markdown(rows):
-    """The table turned on its side: one column a point."""
+    """Transposed Markdown table with one column for each point."""
     lines = ["| " + " | ".join([key, *(shown(row[key]) for row in rows)]) + " |" for key in rows[0]]
     return "\n".join([lines[0], "|---" * (len(rows) + 1) + "|", *lines[1:]])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--steps", type=int, default=STEPS, help="steps to march and time")
+    parser = tables.parser_of(__doc__)
+    parser.add_argument("--steps", type=int, default=STEPS, help="number of time steps")
     parser.add_argument("--repeats", type=int, default=7)
-    tables.add_markdown(parser)
     args = parser.parse_args()
     if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
         parser.error(f"at least {STEPS_PER_PERIOD} steps (one period) and one repeat")

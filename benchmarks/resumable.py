@@ -1,4 +1,4 @@
-"""Lines of JSON that many points are computed into, one after the other, by several processes."""
+"""Compute many points in several processes into a file of JSON lines, which can be continued."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from pathlib import Path
 
 
 def add_lines(
-    output: Path, lines: dict[int, dict], asked: Iterable[int], jobs_of: Callable, workers: int
+    output: Path, lines: dict[int, dict], numbers: Iterable[int], jobs_of: Callable, workers: int
 ) -> None:
-    """Compute what is asked for and not there, and add it to a file and to its lines.
+    """Compute the missing lines and add them to a file and to `lines`.
 
     Parameters
     ----------
     output : Path
-        File to append to; a line that an interruption cut short there is left alone.
+        File to append to. An incomplete last line stays in it.
     lines : dict
-        By the number k of their points.
-    asked : iterable of int
-        Numbers of the points wanted.
+        Existing lines by the number k of their points.
+    numbers : iterable of int
+        Numbers of the points.
     jobs_of : callable
-        jobs_of(k) -> a function of a module, and what to call it with, for the line of point k.
+        jobs_of(k) -> a function of a module and its arguments; the function returns line k.
     workers : int
-        Processes.
+        Number of processes.
     """
     with ProcessPoolExecutor(workers) as pool, output.open("a") as file:
-        jobs = [pool.submit(*jobs_of(k)) for k in asked if k not in lines]
+        jobs = [pool.submit(*jobs_of(k)) for k in numbers if k not in lines]
         for done, job in enumerate(as_completed(jobs), start=1):
             line = job.result()
             lines[line["k"]] = line

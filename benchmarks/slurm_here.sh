@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# The small sweep through a Slurm of one node on this machine, and the same sweep without Slurm: are
-# the datasets and the points the same, byte for byte?
+# Run the small sweep with Slurm on one node, this machine, and without Slurm, and compare datasets
+# and points byte for byte.
 #
 #     benchmarks/slurm_here.sh [--markdown FILE]
 #
-# Needs Debian's packages slurm-wlm and munge, which root gets installed, and the extra slurm of
-# this package, which goes into the environment of .venv/bin/snakemake (or of another snakemake that
-# the variable SNAKEMAKE names). Slurm runs from a temporary folder on ports of its own, without
-# systemd, accounting and cgroups, and is stopped and removed at the end. A Slurm that is there is
-# left alone. Exits with 0 if all is equal, with 1 if not, with 2 if something is missing.
+# Root gets Debian's packages slurm-wlm and munge installed if they are missing. The extra slurm of
+# this package is installed into the environment of .venv/bin/snakemake, or of the snakemake in the
+# variable SNAKEMAKE. Slurm runs in a temporary folder on separate ports, without systemd, accounting
+# and cgroups, and is stopped and removed at the end. An existing Slurm is not changed. The exit code
+# is 0 if all files are equal, 1 if not, and 2 if a requirement is missing.
 set -euo pipefail
 
 refuse() {
@@ -28,7 +28,7 @@ snakemake=$(realpath -s "$(command -v "$snakemake" || echo "$snakemake")")
 python=$(dirname "$snakemake")/python
 cd "$(dirname "$0")/.."
 
-# What it takes
+# Requirements
 
 programs=(slurmctld slurmd sbatch srun squeue sinfo scontrol scancel munged mungekey)
 PATH=$PATH:/usr/sbin
@@ -54,7 +54,7 @@ stop() {
             sleep 0.2
         done
     fi
-    # Last started, first stopped: slurmd, slurmctld, munged.
+    # Stop in reverse order of the start: slurmd, slurmctld, munged.
     for ((i = ${#daemons[@]} - 1; i >= 0; i--)); do
         kill "${daemons[i]}" 2>/dev/null || true
         wait "${daemons[i]}" 2>/dev/null || true
@@ -104,16 +104,16 @@ SwitchType=switch/none
 ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU_Memory
-# Jobs that take more memory than their rule asks for are ended.
+# Jobs that exceed the memory of their rule are ended.
 JobAcctGatherType=jobacct_gather/linux
 JobAcctGatherFrequency=1
 JobAcctGatherParams=OverMemoryKill
-# Ended jobs stay in the list to the end.
+# Finished jobs stay in the list.
 MinJobAge=86400
 NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=$cpus RealMemory=$memory State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 END
-# The plugin starts srun within a job without any variable that begins with SLURM_.
+# Inside a job the plugin starts srun without variables that begin with SLURM_.
 mkdir "$work/bin"
 cat >"$work/bin/srun" <<END
 #!/bin/sh
@@ -140,7 +140,7 @@ if [ "$state" != idle ]; then
     refuse "Slurm does not start, see above"
 fi
 
-# The same sweep twice
+# The sweep with and without Slurm
 
 read -r load _ </proc/loadavg
 sweep() { # folder, further options
@@ -151,7 +151,7 @@ sweep() { # folder, further options
     seconds=$((SECONDS - started))
 }
 
-# Short intervals: the plugin's own are made for clusters that many share.
+# Short intervals; the defaults of the plugin are for shared clusters.
 sweep slurm --profile profiles/slurm --latency-wait 5 --slurm-status-command squeue \
     --slurm-init-seconds-before-status-checks 2 --seconds-between-status-checks 2
 slurm_seconds=$seconds
@@ -159,9 +159,9 @@ jobs=$(squeue --noheader --states=all --sort=i --format="%T|%M|%m|%C|%l|%k")
 sweep local --jobs "$cpus"
 local_seconds=$seconds
 
-# What came out
+# Results
 
-sums() { # folder: checksums of what the sweep found, by name
+sums() { # folder: checksums of all results by name
     (cd "$work/$1" && find results -name "*.nc" -o -path "*/points/*.json" \
         -o -path "*/histories/*.json" | xargs sha256sum | sort)
 }
@@ -181,9 +181,9 @@ report() {
 print(version(sys.argv[1]))" "$package") |"
     done
     echo
-    echo "One node, $cpus CPUs. Jobs as Slurm has them:"
+    echo "One node, $cpus CPUs. Jobs of Slurm:"
     echo
-    echo "| rule | jobs | completed | CPUs each | memory asked | time asked | longest, s |"
+    echo "| rule | jobs | completed | CPUs each | memory request | time limit | longest, s |"
     echo "| --- | --- | --- | --- | --- | --- | --- |"
     awk -F'|' '
         {
@@ -206,10 +206,10 @@ print(version(sys.argv[1]))" "$package") |"
     echo
     echo "| run | seconds |"
     echo "| --- | --- |"
-    echo "| through Slurm | $slurm_seconds |"
+    echo "| with Slurm | $slurm_seconds |"
     echo "| snakemake --jobs $cpus | $local_seconds |"
     echo
-    echo "Slurm went first. The load of the machine by other work was $load at the start."
+    echo "The run with Slurm was first. The load average at the start was $load."
     echo
     if [ -z "$different" ]; then
         echo "Equal, byte for byte: $(count '\.nc$') datasets, $(count /points/) points," \

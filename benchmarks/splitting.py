@@ -1,9 +1,9 @@
-"""Iterations of the step solvers of microslip.contacts at other values of their constants.
+"""Iterations of the step solvers of microslip.contacts for several values of their constants.
 
     PYTHONPATH=src python benchmarks/splitting.py
 
-One line a constant, value and contact: iterations of a step in the mean over the search for the
-periodic state, on few and on many rings, in bores, and on squares.
+The tables show the mean number of iterations in a step during the search for the periodic state,
+for each value of a constant, on few and many rings, in bores, and on squares.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ CONTACTS = {
 
 
 def iterations(motion, model, resolution):
-    """Mean iterations of a step over the points."""
+    """Mean number of iterations in a step over the points."""
     runs = [
         simulate(Problem(motion_named(motion), *point, 0.0), model, resolution, 1e-5)
         for point in POINTS
@@ -39,7 +39,7 @@ def iterations(motion, model, resolution):
 
 
 def table(name, values, set_value, contacts):
-    """Print the iterations at each value of a constant."""
+    """Print the iterations for each value of a constant."""
     print(f"{name:20s}" + "".join(f"{contact:>16s}" for contact in contacts))
     for value in values:
         set_value(value)
@@ -59,7 +59,7 @@ def main():
     balanced(12)
 
     def ratio(value):
-        """Penalties of which each is so many times the one before; 1: one penalty for all steps."""
+        """Set the ratio of consecutive penalties; 1: one penalty for all steps."""
         penalties = value ** (np.arange(4) - 1.5)
         for module in (splitting, rings, angular_modes):
             module.PENALTIES = penalties

@@ -1,11 +1,12 @@
-"""How friction falls to its static limit: certified points at falling velocities.
+"""Approach of friction to its static limit at decreasing velocities.
 
     python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
 
-One table for each motion and amplitude: velocity, mu_macro, its certificate, the excess over the
-closed form of the limit (theory.static_limit_*), and the local exponent p of excess ~ velocity^p
-between this velocity and the one above it, where both excesses are large against the certificates.
-Transverse and bore, nu = 0; the smaller the tolerance, the further down the exponent can be seen.
+Each motion (transverse and bore, nu = 0) and amplitude has a table with velocity, mu_macro, its
+error estimate and its excess over the closed form of the limit. The last column is the local
+exponent p of excess ~ velocity^p between a velocity and the next larger one. It is empty where an
+excess is not much larger than its error estimate. Smaller tolerances show the exponent at smaller
+velocities.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import one_thread  # noqa: F401
 
 # isort: split
 
-import argparse
 import math
 import sys
 
@@ -26,11 +26,11 @@ from microslip.theory.catalogue import FORMS, STATIC
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
 CERTAIN = 5.0
-"""Excess over certificate from which an exponent is worth printing."""
+"""Smallest excess over its error estimate for which an exponent is printed."""
 
 
 def exponent(points, limit):
-    """Local exponent between the last two of ``points``, or None where errors hide it."""
+    """Local exponent between the last two points, or None if it is less certain than CERTAIN."""
     if len(points) < 2:
         return None
     excess = [point.mu_macro - limit for point in points[-2:]]
@@ -44,10 +44,13 @@ def exponent(points, limit):
 
 
 def table(motion, amplitude, tolerance):
-    """Markdown lines for one motion and amplitude."""
+    """Markdown lines of the table of one motion and amplitude."""
     limit = float(FORMS[motion][STATIC].function(amplitude))
     lines = [f"{motion}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
-    lines += ["| velocity | mu_macro | certificate | excess | exponent |", "|---|---|---|---|---|"]
+    lines += [
+        "| velocity | mu_macro | error estimate | excess | exponent |",
+        "|---|---|---|---|---|",
+    ]
     points = []
     for velocity in VELOCITIES:
         point = microslip.solve(motion, velocity, amplitude, tolerance=tolerance)
@@ -66,9 +69,8 @@ def table(motion, amplitude, tolerance):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("--tolerance", type=float, default=1e-4)
-    tables.add_markdown(parser)
     options = parser.parse_args()
     lines = []
     for motion, amplitudes in AMPLITUDES.items():

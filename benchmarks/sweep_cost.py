@@ -1,4 +1,4 @@
-"""Cost of the points of a configuration, in one process on one core, compiled beforehand.
+"""CPU time of the points of a configuration, in one process on one core, without compilation.
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 
@@ -13,7 +13,6 @@ import one_thread  # noqa: F401
 
 # isort: split
 
-import argparse
 import time
 from itertools import groupby, product
 from pathlib import Path
@@ -58,7 +57,7 @@ def cost(sweep):
 
 
 def cost_beside(configuration, name):
-    """Rows of the single runs beside a sweep, and of every 20th period behind its map."""
+    """Rows of the single runs of a sweep, and of every 20th period of its map."""
     requests = batches.history_requests(configuration, name)
     if name in explorer.maps_of(configuration):
         requests += explorer.period_requests(configuration, name)[::20]
@@ -77,7 +76,7 @@ def cost_beside(configuration, name):
 
 
 def columns_of(seconds):
-    """The columns of a row that hold times; seconds: of each point."""
+    """Columns with times; seconds: CPU time of each point, shape (n,)."""
     return {
         "solver time, s": f"{np.sum(seconds):.1f}",
         "mean, ms": f"{1e3 * np.mean(seconds):.1f}",
@@ -87,9 +86,8 @@ def columns_of(seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = tables.parser_of(__doc__)
     parser.add_argument("--config", type=Path, default=Path("config/config.yaml"))
-    tables.add_markdown(parser)
     options = parser.parse_args()
     microslip.warm_up()
     configuration = load.load(options.config)

@@ -1,4 +1,4 @@
-"""How the documentation is built: sphinx-build -W -n docs build/docs. It needs no network."""
+"""Configuration of the documentation: sphinx-build -W -n docs build/docs. Needs no network."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ author = "the developers of microslip"
 version = release = microslip.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "offline_math", "plain_docstrings"]
-extensions += ["sphinx.ext.napoleon"]  # after plain_docstrings, which leaves sections to it
+extensions += ["sphinx.ext.napoleon"]  # after plain_docstrings, which does not process sections
 root_doc = "index"
 exclude_patterns = ["_ext"]
 nitpicky = True
@@ -27,7 +27,7 @@ html_math_renderer = "mathml"
 napoleon_google_docstring = False
 napoleon_use_param = napoleon_use_rtype = False
 napoleon_use_ivar = True
-# Types are words as well: "callable or None".
+# Types are also words, such as "callable or None".
 nitpick_ignore_regex = [("py:class", r"(?!microslip).*")]
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
@@ -40,8 +40,8 @@ html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["microslip.css"]
 
-# Files outside this folder that links lead to, with the pages that include them. The links as they
-# stand are for readers of the plain files.
+# Linked files outside this folder, and the pages that include them. The links in the sources are
+# correct for readers of the plain files.
 INCLUDED = {
     "../README.md": "index.md",
     "../CONTRIBUTING.md": "how-to/contributing.md",
@@ -50,7 +50,7 @@ INCLUDED = {
 
 
 def _adapt(app, name, source):
-    if name.startswith("measured/"):  # what benchmarks write has no title
+    if name.startswith("measured/"):  # the output of benchmarks has no title
         source[0] = f"# Measured: {name.split('/')[1].replace('_', ' ')}\n\n" + source[0]
     folder = Path(name).parent
     for file, page in INCLUDED.items():
@@ -63,7 +63,7 @@ def setup(app):
 
 
 def _lexers():
-    """Snakefiles are Python with a few more words, and tables are plain text."""
+    """Register lexers: Snakefiles as Python, tables as plain text."""
     from pygments.lexers.python import PythonLexer
     from pygments.lexers.special import TextLexer
     from sphinx.highlighting import lexers

@@ -1,6 +1,6 @@
 """Tables of all keys of a configuration for config/README.md, from microslip.config.settings.
 
-``python docs/make_configuration_tables.py config/README.md`` updates them.
+``python docs/make_configuration_tables.py config/README.md`` replaces the tables.
 """
 
 import json
@@ -31,16 +31,16 @@ SECTIONS = {
     "`propulsion`: a motion": "SelfPropelledMotion",
     "`claims`": "Claims",
 }
-"""Models by the headings of their tables."""
+"""Pydantic models of the tables by heading."""
 COMMON = "SteadySweep"
-"""Model whose keys all sweeps have; the tables of other sweeps list further keys only."""
+"""Model with the common keys of all sweeps; tables of other sweeps list their further keys."""
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 LONGEST = 100
 """Largest number of characters of a default in a table."""
 
 
 def tables() -> str:
-    """Tables of all SECTIONS, in Markdown."""
+    """Markdown of all tables in SECTIONS."""
     return "\n".join(line for title, name in SECTIONS.items() for line in _section(title, name))
 
 
@@ -67,7 +67,7 @@ def _default(key: str, inner: dict[str, Any], rule: dict[str, Any]) -> str:
 
 
 def main(path: str) -> None:
-    """Replace the tables between BEGIN and END in a file."""
+    """Replace the tables between the marks in a file."""
     text = Path(path).read_text(encoding="utf-8")
     marked = f"{BEGIN}\n{tables()}\n\n{END}"
     new = re.sub(f"{BEGIN}.*{END}", lambda _: marked, text, flags=re.DOTALL)

@@ -1,6 +1,6 @@
-"""Formulas as MathML, which browsers draw by themselves: no script, no font, no network.
+"""Formulas as MathML, which browsers render without scripts, fonts or a network.
 
-The translation is that of docutils, on which Sphinx stands.
+Docutils translates the formulas.
 """
 
 import re
@@ -15,7 +15,7 @@ def _mathml(node, as_block):
         drawn = tex2mathml(node.astext(), as_block=as_block)
     except MathError as error:
         raise ExtensionError(f"formula {node.astext()!r}: {error}") from error
-    # Bars around a value: as high as a letter, and close to it.
+    # Absolute-value bars have the height of a letter and no space around them.
     return re.sub(r"<mo[^>]*>\|</mo>", '<mo stretchy="false" lspace="0" rspace="0">|</mo>', drawn)
 
 

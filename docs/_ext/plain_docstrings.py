@@ -1,7 +1,7 @@
-"""Docstrings as the package writes them, "name: what it is; other: what that is", as lists.
+"""Convert entries of docstrings, "name: description; other: description", to lists.
 
-A name counts if it is a parameter of the function or a field of the dataclass, so that prose with a
-colon in it stays prose.
+A name must be a parameter of the function or a field of the dataclass. Other text with a colon is
+not changed.
 """
 
 import dataclasses
@@ -10,7 +10,7 @@ import re
 
 
 def _names(what, obj):
-    """What a docstring may describe as ``name: ...``."""
+    """Names that a docstring can describe as ``name: ...``."""
     if dataclasses.is_dataclass(obj):
         return [field.name for field in dataclasses.fields(obj)]
     try:
@@ -20,7 +20,7 @@ def _names(what, obj):
 
 
 def _paragraphs(lines):
-    """Texts of one line each; indented ones stay as they are."""
+    """Yield (text, plain) of paragraphs. Plain paragraphs become one line, others are unchanged."""
     for block in "\n".join(lines).split("\n\n"):
         if block.strip():
             plain = not block.startswith(" ") and not re.search(r"^( {2,}|[-*|] )", block, re.M)
@@ -28,18 +28,18 @@ def _paragraphs(lines):
 
 
 def _as_list(text, names):
-    """Lines for a paragraph; its entries in a list, what returns or raises in lines of its own."""
+    """Lines of a paragraph, with a list of its entries and own lines for results and errors."""
     name = "|".join(sorted(map(re.escape, names), key=len, reverse=True)) or "(?!)"
     group = rf"(?:{name})(?: (?:>=?|<=?) [\d.]+)?(?: \([^()]*\))?"
     many = rf"{group}(?:,? (?:and )?{group})*"
     parts = re.split(rf"(?:^|(?<=[;.]) )({many}): ", text)
     out = [parts[0], ""] if parts[0] else []
     last = len(parts) // 2 - 1
-    for number, (given, entry) in enumerate(zip(parts[1::2], parts[2::2], strict=True)):
-        # What follows the last entry is about all of them.
+    for number, (names_of_entry, entry) in enumerate(zip(parts[1::2], parts[2::2], strict=True)):
+        # Text after the last entry belongs to all entries.
         words = "[A-Z]" if number == last else "(?:Returns?|Raises|Allowed) "
         entry, *after = re.split(rf"(?<=\.) (?={words})", entry, maxsplit=1)
-        out.append(f"- **{given}**: {entry.rstrip(';. ')}")
+        out.append(f"- **{names_of_entry}**: {entry.rstrip(';. ')}")
         if after:
             out += ["", *after, ""]
     return [*out, ""]
@@ -48,7 +48,7 @@ def _as_list(text, names):
 def _process(app, what, name, obj, options, lines):
     names, out = _names(what, obj), []
     for text, plain in _paragraphs(lines):
-        # Single backticks stand for code; a bar and two stars for themselves.
+        # Single backticks mark code; bars and double stars are escaped.
         text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", text)
         text = re.sub(r"\||\*\*(?=\w)" if plain else r"\*\*(?=\w)", r"\\\g<0>", text)
         out += _as_list(text, names) if plain else [*text.split("\n"), ""]
@@ -56,7 +56,7 @@ def _process(app, what, name, obj, options, lines):
 
 
 def _signature(app, what, name, obj, options, signature, result):
-    """Records are made by the package: what counts is their fields, which are listed below."""
+    """Omit the signature of dataclasses, whose fields are listed below."""
     return ("", None) if dataclasses.is_dataclass(obj) else (signature, result)
 
 

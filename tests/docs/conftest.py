@@ -1,4 +1,4 @@
-"""Option of the tests of the pages."""
+"""Command-line option of the tests of the documentation."""
 
 import pytest
 
@@ -7,5 +7,5 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--rewrite",
         action="store_true",
-        help="write what the blocks of the pages print now into the pages",
+        help="write the present output of the blocks into the pages",
     )

@@ -1,12 +1,13 @@
-"""The documentation: its code runs, says what it is said to say, its links lead somewhere.
+"""The documentation: its code runs and prints the text of the pages, and its links exist.
 
-Blocks of a page run one after the other in a folder that looks like a clone with results in it:
-python in one namespace, sh by bash, yaml is checked as a configuration or a part of one. A block
-whose first line is a comment with the name of a file is written to it. A text block is what the
-block before it prints: the same words, and numbers as close as they are printed.
+Blocks of a page run in their order, in a folder that contains the files of a clone and results.
+Python blocks share one namespace, sh blocks are run by bash, and yaml blocks are checked as a
+configuration or a part of one. A block whose first line is a comment with a file name is written to
+this file. A text block is the output of the block before it: equal words, and numbers equal to the
+printed digits.
 
-`pytest -n 0 tests/docs/test_docs.py --rewrite` writes what is printed now into the text blocks that
-differ by more, for `git diff docs` to be looked at.
+`pytest -n 0 tests/docs/test_docs.py --rewrite` replaces the text blocks that differ; check the
+changes with `git diff docs`.
 """
 
 import contextlib
@@ -58,18 +59,17 @@ LONG_PAGES = (
     "docs/how-to/force_and_spring.md",
     "docs/tutorials/datasets.md",
 )
-"""Pages whose code takes several seconds, but for those that a newcomer reads first."""
+"""Pages whose code takes several seconds, except those for newcomers."""
 OPEN_A_SWEEP = ("README.md", "docs/how-to/workflow.md")
-"""Other pages that open a dataset, which is the sweep `transverse`."""
+"""Other pages that open the dataset of the sweep `transverse`."""
 SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
 
 INSTALLS = "installs packages; .ci/run does this in a new environment"
 FULL = "the full sweeps take minutes; .ci/run and tests run the same rules on small ones"
 SMALL = "about a minute of computing; tests of the workflow make it for smaller configurations"
-BENCHMARK = "minutes to hours; nobody runs it but who wants the numbers of the page"
+BENCHMARK = "takes minutes to hours; it makes the numbers of the page"
 CLUSTER = "needs a cluster or a cloud; not run"
-# Blocks that are not run, by page and first line: why not, and where they are.
 NOT_RUN = {
     ("README.md", "python3 -m venv .venv && "): f"{INSTALLS}, and its sweeps are {FULL}",
     ("README.md", '.venv/bin/pip install -e ".[test]"'): "these tests; the last line of .ci/run",
@@ -102,29 +102,30 @@ NOT_RUN = {
         ".venv/bin/pip install snakemake-executor-plugin-kubernetes",
     ): CLUSTER,
 }
+"""Reason for not running a block, by its page and the start of its first line."""
 
 Block = namedtuple("Block", "kind text line")
 
 
 def blocks(page):
     """Fenced blocks of a page, in their order."""
-    found, start = [], None
+    fenced, start = [], None
     for number, line in enumerate((ROOT / page).read_text(encoding="utf-8").split("\n"), 1):
         fence = re.match(r" {0,3}(`{3,})(.*)$", line)
         if start is None and fence:
             start, kind, text = fence[1], fence[2].strip(), []
             where = number
         elif start is not None and fence and fence[1] == start and not fence[2].strip():
-            found.append(Block(kind, "\n".join(text) + "\n", where))
+            fenced.append(Block(kind, "\n".join(text) + "\n", where))
             start = None
         elif start is not None:
             text.append(line)
     assert start is None, f"{page}:{where}: a block without an end"
-    return found
+    return fenced
 
 
 def file_of(block):
-    """The file that a block is the content of, if its first line says so."""
+    """Name of the file of a block, if its first line contains one."""
     named = re.match(r"# ([\w./-]+\.(?:py|yaml|smk|csv))\n", block.text)
     return named and named[1]
 
@@ -145,17 +146,17 @@ def tutorial_configuration():
 
 
 def write_sweeps(folder, names):
-    """Compute sweeps that the tutorial is about and write their datasets to a folder `results`.
+    """Compute sweeps of the tutorial and write their datasets to a folder `results`.
 
-    They stand in for those of the full sweeps, too: results/transverse.nc and so on.
+    The datasets also replace those of the full sweeps, such as results/transverse.nc.
     """
-    given = tutorial_configuration()
-    place = folder / Path(given.results).relative_to("results")
+    configuration = tutorial_configuration()
+    place = folder / Path(configuration.results).relative_to("results")
     store = Store(place)
     for name in names:
-        grid = given.sweeps[name]
+        grid = configuration.sweeps[name]
         points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
-        settings = given.of_sweep(name)
+        settings = configuration.of_sweep(name)
         sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
         shutil.copy(place / f"{name}.nc", folder)
     return store
@@ -163,7 +164,7 @@ def write_sweeps(folder, names):
 
 @pytest.fixture(scope="session")
 def empty(tmp_path_factory):
-    """A folder `results` with nothing in it."""
+    """An empty folder `results`."""
     folder = tmp_path_factory.mktemp("docs") / "results"
     folder.mkdir()
     return folder
@@ -171,7 +172,7 @@ def empty(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def with_a_sweep(tmp_path_factory):
-    """A folder `results` with the sweep that most lines open."""
+    """A folder `results` with the sweep `transverse`."""
     folder = tmp_path_factory.mktemp("docs") / "results"
     write_sweeps(folder, ["transverse"])
     return folder
@@ -179,28 +180,28 @@ def with_a_sweep(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def computed(tmp_path_factory):
-    """A folder `results` with all datasets that pages open."""
+    """A folder `results` with all datasets of the pages."""
     folder = tmp_path_factory.mktemp("docs") / "results"
     store = write_sweeps(folder, tutorial_configuration().sweeps)
     # coarse, so that it takes seconds
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
-    found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, found))
-    # made up, so that it takes nothing
+    records = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
+    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
+    # without computation
     certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder
 
 
 def make_place(page, folder, results):
-    """What a clone looks like from its top folder, with results in it."""
+    """Fill a folder like a clone with results, and return its environment."""
     for name in SHARED:
         shutil.copy(ROOT / name, folder)
     for name in SHARED_FOLDERS:
         (folder / name).symlink_to(ROOT / name)
     changes_sources = any((file_of(b) or "").startswith("src/") for b in blocks(page))
     if changes_sources:
-        # With what Numba has compiled, which belongs to the time stamps of the files.
+        # The copy keeps the time stamps, so that the compiled code of Numba is valid.
         shutil.copytree(ROOT / "src", folder / "src")
     else:
         (folder / "src").symlink_to(ROOT / "src")
@@ -217,7 +218,7 @@ def make_place(page, folder, results):
 
 
 def make_scripts(folder):
-    """The commands of this environment; those of Python are forks of one that has its libraries."""
+    """Write the commands of this environment; those of Python fork a process with all libraries."""
     own = Path(sysconfig.get_path("scripts"))
     python = job_server.python(tuple(sorted(ENVIRONMENT.items())))
     folder.mkdir(parents=True)
@@ -233,7 +234,9 @@ def make_scripts(folder):
 
 
 def run_python(block, page, namespace, environment):
-    if environment.get("PYTHONPATH") == "src":  # a copy, which this process has not loaded
+    if (
+        environment.get("PYTHONPATH") == "src"
+    ):  # a copy of the package that this process has not imported
         return run_command([sys.executable, "-c", block.text], page, block, environment)
     said = io.StringIO()
     code = compile("\n" * block.line + block.text, page, "exec")
@@ -249,7 +252,7 @@ def run_command(command, page, block, environment):
 
 
 def run_snakefile(block, page, environment):
-    """A workflow that is used as a module is planned, with the configurations of the page."""
+    """Plan a workflow that uses ours as a module, with the configurations of the page."""
     Path("Snakefile").unlink()
     Path("Snakefile").write_text(block.text)
     command = ["snakemake", "--dry-run", "--quiet", "--cores", "1", "--configfile", "outer.yaml"]
@@ -257,20 +260,19 @@ def run_snakefile(block, page, environment):
 
 
 def check_yaml(block):
-    """A configuration, or what takes the place of the same keys in the default one."""
-    given = yaml.safe_load(block.text)
-    if "friction" in given:  # that of a module
-        given = given["friction"]
+    """Check a configuration, or a part of one that replaces keys of the default configuration."""
+    part = yaml.safe_load(block.text)
+    part = part.get("friction", part)  # the key of a module
     whole = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
     try:
-        load.from_mapping(given, folders=[ROOT / "config"])
+        load.from_mapping(part, folders=[ROOT / "config"])
     except load.ConfigError:
-        for name, part in given.items():
+        for name, section in part.items():
             sweeps = name == "sweeps"
-            for key, value in part.items() if isinstance(part, dict) else ():
+            for key, value in section.items() if isinstance(section, dict) else ():
                 whole[name][key] = {**whole[name][key], **value} if sweeps else value
-            if not isinstance(part, dict):
-                whole[name] = part
+            if not isinstance(section, dict):
+                whole[name] = section
         load.from_mapping(whole, folders=[ROOT / "config"])
 
 
@@ -278,7 +280,7 @@ NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
 def assert_said(said, expected, where):
-    """The same words, and numbers within 1 % or one and a half of the last digit printed."""
+    """Assert equal words, and numbers within 1 % or 1.5 units of the last printed digit."""
     assert NUMBER.sub("#", said).split() == NUMBER.sub("#", expected).split(), f"{where}: {said}"
     for new, old in zip(NUMBER.findall(said), NUMBER.findall(expected), strict=True):
         digits = re.sub(r"e.*", "", old)
@@ -289,7 +291,7 @@ def assert_said(said, expected, where):
 
 
 def rewrite(page, printed):
-    """Put other text into blocks of a page; printed: the texts by the lines of the blocks."""
+    """Replace blocks of a page; printed: new texts by the lines of the blocks."""
     lines = (ROOT / page).read_text(encoding="utf-8").split("\n")
     for block in reversed(blocks(page)):
         if block.line in printed:
@@ -299,7 +301,7 @@ def rewrite(page, printed):
 
 
 def opens(page):
-    """The fixture that makes the results that a page opens, and how long its test takes."""
+    """Parameters of the test of a page: its fixture with results, and the mark of its duration."""
     if page in LONG_PAGES:
         return pytest.param(page, "computed", marks=pytest.mark.long, id=page)
     if page in OPEN_A_SWEEP:
@@ -332,7 +334,7 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
         elif block.kind == "snakemake":
             said = run_snakefile(block, page, environment)
         elif block.kind == "text":
-            assert said is not None, f"{where}: nothing was run that could print this"
+            assert said is not None, f"{where}: no block before it prints text"
             try:
                 assert_said(said, block.text, where)
             except AssertionError:
@@ -340,16 +342,16 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
                     raise
                 printed[block.line] = said
         else:
-            assert file or block.kind.startswith("{"), f"{where}: a block of a kind not known here"
+            assert file or block.kind.startswith("{"), f"{where}: unknown kind of block"
     if printed:
         rewrite(page, printed)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page != "CONTRIBUTING.md"])
 def test_no_page_has_code_that_is_not_fenced(page):
-    """Indented blocks would go by unseen. (One page has a diagram and a formula.)"""
-    found = re.search(r"\n\n {4,}\S.*", prose(page))
-    assert not found, f"{page}: {found[0].strip()}"
+    """No test runs indented blocks. (CONTRIBUTING.md has a diagram and a formula.)"""
+    indented = re.search(r"\n\n {4,}\S.*", prose(page))
+    assert not indented, f"{page}: {indented[0].strip()}"
 
 
 def test_what_is_not_run_is_there_and_names_what_there_is():
@@ -357,12 +359,12 @@ def test_what_is_not_run_is_there_and_names_what_there_is():
     for page, start in NOT_RUN:
         if not (ROOT / page).exists():
             continue
-        found = [block for block in blocks(page) if block.text.startswith(start)]
-        assert len(found) == 1, f"{page}: {len(found)} blocks start with {start!r}"
-        for name in re.findall(r"\b(?:benchmarks|config|profiles|docs)/[\w./]+", found[0].text):
+        skipped = [block for block in blocks(page) if block.text.startswith(start)]
+        assert len(skipped) == 1, f"{page}: {len(skipped)} blocks start with {start!r}"
+        for name in re.findall(r"\b(?:benchmarks|config|profiles|docs)/[\w./]+", skipped[0].text):
             assert (ROOT / name).exists(), f"{page}: {name}"
-        script = re.search(r"benchmarks/\w+\.py", found[0].text)
-        for option in re.findall(r"--\w[\w-]*", found[0].text) if script else ():
+        script = re.search(r"benchmarks/\w+\.py", skipped[0].text)
+        for option in re.findall(r"--\w[\w-]*", skipped[0].text) if script else ():
             assert option in (ROOT / script[0]).read_text(), f"{page}: {option}"
 
 
@@ -370,13 +372,13 @@ def test_what_is_not_run_is_there_and_names_what_there_is():
 
 
 def prose(page):
-    """A page without its blocks."""
+    """Text of a page without its blocks."""
     text = (ROOT / page).read_text(encoding="utf-8")
     return re.sub(r"^(`{3,}).*?^\1$", "", text, flags=re.M | re.S)
 
 
 def anchors(page):
-    """Names that headings of a page can be linked by."""
+    """Yield the anchors of the headings of a page."""
     for heading in re.findall(r"^#+ +(.*)$", prose(page), re.M):
         yield re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
@@ -394,7 +396,7 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors(there.relative_to(ROOT)), f"{page}: {target}"
 
 
-# Tables and lists that the package knows, too
+# Tables and lists of the pages against those of the package
 
 
 def table(page, first):
@@ -409,11 +411,15 @@ def table(page, first):
 
 
 def test_the_guide_to_the_workflow_lists_all_variables():
-    known = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
-    known |= {name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()}
-    known |= {name: (known[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()}
+    variables = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
+    variables |= {
+        name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()
+    }
+    variables |= {
+        name: (variables[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()
+    }
     assert table("docs/how-to/workflow.md", "variable") == [
-        [name, text.replace("|", "\\|")] for name, (_, text) in known.items()
+        [name, text.replace("|", "\\|")] for name, (_, text) in variables.items()
     ]
 
 
@@ -430,7 +436,7 @@ def test_every_model_every_figure_and_every_public_name_has_its_place():
 
 
 class Loaded(HTMLParser):
-    """What a browser fetches by itself to show a page."""
+    """Addresses that a browser loads to show a page."""
 
     def __init__(self, text):
         super().__init__()
@@ -438,11 +444,13 @@ class Loaded(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
-        given = dict(attrs)
-        passive = tag == "a" or (tag == "link" and given.get("rel") in ("next", "prev", "index"))
+        attributes = dict(attrs)
+        passive = tag == "a" or (
+            tag == "link" and attributes.get("rel") in ("next", "prev", "index")
+        )
         for name in ("src", "srcset", "data", "poster", "href"):
-            if not passive and given.get(name):
-                self.addresses.append(given[name])
+            if not passive and attributes.get(name):
+                self.addresses.append(attributes[name])
 
 
 @pytest.mark.long

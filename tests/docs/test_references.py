@@ -1,4 +1,4 @@
-"""References in docs/measured: of their sample, within proved bounds, and estimates beside them."""
+"""References in docs/measured: their points, proved bounds, and error estimates."""
 
 import sys
 from collections import Counter
@@ -22,12 +22,12 @@ PROVED = {
     "longitudinal": bounds.largest_drop_longitudinal,
 }
 LEAST = 24
-"""Points of a kind that are cheap to solve, spread over the table."""
+"""Number of cheap points that are solved."""
 
 
 @cache
 def module(name):
-    """A module of the folder of benchmarks, which no package holds."""
+    """A module of the folder of benchmarks."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(ROOT / "benchmarks")
         __import__(name)
@@ -36,7 +36,7 @@ def module(name):
 
 @pytest.fixture(scope="module", params=SEEDS)
 def sample(request):
-    """(point, reference) of every row of a table."""
+    """List of (point, reference) of a table."""
     blind_points = module("blind_points")
     path = MEASURED / f"references-{request.param}.csv"
     references = module("known_references").read(path, request.param)
@@ -72,9 +72,9 @@ def test_estimates_cover_the_differences_from_them(sample):
         and (point["poisson"], point["tolerance"]) == (0.0, 1e-2)
         and not DRIVES & point.keys()
     ]
-    tried = cheap[:: len(cheap) // LEAST]
-    assert len(tried) >= LEAST
-    for point, reference in tried:
+    solved = cheap[:: len(cheap) // LEAST]
+    assert len(solved) >= LEAST
+    for point, reference in solved:
         arguments = {name: value for name, value in point.items() if name != "stratum"}
         result = microslip.solve(**arguments)
         assert result.converged, point

@@ -1,4 +1,4 @@
-"""Numbers of the claims against independent ones: quadrature, other models, the solver itself."""
+"""Numbers of the claims against quadrature, other models and the solver."""
 
 import math
 
@@ -19,7 +19,7 @@ from microslip.theory import paper as theory
 
 
 def integral(share, stick_radius):
-    """Load inside a radius, each ring weighted by a share of its bound."""
+    """Integral of share times friction bound over the area inside a radius."""
     value, _ = quad(
         lambda r: 2 * math.pi * r * float(hertz.friction_bound(r)) * share(r),
         0,
@@ -35,7 +35,7 @@ def integral(share, stick_radius):
     [("transverse", 0.25), ("transverse", 0.75)] + [("bore", a) for a in (0.5, 1.0, 2.0)],
 )
 def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(motion, amplitude):
-    """The shares that the figure shows against a run that knows no closed form."""
+    """The remaining shares of the figure agree with a run that uses no closed form."""
     radius = {"transverse": theory.stick_radius_transverse, "bore": theory.bore_stick_radius}[
         motion
     ]
@@ -63,7 +63,7 @@ def test_all_is_used_in_the_slip_ring_and_less_inside(motion):
 def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
     radius = float(theory.bore_stick_radius(amplitude))
     share = integral(lambda r: 2 / math.pi * math.acos(hertz.lubkin_share(r, radius)), radius)
-    # what is left out is of the order of c^2 ln c
+    # the neglected terms are of the order c^2 ln c
     allowed = 3 * radius**2 * abs(math.log(radius))
     assert float(static_limits.asymptote(amplitude)) == pytest.approx(share, rel=allowed + 1e-6)
 
@@ -89,7 +89,7 @@ def test_gaps_are_the_largest_on_the_curves():
     assert at == pytest.approx(amplitude[gap.argmax()], abs=2e-3)
 
 
-# The two kinds of results that only this study asks for
+# Single runs and periods
 
 
 def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody(tmp_path):
@@ -124,7 +124,7 @@ def test_patches_are_shares_of_a_period(motion):
     found = patches(motion, 0.01, 0.7, **sizes)
     whole = microslip.period(motion, 0.01, 0.7, **sizes)
     assert found["area"].sum() == pytest.approx(math.pi)
-    # the areas are those that the pressure and the forces belong to
+    # areas times pressure is the load, areas times traction the force
     assert (found["area"] * whole.bound).sum() == pytest.approx(1.0, abs=2e-3)
     force = whole.traction_forward @ found["area"]
     assert force == pytest.approx(whole.force_forward, abs=2e-3)
@@ -139,7 +139,7 @@ def test_patches_are_shares_of_a_period(motion):
 
 @pytest.mark.slow
 def test_patches_of_the_slow_bore_lie_where_theory_has_them():
-    """At the moment of least stick: on one side, with |cos angle| above the share in use."""
+    """At the moment of least stick one side sticks, where |cos angle| exceeds the used share."""
     found = patches("bore", 1e-3, 1.0, cells=24, angles=24, steps=64)
     radius = np.hypot(found["forward_position"], found["lateral_position"])
     stick = float(theory.bore_stick_radius(1.0))

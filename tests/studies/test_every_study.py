@@ -1,4 +1,4 @@
-"""What all studies have in common: their requests, and the conventions of their files."""
+"""Requests and file conventions of all studies."""
 
 import json
 
@@ -21,7 +21,7 @@ STUDIES = {
 
 
 def answered(study):
-    """The dataset of a study with made-up results, and the requests that it was made of."""
+    """Dataset of a study with invented results, and its requests."""
     configured, results = STUDIES[study]
     answer, seen = studies_stub.answered(results)
     return registry.build(study, configured(), answer), seen
@@ -29,7 +29,7 @@ def answered(study):
 
 @pytest.fixture(scope="module", params=STUDIES)
 def file(request, tmp_path_factory):
-    """The name of a study, and the file of its dataset."""
+    """Name of a study, and the file of its dataset."""
     study = request.param
     path = tmp_path_factory.mktemp(study) / f"{study}.nc"
     sweep_dataset.write(answered(study)[0], path, registry.groups(study))

@@ -1,4 +1,4 @@
-"""The study of self-propelled motions: what is asked, its dataset and its figure."""
+"""Study of self-propelled motions: requests, dataset and figure."""
 
 import numpy as np
 import pytest
@@ -19,25 +19,25 @@ def data():
 
 def test_every_line_is_asked_for_once():
     again = propulsion_stub.DRIVING["motions"] | {"twin": propulsion_stub.EIGHT}
-    given = propulsion_stub.configured(motions=again)
-    asked = studies_stub.asked("propulsion", given)
-    assert len(asked) == len(set(asked)) == 3
+    configuration = propulsion_stub.configured(motions=again)
+    requests = studies_stub.asked("propulsion", configuration)
+    assert len(requests) == len(set(requests)) == 3
     answer, seen = studies_stub.answered(propulsion_stub.propulsion_result)
-    built = registry.build("propulsion", given, answer)
-    assert set(seen) == set(asked)
+    built = registry.build("propulsion", configuration, answer)
+    assert set(seen) == set(requests)
     assert built.sizes == {"line": 4, "point": 3}
 
 
 def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_path):
     sweep_dataset.write(data, tmp_path / "propulsion.nc", registry.groups("propulsion"))
-    found = netcdf.whole(tmp_path / "propulsion.nc")
-    assert found["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
-    middle = found.sel(line="back").isel(point=1)  # of the line through (0, 0.2) and (0.5, 0)
+    stored = netcdf.whole(tmp_path / "propulsion.nc")
+    assert stored["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
+    middle = stored.sel(line="back").isel(point=1)  # middle of the line from (0, -0.2) to (-0.5, 0)
     assert float(middle["velocity"]) == -0.25
     assert float(middle["force"]) == -0.1
     assert float(middle["power_out"]) == pytest.approx(0.025)
-    assert np.isnan(found["velocity"].sel(line="still")).all()
-    assert all(found[name].attrs["long_name"] for name in found.variables)
+    assert np.isnan(stored["velocity"].sel(line="still")).all()
+    assert all(stored[name].attrs["long_name"] for name in stored.variables)
 
 
 def test_the_report_says_what_each_drives(data):
@@ -52,22 +52,22 @@ def test_the_figure_draws_every_line_and_computes_nothing(data):
     figure = drawing.draw("propulsion", {"propulsion": data})
     above, beside, below, _ = figure.axes
     for axes, name in ((above, "force"), (below, "efficiency")):
-        found = [line for line in axes.get_lines() if line.get_gid() == name]
-        lines = [line for line in found if line.get_linestyle() != "None"]  # no caps of errors
+        drawn = [line for line in axes.get_lines() if line.get_gid() == name]
+        lines = [line for line in drawn if line.get_linestyle() != "None"]  # without error bars
         assert len(lines) == 2
         for index, line in enumerate(lines):
             assert line.get_xdata().tolist() == data["velocity"].values[index].tolist()
             assert line.get_ydata().tolist() == data[name].values[index].tolist()
     shown = [text.get_text() for text in figure.axes[3].get_legend().get_texts()]
-    assert shown == [r"at \$ rest"]  # a dollar begins no formula
+    assert shown == [r"at \$ rest"]  # the dollar does not start a formula
     assert "normal" in beside.get_title(loc="left")
 
 
 @pytest.mark.slow
 def test_a_line_is_kept_and_found_again(tmp_path):
     motion = {"only": propulsion_stub.EIGHT}
-    given = propulsion_stub.configured(motions=motion, tolerance=1e-2, points=2)
-    (request,) = registry.pieces("propulsion", given)[1][0]
+    configuration = propulsion_stub.configured(motions=motion, tolerance=1e-2, points=2)
+    (request,) = registry.pieces("propulsion", configuration)[1][0]
     first, _ = batches.answer(request, Store(tmp_path))
     again, seconds = batches.answer(request, Store(tmp_path))
     assert again == first and seconds == 0.0

@@ -1,4 +1,4 @@
-"""How methods fail, by name: each failure in a method that has it, its absence in what ships."""
+"""Failures of methods: each one in a method that has it, and its absence in the shipped method."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ MIDPOINT = method_named("midpoint").integrator
 
 
 def straight(distance, steps, integrator=SDIRK2):
-    """A push forward, in equal steps."""
+    """Path of a forward displacement in equal steps."""
 
     def displacement(phase):
         return distance * phase, np.zeros_like(phase), np.zeros_like(phase)
@@ -35,14 +35,14 @@ def straight(distance, steps, integrator=SDIRK2):
 
 
 def pushed(integrator):
-    """Friction of the elastic slider, which yields at 1, pushed by 0.3 in each of 20 steps."""
+    """Friction of the elastic slider, which yields at 1, displaced by 0.3 in each of 20 steps."""
     contact = slider_contact()
     march = contact.march(straight(6.0, 20, integrator), np.zeros((2, 1, 1)), 1e-12)
     return march.forces[:, FORWARD]
 
 
 def test_ringing_of_the_midpoint_rule():
-    """Slip at mid-step holds the middle at the bound, so the ends mirror each other there."""
+    """The force at mid-step is at the bound, so the forces at the ends alternate around it."""
     force = pushed(MIDPOINT)
     assert force[:4] == pytest.approx([0.0, 0.3, 0.6, 0.9])
     assert force[4::2] == pytest.approx(1.1)
@@ -56,7 +56,7 @@ def test_no_ringing_in_the_shipped_integrator():
 
 
 def test_theta_method_rings_and_forgets():
-    """Its end mirrors the start at the bound, shrunk by (1 - theta) / theta."""
+    """The deviation from the bound changes sign in each step, times (1 - theta) / theta."""
     theta = method_named("theta").integrator
     force = pushed(theta)
     ratio = (1.0 - theta.end) / theta.end
@@ -91,7 +91,7 @@ def iterations_a_step(method, cells):
 
 
 def test_stagnation_of_the_plain_march():
-    """So slow a motion takes thousands of periods to forget its start; it says that it has not."""
+    """The transient of a slow motion takes thousands of periods, so the result is not converged."""
     plain = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2, method="march")
     shipped = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2)
     assert not plain.converged and "no periodic state" in plain.reason
@@ -100,7 +100,7 @@ def test_stagnation_of_the_plain_march():
 
 
 def test_undamped_jacobi_never_gets_there():
-    """Points that correct the same slip all at once overshoot from bound to bound."""
+    """All points correct the same slip at once, so the tractions jump from bound to bound."""
     with pytest.raises(StepFailure, match="diverged"):
         iterations_a_step("jacobi", 16)
     assert microslip.solve("bore", 0.2, 1.0, tolerance=1e-2, method="jacobi").reason.startswith(
@@ -125,7 +125,7 @@ def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
 
 @pytest.fixture(scope="module")
 def slow_truth():
-    """Rings alone certify this to 1e-4; the static limit, a closed form, lies just below."""
+    """Friction of a slow motion to 1e-4, just above the closed form of the static limit."""
     truth = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-4)
     limit = microslip.solve("transverse", 0.0, 0.5).mu_macro
     assert truth.converged and limit < truth.mu_macro < limit + 0.02
@@ -133,7 +133,7 @@ def slow_truth():
 
 
 def test_false_convergence_of_equal_means(slow_truth):
-    """Two means agree long before the state stands still."""
+    """Two means agree long before the state is periodic."""
     early = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2, method="equal-means")
     assert early.converged
     assert abs(early.mu_macro - slow_truth) > 5.0 * early.mu_macro_error
@@ -152,21 +152,24 @@ SHARES = (0.0, 0.5, 1.0)
 
 
 def periodic_force(velocity, share, search):
-    """Mean forward force of the periodic state found from the oscillation's own tractions plus a
-    share of all the forward traction that they leave room for."""
+    """Mean forward force of a periodic state, by the initial state of its search.
+
+    The initial state is the traction of the oscillation, plus a share of the largest forward
+    traction that is possible in addition.
+    """
     motion = Problem(Transverse(), velocity, 0.5, 0.0)
     focus = Problem(Transverse(), velocity, 0.5).focus
     contact = RadialContact.resolved(16, focus)
     path = path_of(motion, contact, 32)
     room, oscillating, *_ = static_state(contact, motion.oscillation, 1e-12)
     goal = Goal(1e-6, 1e-9, most_marches=1000)
-    found = search(PeriodMap(contact, path), oscillating + share * room, goal)
-    assert found.converged
-    return path.mean(found.forces)[FORWARD]
+    state = search(PeriodMap(contact, path), oscillating + share * room, goal)
+    assert state.converged
+    return path.mean(state.forces)[FORWARD]
 
 
 def test_loss_of_uniqueness_without_forward_motion():
-    """What never slips keeps what it had: each start has a periodic state of its own, with any
+    """Tractions in the stick zone never change. So each start has its own periodic state, with any
     friction up to the static limit."""
     limit = microslip.solve("transverse", 0.0, 0.5).mu_macro
     for share in SHARES:
@@ -185,13 +188,13 @@ def test_the_shipped_answer_at_velocity_zero_is_the_limit_and_not_a_start():
     assert near.converged and 0.0 < near.mu_macro - limit.mu_macro < 1e-3
 
 
-# Methods and what ships agree where both converge
+# Methods agree with the shipped method where both converge
 
 COMPILED = [
     pytest.param(name, marks=pytest.mark.long)
     for name in ("admm", "gauss-seidel", "spectral-gradient", "full-newton")
 ]
-"""Methods with code of their own, which takes seconds to compile."""
+"""Methods with separate code, which takes seconds to compile."""
 
 
 @pytest.mark.slow
@@ -200,7 +203,7 @@ COMPILED = [
     ["euler", "extrapolated", "march", *COMPILED],
 )
 def test_methods_agree_with_what_ships(method):
-    """... at a fast, easy point, each within its own certificate and that of the other."""
+    """At a fast point the difference is within the two error estimates."""
     for place in (("transverse", 1.0, 1.0), ("bore", 1.0, 1.0)):
         shipped = microslip.solve(*place, tolerance=1e-4)
         other = microslip.solve(*place, tolerance=1e-2, method=method)
@@ -211,7 +214,7 @@ def test_methods_agree_with_what_ships(method):
 
 @pytest.mark.parametrize("method", COMPILED)
 def test_step_solvers_find_the_one_solution_of_a_step(method):
-    """Each step is a convex problem: whoever solves it finds the same tractions."""
+    """A step is a convex problem, so all solvers find the same tractions."""
     motion = Problem(Bore(), 0.2, 1.0, 0.3)
     contact = build_contact(motion, "polar", Resolution(6, 4, 8))
     path = path_of(motion, contact, 8)
@@ -223,7 +226,7 @@ def test_step_solvers_find_the_one_solution_of_a_step(method):
 
 @pytest.mark.parametrize(("name", "order"), [("euler", 1), ("midpoint", 2), ("shipped", 2)])
 def test_orders_of_the_integrators(name, order):
-    """On a smooth stretch: the slider slips all the way while its direction turns slowly."""
+    """The slider slips all the time while its direction changes smoothly."""
     contact, integrator = slider_contact(), method_named(name).integrator
 
     def displacement(phase):
@@ -252,7 +255,7 @@ def test_method_names_are_refused_with_what_is_allowed(text, named):
         microslip.solve("transverse", 0.1, 0.5, method=text)
 
 
-# Methods without a part in what is asked
+# Methods that do not apply
 
 
 @pytest.mark.parametrize(

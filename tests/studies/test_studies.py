@@ -1,4 +1,4 @@
-"""Studies: what is asked, how times are taken, what is picked, and the datasets."""
+"""Studies: ladders, requests, measured times, fronts and exponents."""
 
 import json
 import math
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from stubs.studies_stub import ACCURACY, asked, configured
+from stubs.studies_stub import asked, configured
 from stubs.sweep_stub import Solver
 
 import microslip
@@ -34,14 +34,14 @@ from microslip.studies.stability import stability
 from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
-# Ladders: what is run where
+# Ladders
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 @pytest.mark.parametrize("motion", [name for name, one in MOTIONS.items() if not fields(one)])
 def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
-    known = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
-    assert set(ladders.models_of(motion, poisson)) == known
+    applicable = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
+    assert set(ladders.models_of(motion, poisson)) == applicable
     assert ladders.exact_model(motion, poisson) == choose_model(
         Problem(motion_named(motion), 1.0, None if motion == "continuous-bore" else 1.0, poisson)
     )
@@ -72,32 +72,6 @@ def test_other_methods_climb_less_high_on_the_model_that_auto_takes():
 # Requests
 
 
-def test_trials_of_a_point():
-    study = configured().accuracy
-    found = list(accuracy_cost.trials(study, study.points["mid"]))
-    rows = [(r["kind"], r.get("model"), r.get("method"), k) for k, r in found]
-    assert rows[:3] == [("trial", "rigid", "shipped", k) for k in range(3)]
-    assert [r for r in rows if r[2] == "paper"] == [("trial", "cartesian", "paper", 0)]
-    assert [r for r in rows if r[2] == "euler"] == [
-        ("trial", "radial", "euler", k) for k in range(3)
-    ]
-    assert {m for _, m, s, _ in rows if s == "shipped"} == set(MODELS)
-    assert [r["tolerance"] for _, r in found if r["kind"] == "choice"] == [
-        "0.01",
-        "0.001",
-        "0.0001",
-    ]
-    assert {r["repeats"] for _, r in found} == {2}
-
-
-def test_a_steady_motion_has_no_amplitude_and_takes_no_steps():
-    study = configured().accuracy
-    for _, request in accuracy_cost.trials(study, study.points["steady"]):
-        assert request["amplitude"] is None
-        assert request.get("steps") is None
-    assert accuracy_cost.truth(study.points["steady"]) is None
-
-
 def test_references_are_ordinary_points_and_tight():
     study = configured().accuracy
     request = accuracy_cost.truth(study.points["mid"])
@@ -113,10 +87,10 @@ def test_references_are_ordinary_points_and_tight():
 
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
-    found = [json.loads(text) for text in asked(study, configured())]
-    names = {batches.result_key(request, "d") for request in found}
-    assert len(names) == len({canonical_json(request) for request in found})
-    for request in found:
+    requests = [json.loads(text) for text in asked(study, configured())]
+    names = {batches.result_key(request, "d") for request in requests}
+    assert len(names) == len({canonical_json(request) for request in requests})
+    for request in requests:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
         assert batches.label(request)
         for name in ("velocity", "tolerance"):
@@ -133,21 +107,6 @@ def test_another_method_adds_jobs_and_changes_none(study):
     before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
     assert before < after
     assert all('"method":"march"' in piece for piece in after - before)
-
-
-def test_another_point_adds_requests_and_changes_none():
-    more = {"more": {"motion": "bore", "velocity": 0.2, "amplitude": 1}}
-    longer = configured({"points": ACCURACY["points"] | more})
-    asked = [
-        {
-            canonical_json(request)
-            for part in registry.pieces("accuracy", one)
-            for piece in part
-            for request in piece
-        }
-        for one in (configured(), longer)
-    ]
-    assert asked[0] < asked[1]
 
 
 def test_what_takes_long_starts_first():
@@ -215,11 +174,11 @@ def test_methods_have_the_numbers_that_blocks_vary():
             check(f"{method}:{parameter}=1")
 
 
-# Answers and their times
+# Results and their times
 
 
 class Clock:
-    """CPU time that passes only when something runs, so many seconds a call."""
+    """CPU clock that advances by the given seconds at each call of `run`."""
 
     def __init__(self, monkeypatch, *seconds):
         self.now, self.calls, self.seconds = 0.0, 0, seconds
@@ -236,11 +195,6 @@ def test_a_time_is_the_median_after_a_first_call(monkeypatch):
     result, seconds = evaluate.timed(clock.run, 5)
     assert result == {"call": 1}
     assert (clock.calls, seconds) == (6, pytest.approx(0.2))
-
-
-def test_compiling_is_no_part_of_a_time(monkeypatch):
-    clock = Clock(monkeypatch, 35.1, 0.006)  # as of squares with cold kernels
-    assert evaluate.timed(clock.run, 3)[1] == pytest.approx(0.006)
 
 
 @pytest.mark.parametrize("kind", ["trial", "choice", "scaling"])
@@ -285,7 +239,7 @@ def test_short_runs_are_timed_together(monkeypatch, seconds):
 
 
 class Trials(Solver):
-    """Stands in for single_run, too. A trial errs by 1/cells^2, and march never applies."""
+    """Stub of the solver and single_run. The error of a trial is 1/cells^2; march never applies."""
 
     def __init__(self, monkeypatch, **settings):
         super().__init__(monkeypatch, **settings)
@@ -394,7 +348,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
     assert result == {"applies": True, "mu_macro": None}
 
 
-# Fronts, the cheapest, exponents
+# Fronts, cheapest trials, exponents
 
 NUMBERS = st.sampled_from([0.0, 1.0, 2.0, 3.0, 4.0, math.nan])
 
@@ -416,8 +370,8 @@ def test_a_front_is_what_nothing_beats(pairs):
 def test_a_rung_is_as_good_as_the_worst_of_it_and_the_finer_ones():
     models = ["mdr"] * 3 + ["radial"] * 3
     error = [0.001, 0.02, 0.01, 0.1, 0.001, 0.01]
-    found = fronts.confirmed(models, error, "radial")
-    assert list(found) == [0.02, 0.02, math.inf, 0.1, 0.01, 0.01]
+    confirmed = fronts.confirmed(models, error, "radial")
+    assert list(confirmed) == [0.02, 0.02, math.inf, 0.1, 0.01, 0.01]
     assert list(fronts.confirmed(["slider"], [0.0], "radial")) == [math.inf]
 
 
@@ -432,7 +386,7 @@ def test_the_cheapest_is_within_the_tolerance():
         None,
     ]
     assert fronts.cheapest([1.0], [math.nan], 1.0) is None
-    assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # as cheap, and cruder
+    assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # equally cheap, and coarser
     assert fronts.cheapest([], [], 1.0) is None
 
 
@@ -450,14 +404,14 @@ CONE = "power:exponent=1"
 
 
 def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
-    """A cone presses its middle harder than a sphere: another part of it sticks, other friction."""
+    """A cone has a higher pressure in the middle than a sphere, so its friction differs."""
     place = {"motion": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
     how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
     trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
     sphere, cone = evaluate.computed(trial_of), evaluate.computed(trial_of | {"pressure": CONE})
     assert sphere["converged"] and cone["converged"]
-    given = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
-    certified = microslip.solve("transverse", 0.1, 0.8, **given)
+    settings_of = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
+    certified = microslip.solve("transverse", 0.1, 0.8, **settings_of)
     assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
     assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
     timed = evaluate.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
@@ -468,7 +422,7 @@ def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
 
 
 def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
-    """What it presses the squares with are the loads of that pressure."""
+    """The friction bounds of the squares are the loads of the pressure."""
     from microslip.pressures.by_name import pressure_named
 
     class Seen(Exception):

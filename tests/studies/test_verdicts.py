@@ -1,4 +1,4 @@
-"""Verdicts: what decides, what does not, and how parts make a whole."""
+"""Verdicts from checks and from parts."""
 
 import math
 from itertools import product
@@ -57,12 +57,12 @@ def test_a_part_holds_if_nothing_decides_against_it(margins, verdict):
 
 
 def completed(parts):
-    """What a statement would come to, whatever its open parts turned out to be."""
+    """Yield the verdicts on a statement for all possible verdicts on its open parts."""
     open_ones = parts.count(NOT_DECIDED)
-    known = [part for part in parts if part != NOT_DECIDED]
+    decided = [part for part in parts if part != NOT_DECIDED]
     for rest in product((WHOLLY, PARTLY, NOT), repeat=open_ones):
-        found = {*known, *rest}
-        yield WHOLLY if found == {WHOLLY} else NOT if found == {NOT} else PARTLY
+        whole = {*decided, *rest}
+        yield WHOLLY if whole == {WHOLLY} else NOT if whole == {NOT} else PARTLY
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

@@ -1,4 +1,4 @@
-"""The brackets of the friction: the work balance they come from, and what must lie within them."""
+"""Bounds of the reduction of friction: their work balance, and frictions within them."""
 
 import math
 
@@ -22,12 +22,12 @@ def largest_root(surplus, high):
     return brentq(surplus, 1e-14, high, xtol=1e-15, rtol=1e-13)
 
 
-# The largest drop that the work of a period can pay for
+# Bounds from the work balance of a period
 
 
 @pytest.mark.parametrize("ratio", [0.8, 1.0, 2.0, 30.0])
 def test_transverse_drop_is_what_the_work_balance_allows(ratio):
-    """Work of the lateral force at most y sqrt((1 - mu^2) / 2), missing forward work v (1 - mu)."""
+    """The missing forward work v (1 - mu) is at most the lateral work y sqrt((1 - mu^2) / 2)."""
 
     def surplus(drop):
         mu = 1.0 - drop
@@ -52,7 +52,7 @@ def test_bore_drop_is_what_the_work_balance_allows(velocity):
 
 
 def test_nothing_is_claimed_at_rest():
-    """At vanishing velocity any friction is possible: the bracket has to reach down to 0."""
+    """At vanishing velocity any friction is possible, so the bound is at least 1."""
     for amplitude in (1e-300, 1e-3, 1.0, 1e300):
         assert largest_drop_transverse(0.0, amplitude) >= 1.0
         assert largest_drop_bore(0.0, amplitude) >= 1.0
@@ -77,7 +77,7 @@ def test_huge_velocities_close_the_bracket_of_the_bore(velocity):
 
 
 def test_bore_bracket_opens_towards_velocity_one():
-    """From velocity 1 down the centre of rotation may rest within the contact."""
+    """At velocities up to 1 the centre of rotation can rest within the contact."""
     velocities = [0.5, 1.0, np.nextafter(1.0, 2.0), 1.0 + 1e-160, 1.01, 1.0 + 0.999 * 0.2**0.5]
     assert all(largest_drop_bore(v, 2.0) >= 1.0 for v in velocities)
     assert largest_drop_bore(1.0 + 1.001 * 0.2**0.5, 2.0) < 1.0
@@ -88,12 +88,12 @@ def test_bore_bracket_opens_towards_velocity_one():
 def test_brackets_close_as_the_velocity_grows(velocity, amplitude, factor):
     for drop in (largest_drop_transverse, largest_drop_bore):
         assert drop(factor * velocity, amplitude) <= drop(velocity, amplitude)
-    # ... and only the ratio counts where nothing turns
+    # the bound of translations depends on the ratio only
     scaled = largest_drop_transverse(factor * velocity, factor * amplitude)
     assert scaled == pytest.approx(largest_drop_transverse(velocity, amplitude), rel=1e-12)
 
 
-# What the brackets must contain
+# Frictions within the bounds
 
 
 @pytest.mark.slow
@@ -125,12 +125,12 @@ def test_elastic_contacts_lie_within(motion, model, nu, velocity, amplitude):
     assert result.mu_macro - result.mu_macro_error <= 1.0
 
 
-# How wide they are
+# Width of the bounds
 
 
 @pytest.mark.parametrize("ratio", [30.0, 300.0, 3e3])
 def test_brackets_are_four_times_the_drop_of_the_rigid_contact(ratio):
-    """Far out the rigid drop is (y/v)^2 / 4, a quarter of the bracket."""
+    """At large velocity the rigid drop is (y/v)^2 / 4, a quarter of the bound."""
     phase = np.linspace(0.0, 2.0 * np.pi, 4096, endpoint=False)
     aside = np.cos(phase) / ratio
     rigid_drop = np.mean(aside**2 / (np.hypot(1.0, aside) * (1.0 + np.hypot(1.0, aside))))

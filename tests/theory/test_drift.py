@@ -1,4 +1,4 @@
-"""Velocities under a force, against the friction that they are to balance at every instant."""
+"""Velocities under a force against the balance of force and friction at every instant."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ PHASES = (np.arange(2000) + 0.5) * np.pi / 2000
 
 
 @pytest.mark.parametrize("force", [0.01, 0.3, 0.6, 0.95])
-def test_a_rigid_contact_feels_the_force_at_every_instant_sideways(force):
-    """Moving in proportion to the vibration, with the mean that the closed form tells."""
+def test_friction_of_a_rigid_contact_balances_the_force_under_transverse_oscillation(force):
+    """The velocity is proportional to that of the vibration, with the mean of the closed form."""
     amplitude = 3.0
     vibration = amplitude * np.abs(np.cos(PHASES))
     velocity = transverse_drift(force, amplitude) * vibration / vibration.mean()
@@ -22,8 +22,8 @@ def test_a_rigid_contact_feels_the_force_at_every_instant_sideways(force):
 
 
 @pytest.mark.parametrize("force", [0.01, 0.3, 0.6, 0.95])
-def test_a_rigid_contact_feels_the_force_at_every_instant_boring(force):
-    rotation = np.abs(np.cos(PHASES))  # over its largest
+def test_friction_of_a_rigid_contact_balances_the_force_under_bore(force):
+    rotation = np.abs(np.cos(PHASES))  # over its maximum
     velocity = bore_drift(force, 1.0) * rotation / rotation.mean()
     assert bore_forward(velocity / rotation) == pytest.approx(force, rel=1e-6)
 
@@ -33,7 +33,7 @@ def test_amplitudes_and_forces_broadcast():
     sideways, boring = transverse_drift(forces, amplitudes), bore_drift(forces, amplitudes)
     assert sideways.shape == boring.shape == (2, 2)
     assert sideways[1] == pytest.approx(2.0 * sideways[0])
-    assert np.array_equal(boring[0], boring[1])  # in the unit of that motion
+    assert np.array_equal(boring[0], boring[1])  # in units proportional to the amplitude
 
 
 @pytest.mark.parametrize("drift", [transverse_drift, bore_drift])
@@ -51,11 +51,11 @@ def test_a_force_that_rounding_does_not_tell_from_full_friction_is_refused():
 
 @pytest.mark.parametrize("force", [0.02, 0.3, 0.8])
 def test_two_spheres_that_work_against_each_other_move_from_their_static_limit_on(force):
-    """The limit is 1 - force, loaded to: x with 1 - (1 - x)^(3/2), the force of a first loading."""
+    """At the static limit the force of a first loading is 1 - force."""
     limit = brentq(lambda amplitude: 1.0 - float(mindlin_force(amplitude)) - force, 0.0, 1.0)
     assert antiphase_drift(force, limit) == pytest.approx(0.0, abs=1e-12)
     assert antiphase_drift(force, 0.99 * limit) == 0.0
-    # from there on all of the stroke is way: 4 amplitudes in a period for one sphere and the other
+    # beyond the limit the whole additional stroke is travel: 4 amplitudes in a period
     grown = antiphase_drift(force, limit + 1.0) - antiphase_drift(force, limit)
     assert 2.0 * np.pi * grown == pytest.approx(4.0)
     assert np.isinf(antiphase_drift(1.0, 1.0))

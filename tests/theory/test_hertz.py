@@ -1,4 +1,4 @@
-"""Contact constants against direct quadrature, elasticity and limits; no copied output."""
+"""Closed forms of a Hertz contact against quadrature, elasticity and limits."""
 
 from itertools import pairwise
 
@@ -21,7 +21,7 @@ def integral(function, *ends, tolerance=1e-12):
 
 
 def ring_integrals(r, s):
-    """K and E of the ring kernel, at 1 - m = (r - s)^2/(r + s)^2, finite even if s rounds to r."""
+    """K and E of the ring kernel at 1 - m = (r - s)^2/(r + s)^2, finite also at s = r."""
     rest = max(((r - s) / (r + s)) ** 2, 1e-60)
     return ellipkm1(rest), ellipe(1 - rest)
 

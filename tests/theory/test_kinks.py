@@ -1,4 +1,4 @@
-"""Kinks that motions are known to have, held against their closed forms."""
+"""Kinks of motions against closed forms and displacements."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
 
 AMPLITUDES = (0.2, 0.6, 1.0, 1.7)
 PULLED_BACK = 0.97
-"""Share of the velocity of a kink at which there is less than full friction."""
+"""Velocity over that of a kink, at which friction is not full."""
 
 
 def load_oscillates(velocity, amplitude):
@@ -44,7 +44,7 @@ def test_friction_is_full_from_the_velocity_of_the_kink_on(motion, pressure, fri
 
 
 def test_a_load_that_oscillates_takes_nothing_from_a_little_below_its_kink_on():
-    """The border is 5 % above the kink at most; above the amplitude 1 there is none."""
+    """The border is at most 5 % above the kink."""
     for amplitude in (0.1, 0.3, 0.6, 0.9, 1.0):
         at = float(kink_velocity(kinks_of("normal"), np.array(amplitude)))
         assert load_oscillates(1.001 * at, amplitude) == pytest.approx(1.0, abs=1e-9)

@@ -79,7 +79,7 @@ def _each(function: Callable[[float], float]) -> Callable:
 
 
 def _load_inside(pressure: Pressure, radius: float) -> float:
-    return float(indenters.static_stick_zone(pressure, radius)) if radius > 0.0 else 0.0
+    return float(pressure.load(radius, 1.0)) if radius > 0.0 else 0.0
 
 
 def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:

@@ -1,8 +1,7 @@
-"""Ladders: the resolutions in which every model is run, from coarse to fine.
+"""Ladders: resolutions of each model, from coarse to fine, and the models of each motion.
 
-Cells, angles and steps are refined jointly, so that no part of the discretisation holds up the
-others.  A method may bring a model and a resolution of its own, which its file says.  Here is also
-which model applies where, as plain data; a test keeps it the same as what the solver refuses.
+Cells, angles and steps are refined together, so that their errors fall together. The file of a
+method can fix a model and a resolution for this method.
 """
 
 from typing import NamedTuple
@@ -12,7 +11,7 @@ from microslip.solver.method_names import SHIPPED, declared, missing, split
 
 
 class Level(NamedTuple):
-    """One rung: cells (rings, or squares along a side), angles on half the disc, steps a period."""
+    """Cells (rings, or squares along a side), angles on half the disc, and steps in a period."""
 
     cells: int
     angles: int
@@ -20,7 +19,7 @@ class Level(NamedTuple):
 
 
 def _doubled(cells: int, angles: int, steps: int, count: int) -> tuple[Level, ...]:
-    """Levels from the first one on; what is 1 stays 1, the rest doubles."""
+    """`count` levels; each number doubles from level to level, except that 1 stays 1."""
     return tuple(
         Level(*(1 if n == 1 else n * 2**k for n in (cells, angles, steps))) for k in range(count)
     )
@@ -38,15 +37,16 @@ LADDERS = {
     ),
     "cartesian": _doubled(8, 1, 16, 4),
 }
-"""Levels by model.  Squares cost the most by far, so theirs are few."""
+"""Levels by model. Squares have few levels, because they are by far the most expensive."""
 
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Levels for methods that are not shipped: some keep dense matrices or solve point by point."""
+"""Number of levels by model for methods that are not shipped, which can be slow or use dense
+matrices."""
 
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""How near the periodic state a run has to come, a force over mu F_z: at the first level, and with
-which power of the steps it falls. That is below what the discretisation leaves at every level
-(rings at nu = 0: from 1e-4 to 1e-6), so that it takes part in no comparison."""
+"""Distance of a run from its periodic state, over mu F_z: its value at the first level, and the
+power of the number of steps with which it falls. It is below the discretisation error of every
+level (rings at nu = 0: 1e-4 to 1e-6)."""
 
 
 TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
@@ -54,19 +54,18 @@ TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
 
 
 def models_of(motion: str, poisson: float) -> list[str]:
-    """Names of the models that apply to a motion at a Poisson's ratio, from crude to costly."""
-    rings_suffice = poisson == 0
-    known = MODELS_OF_MOTION[motion]
-    return [m for m in LADDERS if m in known and (m != "radial" or rings_suffice)]
+    """Names of the models of a motion at a Poisson's ratio, from crude to expensive."""
+    allowed = MODELS_OF_MOTION[motion]
+    return [m for m in LADDERS if m in allowed and (m != "radial" or poisson == 0)]
 
 
 def exact_model(motion: str, poisson: float) -> str:
-    """The model that model auto takes: rings where they suffice, angular points otherwise."""
+    """The model that `model="auto"` selects: rings if they apply, else angular points."""
     return "radial" if "radial" in models_of(motion, poisson) else "polar"
 
 
 def ladder(model: str, method: str, count: int) -> list:
-    """List (number of the level, Level, tolerance) to run `method` in, at most `count` of them."""
+    """List of at most `count` tuples (number of the level, Level, tolerance) for a method."""
     name, _ = split(method)
     own = declared(name, "resolution")
     if own is not None:
@@ -82,14 +81,15 @@ def ladder(model: str, method: str, count: int) -> list:
 
 
 def models_for(method: str, motion: str, poisson: float) -> list[str]:
-    """Models that `method` is run on: all for the shipped one, else its own or what auto takes.
+    """Models that a method is run on: all models for the shipped method, else one.
 
-    None for a rotation that it does not know, or where it requires a package that is not installed.
+    The one model is that of the method, or the model that `model="auto"` selects. The list is empty
+    if the method does not support rotations, or if a package that it requires is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:
         return models_of(motion, poisson)
-    knows = motion in TRANSLATIONS or declared(name, "turns") is not False
-    if missing(method) or not knows:
+    supported = motion in TRANSLATIONS or declared(name, "turns") is not False
+    if missing(method) or not supported:
         return []
     return [declared(name, "model") or exact_model(motion, poisson)]

@@ -1,10 +1,9 @@
-"""Studies: how accuracy is paid for, where methods fail, which of the paper's claims hold, and what
-motions drive.
+"""Studies: cost of accuracy, failures of methods, claims of the paper, and propulsion.
 
-`ladders` says in which resolutions a model is run; `accuracy_cost`, `stability`, `claims` and
-`propulsion` make the requests; `fronts` picks and fits, `verdicts` judges; those with `dataset`
-in their name turn the answers into datasets. What is asked is plain data that imports nothing
-heavy, since the workflow reads it whenever it is parsed.
+Each study has a package with two modules. The module of its requests (`accuracy_cost`, `stability`,
+`claims`, `propulsion`) is plain data and imports nothing heavy, because the workflow reads it at
+every start. The module `dataset` builds a dataset from the results. `ladders` holds the resolutions
+of the models, `requests` the forms of the requests.
 """
 
 from __future__ import annotations
@@ -15,33 +14,22 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from microslip.config.records import Configuration
-from microslip.studies.accuracy import accuracy_cost
-from microslip.studies.claims import claims
-from microslip.studies.propulsion import propulsion
-from microslip.studies.stability import stability
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# Studies, named as in the configuration, and their datasets.
 DATASETS = {
     "accuracy": "accuracy_cost",
     "stability": "stability",
     "claims": "claims",
     "propulsion": "propulsion",
 }
-
-_ASKED = {
-    "accuracy": accuracy_cost,
-    "stability": stability,
-    "claims": claims,
-    "propulsion": propulsion,
-}
+"""Studies, named as in the configuration, and the names of their datasets and request modules."""
 
 
 def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
     """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
-    return _ASKED[study].pieces(getattr(configuration, study))
+    return _module(study, DATASETS[study]).pieces(getattr(configuration, study))
 
 
 def settings(study: str, configuration: Configuration) -> dict:
@@ -54,18 +42,18 @@ def build(study: str, configuration: Configuration, answer: Callable) -> object:
 
     configuration: records.Configuration. answer(request) -> record, see microslip.sweeps.batches.
     """
-    return _dataset_of(study).build(getattr(configuration, study), answer)
+    return _module(study, "dataset").build(getattr(configuration, study), answer)
 
 
 def groups(study: str) -> dict:
-    """Groups in the file of a study's dataset, as for netcdf.divide: title and dims by name."""
-    return _dataset_of(study).GROUPS
+    """Groups in the file of a dataset, as for netcdf.divide: title and dims by name."""
+    return _module(study, "dataset").GROUPS
 
 
 def report(study: str, dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text that sum up the dataset of a study."""
-    return _dataset_of(study).report(dataset)
+    """Lines of text that summarise the dataset of a study."""
+    return _module(study, "dataset").report(dataset)
 
 
-def _dataset_of(study: str) -> ModuleType:
-    return import_module(f"microslip.studies.{study}.dataset")
+def _module(study: str, name: str) -> ModuleType:
+    return import_module(f"microslip.studies.{study}.{name}")

@@ -1,14 +1,14 @@
 """Requests of the studies: plain dicts with numbers as canonical strings, see sweeps.batches.
 
-- trial: one timed run of (point, model, method, resolution);
-- choice: one timed solve at a tolerance, which picks its own model and resolution;
-- probe: one solve with a method exchanged, with nothing timed;
-- point: an ordinary point of a sweep, solved tightly, that the others are compared with;
-- drive: the line of a self-propelled motion, from stall to no load;
-- scaling: what a step costs at one size.
+- trial: a timed run at a point, with a model, a method and a resolution;
+- choice: a timed solve at a tolerance, which selects its own model and resolution;
+- probe: a solve with another method, not timed;
+- point: a point of a sweep at a tight tolerance, the reference of the others;
+- propulsion: the force-velocity line of a self-propelled motion;
+- scaling: the cost of a step at one size.
 
-Requests that are timed (trial, choice, scaling) name the model of the CPU, so that times of
-different CPUs have different keys and never meet in one chart.
+Timed requests (trial, choice, scaling) contain the model of the CPU, so that times of different
+CPUs have different keys and are not drawn in one chart.
 """
 
 from typing import NamedTuple
@@ -18,13 +18,13 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references: with rings only, which are cheap, and with angular points."""
+"""Tolerances of references: with rings, which are cheap, and with angular points."""
 MOST_WORK = 5_000_000
-"""Step solves x unknowns that a probe may take: several times what the shipped method needs."""
+"""Limit of step solves times unknowns of a probe: several times the work of the shipped method."""
 
 
 class Point(NamedTuple):
-    """A point of a motion, all numbers dimensionless; amplitude None: the motion is steady."""
+    """A point of a motion, in dimensionless numbers; the amplitude is None for a steady motion."""
 
     motion: str
     velocity: float
@@ -33,7 +33,7 @@ class Point(NamedTuple):
 
 
 def of_point(point: Point) -> dict:
-    """The part of a request that names the point."""
+    """The entries of a request that describe the point."""
     return {
         "motion": point.motion,
         "velocity": number(point.velocity),
@@ -45,7 +45,7 @@ def of_point(point: Point) -> dict:
 def trial(
     point: Point, model: str, method: str, level: Level, tolerance: float, repeats: int
 ) -> dict:
-    """One timed run; level: ladders.Level.  A steady motion takes no steps."""
+    """Request for a timed run at a ladders.Level. The steps of a steady motion are None."""
     return of_point(point) | {
         "kind": "trial",
         "cpu": cpu_model(),
@@ -60,7 +60,7 @@ def trial(
 
 
 def choice(point: Point, tolerance: float, repeats: int) -> dict:
-    """One timed solve, as anybody would call it."""
+    """Request for a timed solve at a tolerance."""
     kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
     return of_point(point) | kind | {"repeats": repeats}
 
@@ -68,15 +68,17 @@ def choice(point: Point, tolerance: float, repeats: int) -> dict:
 def probe(
     point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
 ) -> dict:
-    """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
-    tolerance."""
+    """Request for a solve with another method, which takes at most MOST_WORK.
+
+    cells, steps: imposed resolution; None: chosen by the tolerance.
+    """
     kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
     budget = {"most_work": MOST_WORK}
     return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
 def reference(point: Point, tolerance: float | None = None) -> dict:
-    """An ordinary point; tolerance: None for what a reference is worth."""
+    """Request for a point; tolerance: by default RINGS_TOLERANCE or TOLERANCE, by its model."""
     if tolerance is None:
         rings = exact_model(point.motion, point.poisson) == "radial"
         tolerance = RINGS_TOLERANCE if rings else TOLERANCE
@@ -85,6 +87,6 @@ def reference(point: Point, tolerance: float | None = None) -> dict:
 
 
 def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
-    """Request for the cost of a step at a resolution, over a period of `steps` steps."""
+    """Request for the cost of a step at a resolution, measured over a period of `steps` steps."""
     sizes = {"cells": cells, "angles": angles, "steps": steps}
     return {"kind": "scaling", "cpu": cpu_model(), "model": model, "poisson": "0"} | sizes

@@ -1,4 +1,4 @@
-"""Records to columns: what the datasets of the studies share."""
+"""Functions that all datasets of studies share: results by request, tables, provenance."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ Kind = TypeVar("Kind")
 
 
 class Answers:
-    """Results by request. Collects the keys of the results, the versions of the libraries that
-    computed them, and the computers that times were measured on (machines, a list of dicts).
+    """Results by request.
+
+    Collects the keys of the results, the versions of the libraries that computed them, and the
+    computers that times were measured on (machines, a list of dicts).
 
     answer(request) -> record, see microslip.sweeps.batches.
     """
@@ -30,7 +32,7 @@ class Answers:
         self.machines: list[dict] = []
 
     def record(self, request: dict) -> dict:
-        """The record that answers a request."""
+        """The record of a request."""
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
@@ -43,7 +45,7 @@ class Answers:
         return self.record(request)["result"]
 
     def machine_of(self, result: dict) -> int:
-        """Index in `machines` of the computer that a time was measured on; -1: none."""
+        """Index in `machines` of the computer that a time was measured on; -1 without a time."""
         machine = result.get("machine")
         return self.machines.index(machine) if machine in self.machines else -1
 
@@ -57,21 +59,21 @@ def value_of(result: dict, name: str, kind: type[Kind]) -> Kind: ...
 
 
 def value_of(result: dict, name: str, kind: type = float) -> Any:
-    """A value of a result as `kind`; for what is not there NaN, 0, False or empty text."""
+    """A value of a result, converted to `kind`; a missing value is NaN, 0, False or empty text."""
     value = result.get(name)
     if value is None:
         return np.nan if kind is float else kind()
     return kind(value)
 
 
-def columns(dims: str | tuple, table: dict) -> dict:
-    """Variables over the same dims; table: name -> (values, long_name, kind, units), the last two
-    as far as they are not those of `variable`."""
-    return {name: variable(dims, *row) for name, row in table.items()}
+def table(
+    dim: str | tuple[str, ...], rows: Iterable[tuple], columns: dict[str, tuple]
+) -> dict[str, tuple]:
+    """Variables over rows, as xarray.Dataset takes them.
 
-
-def table(dim: str, rows: Iterable[tuple], columns: dict[str, tuple]) -> dict:
-    """Variables over rows; columns: name -> (function of a row's items, long_name, kind, units)."""
+    columns: name -> (function of the items of a row, long_name, kind, units). The defaults of kind
+    and units are those of `variable`.
+    """
     rows = list(rows)
     return {
         name: variable(dim, [read(*row) for row in rows], *about)
@@ -81,16 +83,19 @@ def table(dim: str, rows: Iterable[tuple], columns: dict[str, tuple]) -> dict:
 
 def finished(
     variables: dict,
-    coords: dict,
     title: str,
     answers: Answers,
     settings: BaseModel,
+    coordinates: Iterable[str] = (),
     **attributes: object,
 ) -> xr.Dataset:
-    """A Dataset with its provenance; settings are kept as JSON."""
-    # The names of all results: they depend on the sources of the methods, too.
+    """A Dataset of variables with its provenance; the settings are an attribute in JSON.
+
+    coordinates: names of coordinates that are not named like their dimension.
+    """
+    # The keys depend on the sources of the methods, too.
     digest = sha256("\n".join(sorted(answers.keys)))
     described = sweep_dataset.provenance(
         title, settings.model_dump(), answers.versions, results_digest=digest, **attributes
     )
-    return xr.Dataset(variables, coords, described)
+    return xr.Dataset(variables, attrs=described).set_coords(list(coordinates))

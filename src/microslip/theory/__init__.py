@@ -1,1 +1,1 @@
-"""Closed forms and bounds: no solver, no files, no pictures."""
+"""Closed forms and bounds of friction. Needs no solver, files or plots."""

@@ -1,7 +1,6 @@
-"""The paper's formulas that hold for any axisymmetric pressure, by quadrature.
+"""The paper's formulas for any axisymmetric pressure, by adaptive quadrature.
 
-Dimensionless as in theory, where their closed forms for Hertz's pressure stand; apart from it,
-since a library of integration takes longer to load than a closed form to evaluate.
+All quantities are dimensionless, as in `paper`, which has the closed forms for Hertz's pressure.
 """
 
 from collections.abc import Callable
@@ -15,19 +14,19 @@ from microslip.theory.hertz import checked
 def static_stick_zone_of(
     pressure: Callable[[float], float], stick_radius: np.ndarray | float
 ) -> np.ndarray | float:
-    """Share of the load inside the stick radius (Eq 9), by adaptive quadrature.
+    """Fraction of the load inside the stick radius (Eq 9).
 
     Parameters
     ----------
     pressure : callable
-        Takes a radius over the contact radius, a float from 0 to 1; returns any unit.
+        Pressure, in any unit, as a function of the radius over the contact radius (0 to 1).
     stick_radius : array_like
         Stick radius over the contact radius, 0 to 1, any shape.
 
     Raises
     ------
     ValueError
-        For another radius, and for a load that is not positive.
+        If a stick radius is out of range or the load is not positive.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0)
     total = _total(pressure, 1)
@@ -37,24 +36,24 @@ def static_stick_zone_of(
 def bore_of(
     pressure: Callable[[float], float], velocity: np.ndarray | float
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Steady continuous bore (Eqs 17, 18; 21 and 22 for Hertz's pressure), by adaptive quadrature.
+    """Force and torque of the steady continuous bore (Eqs 17 and 18).
 
     Parameters
     ----------
     pressure : callable
-        Takes a radius over the contact radius, a float from 0 to 1; returns any unit.
+        Pressure, in any unit, as a function of the radius over the contact radius (0 to 1).
     velocity : array_like
-        Over omega a, above 0, any shape.
+        Velocity over omega a, above 0, any shape.
 
     Returns
     -------
     forward, torque : np.ndarray
-        As paper.bore_forward and paper.bore_torque, for this pressure.
+        Forward friction and torque under this pressure, see paper.bore_forward and bore_torque.
 
     Raises
     ------
     ValueError
-        For another velocity, and for a load that is not positive.
+        If a velocity is out of range or the load is not positive.
     """
     velocity = checked("velocity", velocity, low_open=True)
     forward = _bore_mean(pressure, velocity, paper.forward_kernel, power=1)
@@ -85,7 +84,7 @@ def _total(pressure: Callable[[float], float], power: int) -> float:
 
 
 def _integral(function: Callable[[float], float], start: float, end: float) -> float:
-    from scipy.integrate import quad  # takes a third of a second, and few ask for it
+    from scipy.integrate import quad  # takes a third of a second to import
 
     return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
 

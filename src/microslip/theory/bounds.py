@@ -1,24 +1,25 @@
-"""How far vibration can lower the friction at most: brackets that need no simulation.
+"""Upper bounds of the reduction of friction by vibration.
 
-Over a period the work of the contact forces is dissipated; elastic energy returns.  Every point
-slips forward by the drift, and no detour makes a slip path shorter, so the dissipation is at least
-drift x period.  With F the force (|F| <= 1) and d = 1 - mu:
+Over a period the work of the contact forces is dissipated, because the elastic energy is periodic.
+Every point slips forward by velocity times period, and the length of its slip path is at least
+this distance. This is a lower bound of the dissipation. With the force F (|F| <= 1) and
+d = 1 - mu it gives:
 
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
-- bore (forward v phi t, angle phi sin t): the same with the torque, whose forward tractions give
-  at most phi d and whose lateral ones phi sqrt(d/5), 1/5 being the second moment of Hertz's
-  pressure about a diameter.  Hence d <= 1 / (5 (v - 1)^2) for v > 1.
-- longitudinal (forward v t + x sin t): the sphere never turns back where v >= x, so d = 0.
+- bore (forward v phi t, angle phi sin t): the work of the torque replaces that of the lateral
+  force. Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
+  1/5 is the second moment of Hertz's pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
+  v > 1.
+- longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
-All hold for any nu and any stiffness.  Arguments are the paper's dimensionless groups.
+The bounds hold for any nu and any stiffness. Arguments are the paper's dimensionless groups.
 
-Friction never falls with the forward velocity: two marches of the same oscillation at velocities v1
-and v2 that have become periodic dissipate no less than nothing on the difference of their motions,
-(mu1 - mu2)(v1 - v2) >= 0, since Coulomb's law at given pressure is monotone and the half-space is
-elastic.  Where the oscillation reverses its forward motion under the same load half a period later
-(motions/symmetry.py), friction is odd in the velocity, and so it is never negative for v > 0.
-Other motions may propel the contact (Motion.propels).
+Friction never falls with the forward velocity. Coulomb's law at a given pressure is monotone and
+the half-space is elastic. So for periodic states at velocities v1 and v2 of the same oscillation
+(mu1 - mu2)(v1 - v2) >= 0. If the oscillation reverses its forward motion half a period later under
+the same load (motions/symmetry.py), friction is odd in the velocity, so it is never negative for
+v > 0. Other motions can propel the contact (Motion.propels).
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def largest_drop_transverse(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_bore(velocity: float, amplitude: float) -> float:
-    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, whatever the amplitude."""
+    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, at any amplitude > 0."""
     if amplitude == 0.0:
         return 0.0
     excess = velocity - 1.0

@@ -1,8 +1,8 @@
-"""Every closed form by the motion it is of: the limit it holds in, its validity, its names.
+"""Closed forms by motion, each with its limit, its validity and its names.
 
-Whoever puts limits into a dataset, answers beyond a map, judges the paper or draws a curve looks a
-formula up here.  The forms are those under Hertz's pressure; under another one see
-datasets.pressure_limits.  The solver asks exact.py, so that names can be edited freely.
+Datasets, answers outside the tabulated range, the study of the paper's claims and figures use this
+catalogue. The forms apply to Hertz's pressure; for other pressures see datasets.pressure_limits.
+The solver uses exact.py instead, so that editing a name here changes no stored result.
 """
 
 from __future__ import annotations
@@ -14,33 +14,34 @@ from microslip.theory import drift, masing, paper
 from microslip.theory.exact import STATIC_LIMITS
 
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
-"""Limits that a form holds in."""
+"""Limits in which a form applies."""
 STATIC = "mu_static"
-"""Name of the exact limit for velocity to 0, whatever the motion."""
+"""Name of the exact limit for velocity to 0, for every motion."""
 
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """A formula for the friction, or the torque, of a motion.
+    """A formula for the friction or the torque of a motion.
 
     Attributes
     ----------
     motion, name : str
-        Name of the motion, and of the variable that holds the formula in a dataset.
+        Name of the motion, and of the variable in a dataset.
     function : callable
-        Takes arrays of the ``arguments``, dimensionless; returns such an array.
+        Dimensionless array as a function of dimensionless arrays of the ``arguments``.
     arguments : tuple of str
         "velocity", "amplitude" or both.
     limit : str
-        What it holds in: ANYWHERE, LARGE or SLOW.
+        Limit in which the form applies: ANYWHERE, LARGE or SLOW.
     equation, label : str
-        Equation of the paper ("" for those that the paper has not), and the name in a legend.
+        Equation of the paper ("" if the paper does not contain it), and the name in a legend.
     long_name, description : str
-        What a dataset calls it; description: "" where the long name says it all.
+        Long name and description in a dataset; an empty description is left out.
     exact : bool
-        Whether it is exact there, else an estimate.
+        True if the form is exact in its limit, False for an estimate.
     any_poisson, any_pressure : bool
-        Whether it holds for every Poisson's ratio, else for 0; and for every pressure.
+        True if the form applies to every Poisson's ratio (else to 0), and to every pressure (else
+        to Hertz's).
     """
 
     motion: str
@@ -63,7 +64,7 @@ _EXACT = "static friction, exact limit of mu_macro for velocity to 0"
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
-"""Forms by motion and by name, in the order in which datasets hold them."""
+"""Forms by motion and name, in the order of datasets."""
 for _form in (
     ClosedForm(
         *("transverse", "mu_large_amplitude", paper.large_amplitude_transverse, _BOTH, LARGE),
@@ -143,4 +144,4 @@ DRIFT_FORMS = {
     )
     for motion, function in (("transverse", drift.transverse_drift), ("bore", drift.bore_drift))
 }
-"""Forms of the velocity under a force, by motion."""
+"""Forms of the mean velocity under a constant force, by motion."""

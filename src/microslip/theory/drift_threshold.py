@@ -1,7 +1,7 @@
-"""The force above which a vibrated contact drifts, where it is known exactly.
+"""Exact threshold force above which a vibrated contact drifts.
 
-It is the static limit: a constant force keeps the forward force of the contact constant, as does a
-velocity that vanishes.  The contact must not oscillate along the force.
+The threshold equals the static limit, because the forward force of the contact is constant in both
+cases. This applies to oscillations without a component along the force.
 """
 
 from __future__ import annotations
@@ -12,26 +12,23 @@ from scipy.optimize import brentq
 from microslip.theory.exact import STATIC_LIMITS
 
 KNOWN = ("transverse", "zigzag", "bore")
-"""Motions under Hertz's pressure that it is known of."""
+"""Motions with an exact threshold under Hertz's pressure."""
 WIDEST = 1e3
-"""Amplitude at which it is smaller than any force here."""
+"""Amplitude at which the threshold is practically zero: upper end of the search."""
 
 
 def is_known(motion: str, pressure: str, poisson: float) -> bool:
-    """Whether the threshold of a motion under a pressure, by their names, is known exactly."""
-    return pressure == "hertz" and motion in KNOWN and (poisson == 0.0 or any_poisson(motion))
-
-
-def any_poisson(motion: str) -> bool:
-    """Whether that of one of KNOWN holds for every Poisson's ratio, else for 0."""
-    return STATIC_LIMITS[motion].any_poisson
+    """True if the threshold of a motion under a pressure is exact; both are given by name."""
+    if pressure != "hertz" or motion not in KNOWN:
+        return False
+    return poisson == 0.0 or STATIC_LIMITS[motion].any_poisson
 
 
 def threshold(motion: str, amplitude: np.ndarray | float) -> np.ndarray | float:
-    """The force over mu F_z, an array or a float like the amplitude, >= 0."""
+    """Threshold force over mu F_z, of the shape of the amplitude (>= 0)."""
     return STATIC_LIMITS[motion].function(amplitude)
 
 
 def first_amplitude(motion: str, force: float) -> float:
-    """Amplitude above which a force above 0 and below 1 moves the contact."""
+    """Amplitude above which a force (0 to 1, exclusive) moves the contact."""
     return float(brentq(lambda a: float(threshold(motion, a)) - force, 0.0, WIDEST, xtol=1e-14))

@@ -1,7 +1,7 @@
-"""Closed forms of motions under Hertz's pressure, by name: their points need no marching.
+"""Closed forms of motions under Hertz's pressure, which replace simulations.
 
-Stored results depend on this file and on the functions in it.  What formulas are called and which
-others there are is in catalogue.py, on which no stored result depends.
+Stored results depend on this file and on its functions. The names of these and other formulas are
+in catalogue.py, which stored results do not depend on.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from microslip.theory import bounds, paper
 
 
 class StaticLimit(NamedTuple):
-    """The exact limit of the friction for velocity to 0.
+    """Exact limit of friction for velocity to 0.
 
     Attributes
     ----------
     function : callable
-        Takes an array of amplitudes, dimensionless.
+        Friction as a function of an array of amplitudes, dimensionless.
     any_poisson : bool
-        Whether it holds for every Poisson's ratio, else for 0.
+        True if the limit applies to every Poisson's ratio, else to 0 only.
     """
 
     function: Callable
@@ -31,7 +31,9 @@ STATIC_LIMITS = {
     "transverse": StaticLimit(paper.static_limit_transverse),
     "bore": StaticLimit(paper.static_limit_bore, any_poisson=True),
     "longitudinal": StaticLimit(paper.static_limit_longitudinal),
-    "zigzag": StaticLimit(paper.static_limit_transverse),  # it knows the turning points alone
+    "zigzag": StaticLimit(
+        paper.static_limit_transverse
+    ),  # the limit depends on the turning points only
 }
 
 LARGEST_DROPS = {

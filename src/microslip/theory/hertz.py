@@ -1,14 +1,14 @@
 """Constants and closed forms of one Hertz contact: normal load, tangential load and torsion.
 
-Working units unless a docstring says otherwise: contact radius a = 1, mu*F_z = 1 and
-u_lim = 1 (the displacement at which the whole contact slides). Then the reduced shear modulus
-is 3/4, tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
+Working units, unless a docstring states others: contact radius a = 1, mu*F_z = 1 and u_lim = 1 (the
+displacement at which the whole contact slides). In these units the reduced shear modulus is 3/4,
+tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
 
-Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is
-not finite or lies outside the range stated with it.
+Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
+finite or outside its range.
 
-Parts of SciPy are named in full, so that each is loaded when it is first called: a command that
-calls none does not wait for it.
+Subpackages of SciPy are written in full (`scipy.special.ellipe`), so that each is imported at its
+first call only.
 """
 
 from functools import cache
@@ -19,7 +19,7 @@ import scipy
 G_STAR = 0.75
 """Reduced shear modulus 4G/(2-nu), dimensionless (from u_lim = 3 mu F_z / (4 G* a))."""
 TORQUE_FULL_SLIP = 3 * np.pi / 16
-"""Torque of a contact that slips everywhere about its centre, in mu*F_z*a."""
+"""Torque of a contact that rotates about its centre and slips everywhere, in mu*F_z*a."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _UNIT_NODES, _UNIT_WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
@@ -32,9 +32,10 @@ def checked(
     high: float = np.inf,
     low_open: bool = False,
 ) -> np.ndarray:
-    """Return `values` as a float array, or raise ValueError naming what is wrong.
+    """Return `values` as a float array.
 
-    Allowed are finite numbers with low <= value <= high (low < value where `low_open`).
+    Raises ValueError unless all values are finite with low <= value <= high (low < value if
+    `low_open`).
     """
     array = np.asarray(values, dtype=float)
     good = np.isfinite(array) & (array <= high) & ((array > low) if low_open else (array >= low))
@@ -47,20 +48,19 @@ def checked(
 
 
 def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
-    """Largest shear traction the contact can carry, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
+    """Friction bound of Hertz's pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
-    r >= 0: distance from the centre (any shape), else ValueError. Dimensionless, 0 outside the
-    contact. Hertz.
+    r >= 0: distance from the centre (any shape), else ValueError. Dimensionless; 0 outside the
+    contact.
     """
     r = checked("r", r)
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
 
 
 def load_inside(r: np.ndarray | float) -> np.ndarray | float:
-    """Fraction of the normal load carried within radius r, 1 - (1 - r^2)^(3/2).
+    """Fraction of the normal load within radius r under Hertz's pressure, 1 - (1 - r^2)^(3/2).
 
-    r >= 0 (any shape), else ValueError; 1 from the edge outwards. Dimensionless. Integral of
-    Hertz's pressure.
+    r >= 0 (any shape), else ValueError. Dimensionless; 1 for r >= 1.
     """
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
 
@@ -68,31 +68,31 @@ def load_inside(r: np.ndarray | float) -> np.ndarray | float:
 def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Mean friction bound of each ring between consecutive radii.
 
-    edges: n + 1 radii, strictly increasing in 0..1. Returns n values, dimensionless; times the
-    ring areas they sum to the load between the first and the last edge. Raises ValueError also
-    when the edges are not one increasing row.
+    edges: n + 1 radii, strictly increasing in 0..1, else ValueError. Returns n values,
+    dimensionless. The sum of values times ring areas is the load between the first and the last
+    edge.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
         raise ValueError(f"edges = {edges}: allowed is one row of at least two increasing radii")
-    # With y = sqrt(1 - r^2) the mean is (y1^3 - y2^3) / (pi (y1^2 - y2^2)); the common factor
-    # y1 - y2 is divided out so that thin rings lose no digits.
+    # With y = sqrt(1 - r^2) the mean is (y1^3 - y2^3) / (pi (y1^2 - y2^2)). The common factor
+    # y1 - y2 is cancelled, so that thin rings lose no digits.
     y = np.sqrt((1 - edges) * (1 + edges))
     inner, outer = y[:-1], y[1:]
     return (inner**2 + inner * outer + outer**2) / (np.pi * (inner + outer))
 
 
 def D(c: np.ndarray | float) -> np.ndarray | float:
-    """Complete elliptic integrals K(k) - E(k) at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
+    """Difference K(k) - E(k) of elliptic integrals at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
 
-    0 < c <= 1 (any shape), else ValueError. Dimensionless; falls from infinity (as ln(4/c) - 1) to
+    0 < c <= 1 (any shape), else ValueError. Dimensionless; falls from infinity, as ln(4/c) - 1, to
     D(1) = 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
 
 def _D_of_log(log_c: np.ndarray) -> np.ndarray:
-    """D as a function of ln c <= 0: accurate for c next to 1 and for c that underflows."""
+    """D as a function of ln c <= 0, accurate also for c near 1 and for c that underflows."""
     k_squared = 0.0 - np.expm1(2 * log_c)
     near = k_squared / 3 * scipy.special.elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
     return np.where(log_c < -20.0, np.log(4.0) - 1 - log_c, near)
@@ -105,7 +105,7 @@ def D_half() -> float:
 
 
 def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
-    """Angle of pure torsion, from rest, that leaves a stick circle of this radius (Eq 24).
+    """Angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
     0 < stick_radius <= 1, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
     """
@@ -114,22 +114,22 @@ def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.n
 
 
 def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
-    """Stick radius left by pure torsion through `angle` from rest (inverse of Eq 24).
+    """Stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
-    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns 0 < c <= 1:
-    angle 0 gives 1, and where c would underflow the smallest normal float, since the centre never
-    slips.
+    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a radius
+    above 0 and at most 1, which is 1 at angle 0. The centre never slips, so a radius that
+    underflows is the smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
-    # Newton in ln c. There D falls with slope -E(k), between -pi/2 and -1, and is concave, so
-    # that from the tangent at c = 1 the iterates approach the root from one side.
+    # Newton's method in ln c. D has the slope -E(k), between -pi/2 and -1, and is concave. So the
+    # iterates that start from the tangent at c = 1 approach the root from one side.
     log_c = -2 / np.pi * target
     for _ in range(30):
         slope = scipy.special.ellipe(-np.expm1(2 * log_c))
         change = (_D_of_log(log_c) - target) / slope
         log_c = np.minimum(log_c + change, 0.0)
         if np.all(np.abs(change) <= 1e-8 * np.abs(log_c)):
-            break  # Newton squares the error, so this last step was exact
+            break  # the error of the next iterate is the square of this one
     return np.maximum(np.exp(log_c), np.finfo(float).tiny)
 
 
@@ -151,86 +151,87 @@ def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
 
 
 def _twist_unit(poisson: np.ndarray | float) -> np.ndarray:
-    """Factor between D and the angle: torsion feels G alone, u_lim feels G* = 4G/(2-nu)."""
+    """Factor between D and the angle: torsion depends on G, u_lim on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
 def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
     """Tangential force over mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
 
-    u >= 0 in u_lim (any shape), else ValueError; 1 from u = 1 on. Dimensionless. Cattaneo and
-    Mindlin.
+    u >= 0 in u_lim (any shape), else ValueError. Dimensionless; 1 for u >= 1. Formula of Cattaneo
+    and Mindlin.
     """
     u = np.minimum(checked("u", u), 1.0)
-    with np.errstate(divide="ignore"):  # ln 0 = -inf is right: everything slides
+    with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding
         return -np.expm1(1.5 * np.log1p(-u))
 
 
 def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
     """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
 
-    u >= 0 in u_lim (any shape), else ValueError; 0 from u = 1 on. Dimensionless (in a).
+    u >= 0 in u_lim (any shape), else ValueError. In units of a; 0 for u >= 1.
     """
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
 
 def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray | float:
-    """Shear traction at radius r after the displacement u from rest: g, less g_c in the stick zone.
+    """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
 
-    r >= 0, u >= 0 in u_lim (broadcast), else ValueError. Dimensionless. The bound of the inner
-    contact of radius c = sqrt(1 - u) is g_c = 3/(2 pi) sqrt(c^2 - r^2). Cattaneo and Mindlin;
-    exact for nu = 0.
+    It is g - g_c in the stick zone and g outside, where g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
+    of an inner contact of radius c = sqrt(1 - u). Exact for nu = 0. r >= 0, u >= 0 in u_lim
+    (broadcast), else ValueError. Dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
     sticks = gap > 0
-    # The difference of the two roots, written so that a small u loses no digits.
+    # The difference of two roots, in a form that loses no digits at small u.
     roots = np.sqrt(np.where(sticks, gap + u, 1.0)) + np.sqrt(np.where(sticks, gap, 0.0))
     return np.where(sticks, 1.5 / np.pi * u / roots, friction_bound(r))[()]
 
 
 def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Share tau/g of the friction bound that pure torsion from rest uses at radius r.
+    """Fraction tau/g of the friction bound that pure torsion from rest uses at radius r.
 
-    r >= 0, 0 <= stick_radius <= 1 (broadcast; 0: slip everywhere), else ValueError. In 0..1, 1
-    from the stick radius outwards, the same for every Poisson's ratio. Lubkin (1951): the
-    rigid-rotation punches of all radii s from c to 1, each turned by -d phi_lk(s), summed in
-    closed form.
+    r >= 0, 0 <= stick_radius <= 1 (broadcast; 0: slip everywhere), else ValueError. The fraction is
+    in 0..1, 1 outside the stick radius, and independent of Poisson's ratio. It is the superposition
+    in closed form of punches of all radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin
+    1951).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
     c = np.where(sticks, c, 0.5)
     rho = np.where(sticks, r, 0.0) / c
     # The sum is 1 - Lambda0 (Heuman), with incomplete integrals of modulus c at the angle
-    # arcsin(rho). Of the two complementary angles this one keeps the share exact at r = 0.
+    # arcsin(rho). This one of two complementary angles is exact at r = 0.
     cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
     first = rho * scipy.special.elliprf(cos2, delta2, 1.0)
     rest = rho**3 / 3 * scipy.special.elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
-    # c^2 K(k) tends to 0 with c, though c^2 alone underflows first.
+    # c^2 K(k) tends to 0 with c, but c^2 underflows before K(k) does.
     k_term = np.where(c > 1e-150, c * c * scipy.special.ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
     share = 2 / np.pi * (scipy.special.ellipe((1 - c) * (1 + c)) * first - k_term * rest)
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
 
 
 def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Circumferential traction of pure torsion from rest with this stick radius.
+    """Circumferential traction at radius r in pure torsion from rest.
 
-    r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; the friction bound
-    in the slip ring. Lubkin (1951), see lubkin_share.
+    r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; equal to the
+    friction bound in the slip annulus. See lubkin_share.
     """
     return lubkin_share(r, stick_radius) * friction_bound(r)
 
 
 def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Torque of pure torsion from rest with this stick radius (integral of lubkin_traction).
+    """Torque of pure torsion from rest as a function of the stick radius.
 
-    0 <= stick_radius <= 1 (any shape), else ValueError. Returns mu*F_z*a: 0 at 1, TORQUE_FULL_SLIP
-    at 0; the same for every Poisson's ratio. Lubkin (1951), as the sum of the punch torques
-    (16/3) G s^3 (-d phi_lk(s)) from s = c to 1.
+    0 <= stick_radius <= 1 (any shape), else ValueError. In mu*F_z*a: 0 at stick radius 1 and
+    TORQUE_FULL_SLIP at 0, independent of Poisson's ratio. It is the integral of lubkin_traction,
+    and the sum of the torques of punches (16/3) G s^3 (-d phi_lk(s)) from s = c to 1 (Lubkin
+    1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
-    # d D/ds = -E(k)/s leaves s^2 E(k). With s = t^2 its only singular point, s^4 ln s at 0, is
-    # flat enough for a fixed Gauss rule.
+    # With dD/ds = -E(k)/s the integrand is s^2 E(k). After s = t^2 its only singularity, s^4 ln s
+    # at 0, is weak enough for a fixed Gauss rule.
     start = np.sqrt(c)
     length = (1 - c) / (1 + start)
     t = start + length * _UNIT_NODES

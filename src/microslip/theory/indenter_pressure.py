@@ -1,4 +1,4 @@
-"""The interface of closed forms to the pressure under an axisymmetric indenter."""
+"""Interface of the pressure under an axisymmetric indenter, as closed forms use it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 
 class IndenterPressure(Protocol):
-    """The part of a pressure.Pressure of an axisymmetric indenter that closed forms ask for.
+    """Attributes of a pressure.Pressure that closed forms of axisymmetric indenters use.
 
     Attributes
     ----------
     G_star, stiffness : float
-        Reduced shear modulus; force per uniform displacement without slip.
+        Reduced shear modulus, and force per uniform displacement without slip.
     bound, depth, radius, of_load, load : callable
         See pressure.Pressure.
     """
@@ -41,4 +41,4 @@ class IndenterPressure(Protocol):
     def load(self) -> Callable: ...
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load at a depth >= 0, any shape."""
+        """Load at an indentation depth >= 0, of the shape of the depth."""

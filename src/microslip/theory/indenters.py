@@ -1,8 +1,7 @@
-"""Closed forms for any axisymmetric indenter at Poisson's ratio 0 (bore: any): static limits
-under an oscillation, and torsion.
+"""Static limits and torsion of any axisymmetric indenter, by quadrature to about 1e-8.
 
-For a sphere they are those of paper.py, which are quicker and better tested; here they are
-integrals over the record of a pressure.Pressure, to about 1e-8.  Dimensionless as there.
+The limits apply at Poisson's ratio 0, and that of the bore at any ratio. For a sphere they agree
+with the closed forms of `paper`, which are faster. Quantities are dimensionless as in `paper`.
 """
 
 from __future__ import annotations
@@ -16,24 +15,26 @@ from microslip.theory.indenter_pressure import IndenterPressure
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_STICK_RADIUS = 1e-6
+"""Stick radius below which `torsion_stick_radius` returns 0, over the contact radius."""
 
 
 def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
-    """Static friction under transverse oscillation, v -> 0, nu = 0.
+    """Static friction under transverse oscillation for v -> 0 and nu = 0.
 
-    Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see paper.static_limit_transverse.
+    It is the integral of sqrt(g^2 - (g - g_c)^2) over the stick zone, see
+    paper.static_limit_transverse.
 
     Parameters
     ----------
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     amplitude : float
-        In u_lim, >= 0.
+        Amplitude in u_lim, >= 0.
 
     Returns
     -------
     float
-        Over mu F_z, 0 to 1.
+        Friction over mu F_z, 0 to 1.
     """
     if amplitude >= 1.0:
         return 0.0
@@ -46,23 +47,10 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
 
-def static_stick_zone(pressure: IndenterPressure, stick_radius: np.ndarray | float) -> np.ndarray:
-    """Share of the load inside a stick radius, 0 to 1 (Eq 9).
-
-    Parameters
-    ----------
-    pressure : pressure.Pressure
-        Pressure of an axisymmetric indenter.
-    stick_radius : array_like
-        Over the contact radius, 0 to 1, any shape.
-    """
-    return pressure.load(stick_radius, 1.0)
-
-
 def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
-    """Angle of pure torsion, from rest, that leaves a stick circle (Eq 24 for a sphere).
+    """Angle of pure torsion from rest as a function of the stick radius (Eq 24 for a sphere).
 
-    Torsion is a sum of turned flat punches, whose inversion by Abel gives
+    Torsion is a superposition of rotating flat punches. Abel's inversion gives
     phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.
 
     Parameters
@@ -70,40 +58,40 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     stick_radius : float
-        Over the contact radius, above 0 and at most 1.
+        Stick radius over the contact radius, above 0 and at most 1.
     poisson : float
         Poisson's ratio, 0 to 0.5.
 
     Returns
     -------
     float
-        In u_lim / a.
+        Angle in u_lim / a.
     """
     end = np.arccosh(1.0 / stick_radius)
-    eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound falls like a root at the edge
+    eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound has a square-root edge
     step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
     bound = pressure.bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
 
 
 def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Stick radius left by pure torsion from rest, the inverse of torsion_angle.
+    """Stick radius after pure torsion from rest, the inverse of torsion_angle.
 
     Parameters
     ----------
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     angle : float
-        In u_lim / a, >= 0.
+        Angle in u_lim / a, >= 0.
     poisson : float
         Poisson's ratio, 0 to 0.5.
 
     Returns
     -------
     float
-        Over the contact radius; 0 below SMALLEST_STICK_RADIUS.
+        Stick radius over the contact radius; 0 below SMALLEST_STICK_RADIUS.
     """
-    from scipy.optimize import brentq  # takes long to load, and few ask for it
+    from scipy.optimize import brentq  # takes long to import
 
     if angle <= 0.0:
         return 1.0
@@ -118,7 +106,8 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
 def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: float) -> np.ndarray:
     """Circumferential traction of pure torsion inside the stick circle.
 
-    The turned punches summed up: (2 r/pi) Integral g(t)/t d(theta), t^2 = c^2 + (c^2 - r^2) tan^2.
+    The superposition of rotating punches gives (2 r/pi) Integral g(t)/t d(theta) with
+    t^2 = c^2 + (c^2 - r^2) tan^2 theta.
 
     Parameters
     ----------
@@ -132,7 +121,7 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     Returns
     -------
     np.ndarray
-        Over mu F_z / a^2, of the shape of r.
+        Traction over mu F_z / a^2, of the shape of r.
     """
     r = np.asarray(r, float)[..., None]
     inside = stick_radius**2 - r**2
@@ -144,23 +133,23 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
 
 
 def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
-    """Static friction under oscillating bore, v -> 0.
+    """Static friction under oscillating bore for v -> 0.
 
-    4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.
+    It is 4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.
 
     Parameters
     ----------
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     angle : float
-        Half stroke of the oscillation in u_lim / a, >= 0.
+        Amplitude of the rotation in u_lim / a, >= 0.
     poisson : float
         Poisson's ratio, 0 to 0.5.
 
     Returns
     -------
     float
-        Over mu F_z, 0 to 1.
+        Friction over mu F_z, 0 to 1.
     """
     c = torsion_stick_radius(pressure, angle, poisson)
     if c in (0.0, 1.0):
@@ -175,14 +164,14 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
 
 
 def _kink(pressure: IndenterPressure) -> float:
-    """Radius of the flat end of an indenter, where its pressure has a kink; 0 if it has none."""
+    """Radius of the flat end of an indenter, where its pressure has a kink; 0 without one."""
     return float(pressure.radius(1e-300))
 
 
 def _over_the_circle(
     function: Callable[[np.ndarray], np.ndarray], radius: float, kink: float
 ) -> float:
-    """Integral of a function of the radius over a circle, at whose edge it falls like a root."""
+    """Integral over a circle of a function of the radius with a square-root edge."""
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):
         r = end - (end - start) * _NODES**4

@@ -1,9 +1,9 @@
-"""Kinks in the friction of a motion: borders for its interpolation.
+"""Kinks in the friction of a motion, where its interpolation needs a border.
 
-Across an amplitude that stops all sticking in the limit of slow sliding, and across the velocity
-above which nothing sticks at any time, friction goes on, and its slope or its curvature does not.
-A border need not be exact: what is left of a kink next to it is seen where friction is sampled.
-No stored result depends on this.
+At two places friction is continuous, but its slope or curvature is not: at the amplitude from which
+on nothing sticks in slow sliding, and at the velocity above which nothing sticks at any time. A
+border can be inexact, because the samples of friction resolve the rest of the kink. Stored results
+do not depend on this module.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ import numpy as np
 from microslip.foundation import spec
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate along two directions, with numbers that are 1 if not given."""
+"""Name of the motions that oscillate along two directions; their numbers are 1 by default."""
 LOAD = "normal"
-"""Name of those whose load, in a share that is 1 if not given, or indentation oscillates."""
+"""Name of the motions whose normal load or indentation oscillates; the load is 1 by default."""
 
 
 class Kinks(NamedTuple):
-    """The amplitudes and the velocity at which friction has kinks; all dimensionless.
+    """Amplitudes and velocity of the kinks of friction, dimensionless.
 
     Attributes
     ----------
     amplitudes : tuple of float
-        Amplitudes of kinks below the velocity of the kink, sharpest at low velocities.
+        Amplitudes of kinks that exist below the velocity of the kink.
     velocity : tuple of float
-        Velocity of the kink: () there is none; (v,) the same at all amplitudes;
-        (n0, n1, c0, c1, c2) at (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) of the amplitude A.
+        Velocity of the kink. (): there is no kink; (v,): v at all amplitudes;
+        (n0, n1, c0, c1, c2): (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()
@@ -39,41 +39,42 @@ class Kinks(NamedTuple):
 KINKS = {
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
-    # At the amplitude 1 contact is lost.  Below it, above some velocity the load never grows
-    # faster than the springs at the growing edge are stretched, and friction is full: the largest
-    # A sin t / (1.5 (1 - A cos t)^(1/3)) over t, to 2 % from above.
+    # Contact is lost at the amplitude 1. At smaller amplitudes friction is full above a velocity,
+    # because the load never grows faster than the springs at the growing edge are stretched. The
+    # velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up to 2 % larger.
     "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
-"""By the names of motions, under Hertz's pressure."""
+"""Kinks by motion under Hertz's pressure."""
 UNDER_ANY = {
-    # At the amplitude 1 all of the contact slides sideways.  Above the velocity some of it no
-    # longer sticks at the turning points: read off the second differences of friction under Hertz's
-    # pressure at the amplitudes 0.2, 0.5, 1, 2 and 3 (0.030, 0.113, 0.30, 0.56, 0.69), where it
-    # jumps.  A smooth curve that passes a little above these bends the cells next to it less than
-    # one through them; under others it is near enough to save a tenth to a quarter of the points.
+    # The whole contact slides sideways at the amplitude 1. Above the velocity a part of the contact
+    # no longer sticks at the turning points. The curve is fitted to jumps in the second differences
+    # of friction under Hertz's pressure: 0.030, 0.113, 0.30, 0.56 and 0.69 at the amplitudes 0.2,
+    # 0.5, 1, 2 and 3. It passes a little above them, because this deforms the neighbouring cells
+    # less. Under other pressures it saves a tenth to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
-    # Above the velocity A the contact is never pulled back, and friction is full; from the
-    # amplitude 1 on all of it slides backward, too.
+    # Friction is full at velocities above A, because the contact never moves backward. From the
+    # amplitude 1 on the whole contact slides backward, too.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
-    # The same of springs that are pressed deeper; at the amplitude 1 contact is lost.
+    # Springs that are pressed deeper have the same velocity. Contact is lost at the amplitude 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
 """Kinks under any pressure, in the units of that pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """Known kinks of a motion under a pressure, both by the solver's names; most have none."""
+    """Kinks of a motion under a pressure, both by their names; most motions have none."""
     of_hertz = KINKS if pressure == "hertz" else {}
-    known = UNDER_ANY | of_hertz
-    return known[motion] if motion in known else _of_family(motion)
+    kinks = UNDER_ANY | of_hertz
+    return kinks[motion] if motion in kinks else _of_family(motion)
 
 
 def _of_family(motion: str) -> Kinks:
-    """Kinks of a loop, and of a load that oscillates together with another component.
+    """Kinks of loops, and of an oscillating load together with another component.
 
-    Above the velocity that goes with its largest one forward, a loop never goes back.  There is no
-    kink there, but what slower velocities feel is over that, however small the amplitude; under a
-    load that oscillates it is over the amplitude.  That load is lost from some amplitude on.
+    The velocity of a loop is the largest velocity of its forward oscillation: at larger velocities
+    the loop never moves backward. Friction has no kink there, but it changes on this scale of
+    velocities at all amplitudes. Under an oscillating load the scale is the amplitude, and contact
+    is lost from an amplitude on.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):
@@ -87,7 +88,7 @@ def _of_family(motion: str) -> Kinks:
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
-    """Velocity of the kink at amplitudes >= 0, of their shape, where `kinks.velocity` has one."""
+    """Velocity of the kink at amplitudes >= 0, of their shape. `kinks.velocity` is not empty."""
     first, *rest = kinks.velocity
     amplitude = np.asarray(amplitude, float)
     if not rest:

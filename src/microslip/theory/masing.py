@@ -1,9 +1,10 @@
-"""Longitudinal oscillation without marching: the curve of first loading with Masing's memory.
+"""Friction under longitudinal oscillation in closed form, by Masing's rules.
 
-While the sphere moves along one line the tangential force follows from its displacement alone: on
-the first loading F(d) (d in u_lim, F over mu F_z; Cattaneo and Mindlin's 1 - (1 - d)^(3/2) for a
-sphere), after each turn the same curve at twice the scale, back to where the last turn was, and the
-older branch from there on.  Exact for Poisson's ratio 0.  Dimensionless as in theory.
+If the sphere moves along one line, the tangential force depends on its displacement only. The first
+loading is F(d), d in u_lim and F over mu F_z; for a sphere it is 1 - (1 - d)^(3/2) (Cattaneo and
+Mindlin). After each turn the force follows the same curve at twice the scale, up to the previous
+turn, and then the older branch. This is exact for Poisson's ratio 0. Quantities are dimensionless
+as in `paper`.
 """
 
 from collections.abc import Callable
@@ -29,22 +30,22 @@ def longitudinal(
     Parameters
     ----------
     velocity : array_like
-        Over omega u_lim, >= 0; 0: its limit.
+        Velocity over omega u_lim, >= 0; 0: the static limit.
     amplitude : array_like
-        In u_lim, >= 0; the two broadcast.
+        Amplitude in u_lim, >= 0; broadcast with the velocity.
     curve : callable
-        Force over mu F_z after a displacement from rest, by default that of a sphere.
+        Force over mu F_z as a function of the displacement from rest; default: a sphere.
 
     Returns
     -------
     np.ndarray
-        To about 1e-10, by quadrature; 1 where the motion never turns back (velocity >= amplitude),
-        1 less the curve at the amplitude for velocity to 0.
+        Friction over mu F_z, by quadrature to about 1e-10. It is 1 if the motion never turns back
+        (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
 
     Raises
     ------
     ValueError
-        For another velocity or amplitude.
+        If a velocity or an amplitude is out of range.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     velocity, amplitude = np.broadcast_arrays(velocity, amplitude)
@@ -56,16 +57,16 @@ def longitudinal(
 
 
 def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
-    """Mean force where 0 < v < x, so that the motion turns back, shape (n,)."""
+    """Mean force for 0 < v < x, where the motion turns back, shape (n,)."""
 
     def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
 
-    back = np.arccos(-v / x)  # turns back, and forward again
+    back = np.arccos(-v / x)  # phases of the two turns: back, and forth
     forth = 2.0 * np.pi - back
     end = back + 2.0 * np.pi
     stroke = travel(back) - travel(forth)
-    # What lies behind the last turn back has been forgotten when the sphere gets there again.
+    # The loop closes when the sphere returns to the place of its last turn back.
     closed = _first(lambda phase: travel(phase) - travel(back), forth, end)
 
     def backward(phase: np.ndarray) -> np.ndarray:
@@ -82,12 +83,12 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Change of the force on the way from a turn on: the first curve at twice the scale."""
+    """Change of the force since a turn: the curve of first loading at twice the scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
 def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Root of a rising function between low and high, high if there is none; shape (n,)."""
+    """Root of a rising function between low and high, or high without a root; shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

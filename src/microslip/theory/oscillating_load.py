@@ -1,15 +1,16 @@
-"""Sliding forward while the normal load or the indentation oscillates, without marching.
+"""Friction of forward sliding under an oscillating normal load or indentation, in closed form.
 
-While a contact moves along one line its force is that of independent springs at |x| < c(d), d the
-indentation over its mean and c the contact radius, each of which yields at the way d - h(x) in
-u_lim, h(x) the depth at which that radius is x: x^2 for a sphere (Popov, Popov and Popov, Mater.
-Res. 4, 2017).  A spring that came into contact at T has been stretched to
+A contact that moves along one line has the force of independent springs at |x| < c(d) (Popov, Popov
+and Popov, Mater. Res. 4, 2017). Here d is the indentation over its mean and c the contact radius. A
+spring at x yields at the stretch d - h(x) in u_lim, where h(x) is the indentation at the contact
+radius x: x^2 for a sphere. The stretch of a spring that came into contact at the time T is
 
-    least of  v (t - tau) + d(tau) - h(x)  over  tau from T to t,
+    min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-since it lost what it carried above its bound at every tau.  So, with phi(t) = d(t) - v t, it lacks
-phi(t) - min phi of its bound, whatever its x, and the mean over the springs is one over T.  Exact
-for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressure.Pressure.
+because the stretch is at most that of yielding at every tau. So the stretch of yielding exceeds the
+stretch by phi(t) - min phi with phi(t) = d(t) - v t, at any x. The mean over the springs is an
+integral over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working
+units of an indenter's pressure.Pressure.
 """
 
 from __future__ import annotations
@@ -27,18 +28,19 @@ _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
 _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
 """Quadrature on 0..1, clustered at both ends."""
 _HALVINGS = 60
-_LOOKED_AT = 2001
+_SAMPLES = 2001
+"""Points in half a period at which the sign of the slope of phi is sampled."""
 
 
 def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
-    """Mean normal load over that of the reference state.
+    """Mean normal load over the load at the mean indentation or load.
 
     Parameters
     ----------
     amplitude : float
-        Amplitude of the load or of the indentation, over its mean, >= 0.
+        Amplitude of the load or of the indentation over its mean, >= 0.
     by_load : bool
-        Whether it is the load that oscillates, else the indentation.
+        True if the load oscillates, False if the indentation oscillates.
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     """
@@ -46,7 +48,7 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     loss = np.pi - motion.touch
     if by_load:
         return float(loss + amplitude * np.sin(loss)) / np.pi
-    # at the height where contact is lost the load goes like its power 3/2: clustered twice
+    # the load has the power 3/2 where contact is lost, so the nodes are clustered twice
     t = np.pi - loss * _NODES**2
     return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
@@ -57,9 +59,9 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     Parameters
     ----------
     velocity : float
-        Over omega u_lim, omega the frequency of the oscillation, >= 0; 0: the limit.
+        Velocity over omega u_lim, >= 0; omega: angular frequency; 0: the static limit.
     amplitude, by_load, pressure
-        As for mean_load.
+        See mean_load.
     """
     if amplitude == 0.0:
         return 1.0
@@ -72,8 +74,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
-        # springs that come into contact while phi falls, or never lose it, lack what those at its
-        # next low do
+        # springs that are always in contact, or come into contact while phi falls, have the lack of
+        # those that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
@@ -84,7 +86,7 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
 
 
 class _Motion:
-    """The indentation over a period, from its least at t = 0 to its largest at pi and back."""
+    """Indentation over a period, from its minimum at t = 0 to its maximum at pi and back."""
 
     def __init__(
         self, velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure
@@ -101,22 +103,22 @@ class _Motion:
         return self.depth(t) - self.velocity * t
 
     def touched(self, radius: np.ndarray) -> np.ndarray:
-        """When the growing contact has a radius."""
+        """Time at which the growing contact has a radius."""
         load = self.pressure.load(radius, radius)
         height = load if self.by_load else self.pressure.depth(radius)
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """A function with the sign of phi' that is finite where contact begins."""
+        """A function with the sign of phi', finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
-        if self.by_load:  # the load grows by the stiffness of the contact as it is
+        if self.by_load:  # the load grows with the present stiffness of the contact
             radius = self.pressure.radius(self.pressure.of_load(height))
             return self.amplitude * np.sin(t) - self.velocity * self.pressure.stiffness * radius
         return self.amplitude * np.sin(t) - self.velocity
 
     def rises(self) -> list[tuple[float, float]]:
         """Intervals of the growing contact in which phi rises, as (low, high)."""
-        t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _LOOKED_AT)) ** 2
+        t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _SAMPLES)) ** 2
         up = self._climbs(t) > 0.0
         up[-1] = False
         turns = np.flatnonzero(up[1:] != up[:-1])
@@ -128,7 +130,7 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Radii at which a spring that comes into contact begins to slip before a later low."""
+        """Contact radii at which phi equals one of its later minima, at `later`."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 level = self.phi(np.array([other]))
@@ -142,9 +144,9 @@ class _Motion:
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """Integral over time of phi - min phi from `start` (n,) on.
+        """Integral over time of phi - min phi from the times `start`, shape (n,).
 
-        phi rises until `high`, and in the intervals `later`.
+        phi rises from `start` to `high`, and again in the intervals `later`.
         """
         level = self.phi(start)
         last = later[-1][1] if later else high
@@ -163,7 +165,7 @@ class _Motion:
 def _first_not(
     holds: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Point before `high` where a condition that is true at `low` becomes false, shape (n,)."""
+    """Point between low and high where a condition changes from true to false, shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

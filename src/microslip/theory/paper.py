@@ -1,12 +1,12 @@
-"""The closed forms of the paper, one function each, and the exact limits for v -> 0.
+"""Closed forms of the paper, and exact static limits (v -> 0).
 
-All quantities are dimensionless: lengths in the contact radius a, amplitudes in u_lim
-(transverse, y~0) or in phi_lk(1/2) (bore, phi~), velocities in omega u_lim (transverse),
-a omega (continuous bore) or Omega phi0 a (oscillating bore), friction in mu*F_z. The names
-follow the motion: forward is the direction of the macroscopic velocity, lateral is across.
+All quantities are dimensionless. Lengths are in the contact radius a, and friction is in mu*F_z.
+Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in
+omega u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is
+the direction of the macroscopic velocity, lateral is perpendicular to it.
 
-Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is
-not finite or lies outside the range stated with it.
+Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
+finite or outside its range.
 """
 
 import numpy as np
@@ -25,11 +25,11 @@ def large_amplitude_transverse(
 ) -> np.ndarray | float:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
-    velocity >= 0, amplitude >= 0 (broadcast), else ValueError. It depends on amplitude/velocity
-    alone, as (2/pi) K(m = -(amplitude/velocity)^2); 1 at amplitude 0, else 0 at velocity 0.
+    It is (2/pi) K(m = -(amplitude/velocity)^2); 1 at amplitude 0, else 0 at velocity 0.
+    velocity >= 0, amplitude >= 0 (broadcast), else ValueError.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
-    # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), safe for every ratio of the two.
+    # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), accurate for every ratio v/A.
     total = np.hypot(velocity, amplitude)
     q = np.where(amplitude > 0, velocity / np.where(total > 0, total, 1.0), 1.0)
     positive = np.maximum(q, np.finfo(float).tiny)
@@ -40,24 +40,24 @@ def large_amplitude_transverse(
 
 
 def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Static friction of one slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
+    """Static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
 
-    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
+    amplitude >= 0 (any shape), else ValueError. The friction is 0 for amplitude >= 1.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     return np.sqrt((1 - amplitude) * (1 + amplitude))
 
 
 def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Stick radius that a transverse oscillation alone leaves, sqrt(1 - amplitude) (Eq 8).
+    """Stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
 
-    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
+    amplitude >= 0 (any shape), else ValueError. The radius is 0 for amplitude >= 1.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
 
 def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Share of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
+    """Fraction of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
     0 <= stick_radius <= 1 (any shape), else ValueError.
     """
@@ -67,18 +67,18 @@ def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
 def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
 
-    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. See
-    static_limit_transverse.
+    amplitude >= 0 (any shape), else ValueError. The friction is 0 for amplitude >= 1. The exact
+    limit is static_limit_transverse.
     """
     return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
 
 
 # Continuous bore
 def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0) -> tuple:
-    """Instantaneous centre of rotation (lateral, forward), in the frame at rest (Eq 14).
+    """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
-    velocity >= 0, time t~ = t v0/a >= 0 (broadcast), else ValueError. Returns two arrays:
-    -velocity and time. The paper's t/(v0 a) in Eq 13 has a dimension and is read as t v0/a.
+    velocity >= 0, time t~ = t v0/a >= 0 (broadcast), else ValueError. Returns two arrays,
+    -velocity and time. The paper writes t/(v0 a) in Eq 13, which is not dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -87,12 +87,12 @@ def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0
 def steady_bore_traction(
     lateral: np.ndarray | float, forward: np.ndarray | float, velocity: np.ndarray | float
 ) -> tuple:
-    """Traction on the body that bores and moves forward, slipping everywhere (Eq 15).
+    """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
-    lateral, forward: position from the contact centre; velocity >= 0 (all broadcast), else
-    ValueError. Returns (lateral, forward) traction: size hertz.friction_bound(r), opposite to the
-    local velocity (-forward, velocity + lateral), 0 in the centre of rotation itself. Both signs
-    are set by that; the paper's pair has one wrong. The mean lateral force is 0 (Eq 16).
+    The traction has the size hertz.friction_bound(r) and is opposite to the local velocity
+    (-forward, velocity + lateral); it is 0 in the centre of rotation. One sign in the paper's pair
+    is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position from the contact
+    centre; velocity >= 0 (all broadcast), else ValueError.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -103,20 +103,22 @@ def steady_bore_traction(
 
 
 def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Q_Y: forward friction of a ring of radius ratio*velocity, over its bound (Eq 19).
+    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity over its bound (Eq 19).
 
-    ratio >= 0 (any shape), else ValueError. Falls from 2 pi at 0 through 4 at 1 to pi/ratio. It
-    equals 4 E(k) at the modulus k = ratio up to 1, and Q_M(1/ratio) beyond.
+    ratio >= 0 (any shape), else ValueError. The kernel is 4 E(k) at the modulus k = ratio for
+    ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at 0 through 4 at 1 to
+    pi/ratio.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
 
 
 def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Q_M: torque of a ring of radius ratio*velocity, over bound and radius (Eq 20).
+    """Kernel Q_M: torque of a ring of radius ratio*velocity over bound and radius (Eq 20).
 
-    ratio >= 0 (any shape), else ValueError. Rises from pi*ratio through 4 at 1 to 2 pi. It equals
-    4 (E - (1 - k^2) K)/k at the modulus k = ratio up to 1, and Q_Y(1/ratio) beyond.
+    ratio >= 0 (any shape), else ValueError. The kernel is 4 (E - (1 - k^2) K)/k at the modulus
+    k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from pi*ratio through 4 at 1
+    to 2 pi.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -125,7 +127,7 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
 def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ratio = checked("ratio", ratio)
     k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
-    # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation; it is infinite at k = 1 only.
+    # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation. It is infinite at k = 1 only.
     rest = np.maximum((1 - k) * (1 + k), 1e-100)
     return (
         ratio <= 1,
@@ -137,8 +139,9 @@ def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, 
 def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
     """Forward friction of the steady continuous bore under Hertz's pressure (Eq 21).
 
-    velocity >= 0 (any shape), else ValueError. It is (3 pi/8)(v - v^3/4) up to v = 1 and the
-    hypergeometric 2F1(-1/2, 1/2; 5/2; 1/v^2) beyond, where it tends to 1.
+    It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function
+    2F1(-1/2, 1/2; 5/2; 1/v^2), which tends to 1, for v > 1. velocity >= 0 (any shape), else
+    ValueError.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -154,8 +157,8 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
     """Torque of the steady continuous bore over its value at rest, Hertz's pressure (Eq 22).
 
-    velocity >= 0 (any shape), else ValueError. It is 1 - v^2 + (3/8) v^4 up to v = 1 and 16/(15 pi
-    v) 2F1(1/2, 1/2; 7/2; 1/v^2) beyond.
+    It is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1.
+    velocity >= 0 (any shape), else ValueError.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -166,10 +169,10 @@ def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
 
 # Oscillating bore
 def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Forward friction under oscillating bore, steady at each instant (Eq 29).
+    """Forward friction under oscillating bore of large amplitude, steady at each instant (Eq 29).
 
-    velocity >= 0 (any shape), else ValueError. The mean of bore_forward(velocity/cos(tau)), for
-    large amplitudes.
+    It is the mean of bore_forward(velocity/cos(tau)) over tau. velocity >= 0 (any shape), else
+    ValueError.
     """
     velocity = checked("velocity", velocity)
     fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
@@ -178,19 +181,20 @@ def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
 
 
 def _fast_mean(velocity: np.ndarray) -> np.ndarray:
-    # The integrand is periodic and smooth, so equal steps converge faster than any power of
-    # their number; at velocity 1, where |tau|^5 is left in it, as its sixth power.
+    # The integrand is periodic and smooth, so equal steps converge exponentially. At velocity 1 it
+    # contains |tau|^5, and the order of convergence is 6.
     tau = (np.arange(128) + 0.5) * (np.pi / 256)
     return np.mean(_fast_forward(np.cos(tau) / velocity[..., None]), axis=-1)
 
 
 def _slow_mean(velocity: np.ndarray) -> np.ndarray:
-    # While cos(tau) > v the cubic branch of Eq 21 holds, and the mean of sec and sec^3 is known.
+    # For cos(tau) > v the cubic branch of Eq 21 applies, and the mean has a closed form.
     v = velocity
     sine = np.sqrt((1 - v) * (1 + v))
     rotating = 3 * np.pi / 8 * ((v - v**3 / 8) * np.log((1 + sine) / v) - v * sine / 8)
-    # The rest, in s = cos(tau)/v from 0 to 1: v f(s) / sqrt(1 - v^2 s^2), with f singular at
-    # s = 1 (half powers), the root singular next to it; 1 - s = (1/v - 1) sinh(h)^2 removes both.
+    # The rest is the integral of v f(s) / sqrt(1 - v^2 s^2) over s = cos(tau)/v from 0 to 1. Here f
+    # has half powers at s = 1, and the root is singular near it. The substitution
+    # 1 - s = (1/v - 1) sinh(h)^2 removes both.
     h_end = np.arcsinh(np.sqrt(v / (1 - v)))
     sinh = np.sinh(h_end[..., None] * _NODES)
     gap, v_col = (1 - v)[..., None], v[..., None]
@@ -201,7 +205,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 
 
 def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Bore amplitude that leaves this stick radius, D(c)/D(1/2) (Eqs 30, 31).
+    """Bore amplitude with this stick radius, D(c)/D(1/2) (Eqs 30, 31).
 
     0 < stick_radius <= 1 (any shape), else ValueError.
     """
@@ -210,9 +214,9 @@ def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
 
 
 def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Stick radius that an oscillating bore alone leaves (Eq 32, inverse of bore_amplitude_at).
+    """Stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
 
-    amplitude >= 0 (any shape), else ValueError. In 0..1, never 0.
+    amplitude >= 0 (any shape), else ValueError. The radius is above 0 and at most 1.
     """
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
 
@@ -220,28 +224,28 @@ def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
 def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
 
-    amplitude >= 0 (any shape), else ValueError. This is Eq 10 at the radius of Eq 32; see
-    static_limit_bore.
+    It is Eq 10 at the radius of Eq 32. The exact limit is static_limit_bore. amplitude >= 0 (any
+    shape), else ValueError.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
 def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square that Eq 10 demands.
+    """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square of Eq 10.
 
     amplitude >= 0 (any shape), else ValueError. For comparison only.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
 
-# The exact limits for v -> 0: at each point of the oscillation's stick zone the largest constant
-# forward traction that stays within the friction bound together with the oscillation's own.
+# The exact limits for v -> 0 are integrals over the stick zone of the oscillation. The integrand is
+# the largest constant forward traction whose sum with the oscillating traction is within the bound.
 def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
 
-    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. Integral over the stick
-    zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound of mindlin_traction. For other
-    Poisson's ratios Mindlin's traction, and with it this limit, is an approximation.
+    It is the integral over the stick zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound
+    of mindlin_traction, and 0 for amplitude >= 1. At other Poisson's ratios Mindlin's traction and
+    this limit are approximations. amplitude >= 0 (any shape), else ValueError.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -252,8 +256,8 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
 
-    amplitude >= 0 in u_lim (any shape), else ValueError; 0 from amplitude 1 on. What is left is
-    the inner bound g_c of mindlin_traction. Exact for Poisson's ratio 0.
+    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. Exact
+    for Poisson's ratio 0. amplitude >= 0 in u_lim (any shape), else ValueError.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -261,9 +265,10 @@ def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | flo
 def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillating bore, v -> 0.
 
-    amplitude >= 0 (any shape), else ValueError. Poisson's ratio drops out: at a given phi~ neither
-    the stick radius nor the torsional traction tau depends on it. Integral over the stick zone of
-    (2/pi) g arccos(tau/g): the best forward traction, averaged over the angle.
+    It is the integral over the stick zone of (2/pi) g arccos(tau/g), the largest forward traction
+    averaged over the angle. It is exact for every Poisson's ratio, because the stick radius and the
+    torsional traction tau at a given phi~ do not depend on it. amplitude >= 0 (any shape), else
+    ValueError.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -277,11 +282,12 @@ def _stick_zone_rule(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Quadrature over r < c: weights for d(eta), and sqrt(1 - r^2), sqrt(c^2 - r^2) at the nodes.
 
-    These roots are complement*cosh(eta) and complement*sinh(eta), complement = sqrt(1 - c^2), and
-    r dr = -product of the roots times d(eta): this resolves the edge layer of a small amplitude.
-    eta runs with the square of a sine, since the integrands hold half powers at both ends.
+    The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
+    r dr is minus the product of the roots times d(eta). The substitution resolves the edge layer of
+    a small amplitude. The nodes of eta follow a squared sine, because the integrands have half
+    powers at both ends.
     """
-    # Below this an amplitude changes friction by less than rounding.
+    # Smaller amplitudes change friction by less than rounding.
     complement = np.maximum(complement, 1e-8)
     end = np.arcsinh(c / complement)[..., None]
     eta = end * np.sin(np.pi / 2 * _NODES) ** 2

@@ -1,12 +1,12 @@
-"""Accuracy against cost: what is run, at which points, to see what a digit costs.
+"""Accuracy against cost: requests for trials at points, maps of models and the cost of a step.
 
-At every point (a panel of the figures) every model climbs its ladder with the shipped method and
-every other method climbs that of the model that model auto would take. Beside them stand the
-tolerance-driven choice of `solve` and a reference. A map of two motions asks which model is the
-cheapest that is good enough, and a series of sizes what a step costs.
+At each point every model is run at all levels of its ladder with the shipped method. Every other
+method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
+a tolerance and a reference. The maps of two motions need trials of all models on a grid of points.
+The cost of a step is measured over a series of sizes.
 
-Requests come in pieces that one job can answer, large enough that the start of a job is a small
-part of it, and cut so that another method in the configuration adds pieces and changes none.
+Requests are grouped into pieces, one for each job. A piece takes much longer than the start of
+a job. A new method in the configuration adds pieces and changes no other piece.
 """
 
 from collections.abc import Iterator
@@ -22,34 +22,36 @@ CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_MOTIONS = ("transverse", "bore")
 MAP_LEVELS, MAP_REPEATS = 5, 3
 MAP_SQUARES = 16
-"""Along a side: these already cost more than rings that are far better; larger ones never win."""
+"""Largest number of squares along a side in a map. They already cost more than rings that are far
+more accurate."""
 TRUTH_SHARE = 0.1
-"""Tolerance of what a map compares with, over the tightest tolerance that the map asks about."""
+"""Tolerance of the references of a map over the tightest tolerance of the map."""
 
 SCALING_SIZES = {
     "radial": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
     "polar": [(n, n) for n in (8, 16, 32, 64)],
     "cartesian": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
 }
-"""(cells, angles) by model; as many of them are run as there are levels of ladders."""
+"""(cells, angles) by model; the setting `levels` limits their number."""
 SCALING_STEPS = 16
-LARGE, LONE_SIZES = 64, 4
-"""Squares along a side from which on a run takes as long as all coarser ones, or longer; and how
-many of the sizes one job can measure together."""
+LARGE = 64
+"""Smallest number of squares along a side whose run takes as long as all coarser runs together."""
+SIZES_PER_JOB = 4
+"""Number of the smallest sizes that one job measures together; larger sizes have their own job."""
 
 
 def points(study: Accuracy) -> dict[str, Point]:
     """Points of the trials by name."""
     return {
-        name: Point(given.motion, given.velocity, given.amplitude, given.poisson)
-        for name, given in study.points.items()
+        name: Point(point.motion, point.velocity, point.amplitude, point.poisson)
+        for name, point in study.points.items()
     }
 
 
 def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
-    """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
+    """Yield (level, request) for the trials of one point, then for its solves at a tolerance.
 
-    The level of a choice counts its tolerances.
+    The level of a solve is the index of its tolerance in CHOICE_TOLERANCES.
     """
     for method in study.methods:
         for model in models_for(method, point.motion, point.poisson):
@@ -61,12 +63,12 @@ def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
 
 
 def truth(point: Point) -> dict | None:
-    """The request that the trials of a point are compared with; None where Eq 21 is exact."""
+    """The request for the reference of a point; None where Eq 21 is exact."""
     return requests.reference(point) if point.amplitude is not None else None
 
 
 def map_points(study: Accuracy, motion: str) -> list[Point]:
-    """Points of a map, amplitude by amplitude, the velocity fastest."""
+    """Points of a map; the velocity varies fastest."""
     return [
         Point(motion, velocity, amplitude)
         for amplitude in study.map.amplitude[motion]
@@ -75,7 +77,7 @@ def map_points(study: Accuracy, motion: str) -> list[Point]:
 
 
 def map_trials(study: Accuracy, point: Point) -> list[dict]:
-    """Requests of the trials at one point of a map, all models with the shipped method."""
+    """Requests for the trials at one point of a map, all models with the shipped method."""
     repeats = min(study.repeats, MAP_REPEATS)
     return [
         requests.trial(point, model, SHIPPED, level, tolerance, repeats)
@@ -86,12 +88,12 @@ def map_trials(study: Accuracy, point: Point) -> list[dict]:
 
 
 def map_truth(study: Accuracy, point: Point) -> dict:
-    """The request that the trials at a point of a map are compared with."""
+    """The request for the reference of a point of a map."""
     return requests.reference(point, TRUTH_SHARE * min(study.map.tolerance))
 
 
 def scaling(study: Accuracy, model: str) -> list[dict]:
-    """Requests for the sizes of a model, two at least."""
+    """Requests for the sizes of a model, at least two."""
     sizes = SCALING_SIZES[model][: max(study.levels, 2)]
     return [requests.scaling(model, cells, angles, SCALING_STEPS) for cells, angles in sizes]
 
@@ -102,18 +104,18 @@ def pieces(study: Accuracy) -> tuple[list, list]:
     long = [[request] for request in map(truth, places) if request is not None]
     for model in SCALING_SIZES:
         sizes = scaling(study, model)
-        long += [[request] for request in reversed(sizes[LONE_SIZES:])] + [sizes[:LONE_SIZES]]
+        long += [[request] for request in reversed(sizes[SIZES_PER_JOB:])] + [sizes[:SIZES_PER_JOB]]
     shipped: list[list[dict]] = []
     others: dict[str, list[dict]] = {}
     for point in places:
-        asked: dict[bool, list[dict]] = {True: [], False: []}
+        by_length: dict[bool, list[dict]] = {True: [], False: []}
         for _, request in trials(study, point):
             if request.get("method", SHIPPED) == SHIPPED:
-                asked[_takes_long(request)].append(request)
+                by_length[_takes_long(request)].append(request)
             else:
                 others.setdefault(request["method"], []).append(request)
-        long.append(asked[True])
-        shipped.append(asked[False])
+        long.append(by_length[True])
+        shipped.append(by_length[False])
     rows = [
         _map_row(study, list(row))
         for motion in MAP_MOTIONS
@@ -136,7 +138,7 @@ def _map_row(study: Accuracy, points: list[Point]) -> list[dict]:
 
 
 def size_label(request: dict) -> str:
-    """The size of a grid as text: "64 x 64" angular points or squares, "64" rings."""
+    """Size of a grid as text, such as "64 x 64" for angular points or squares, "64" for rings."""
     across = {"radial": None, "cartesian": request["cells"]}
     second = across.get(request["model"], request["angles"])
     return f"{request['cells']}" if second is None else f"{request['cells']} x {second}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from operator import itemgetter
 
 import numpy as np
 import xarray as xr
@@ -16,52 +16,72 @@ from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
 from microslip.studies.requests import Point
-from microslip.studies.tables import Answers, columns, finished, value_of
+from microslip.studies.tables import Answers, finished, table, value_of
 from microslip.theory import paper
 
 MEASURED = (
-    "seconds are CPU times measured in the runs that made this file: medians, compiled, after one "
-    "run that is not timed. They belong to the computers in the group machines and vary a little; "
-    "all other values are reproducible."
+    "seconds are CPU times measured in the runs that made this file: medians of compiled runs, "
+    "after one run that is not timed. They depend on the computers in the group machines and vary "
+    "a little; all other values are reproducible."
 )
 
 GROUPS = {
-    "points": ("Points that trials are run at, and their references", ("point",)),
-    "scaling": ("What a step costs on finer grids", ("scaling_model", "scaling_size")),
+    "points": ("Points of the trials, and their references", ("point",)),
+    "scaling": ("Cost of a step on finer grids", ("scaling_model", "scaling_size")),
 } | {
     f"{motion}_map": (
-        f"The cheapest model that is good enough, motion {motion}",
+        f"Cheapest model within the tolerance, motion {motion}",
         ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity"),
     )
     for motion in study.MAP_MOTIONS
 }
 GROUPS["machines"] = ("Computers that times were measured on", ("machine",))
 GROUPS["profile"] = (
-    "How much dearer than the best a model or a method is",
+    "Cost of a model or method over that of the best one",
     ("competitor", "map_tolerance", "point"),
 )
-"""Groups of the dataset besides the table of trials: titles and dims."""
+"""Groups of the dataset besides the table of trials: title and dims by name."""
 
-# Columns of the table of trials: name -> (long_name, type, units). 0: a count does not apply.
-TRIAL_VARIABLES = {
-    "trial_point": ("point that the trial was run at", str),
-    "trial_model": ("contact model, or auto for the choice that follows a tolerance", str),
-    "trial_method": ("method that was run", str),
-    "trial_level": ("level of the ladder of resolutions, or of tolerances", np.int32),
-    "trial_cells": ("rings, or squares across the contact", np.int32),
-    "trial_angles": ("angular points on half a ring", np.int32),
-    "trial_steps": ("time steps in a period", np.int32),
-    "trial_tolerance": ("tolerance that was asked for",),
-    "mu_macro": (MU_MACRO.description,),
-    "error": ("distance of mu_macro from the reference",),
-    "seconds": ("median CPU time of a run, compiled", float, "s"),
-    "effort": ("iterations of the step solver times unknowns",),
-    "converged": ("the run says that it converged", bool),
-    "reason": ("why the run did not converge, empty if it did", str),
-    "trial_machine": ("computer of the time, an index of the group machines", np.int32),
-    "claimed_error": ("error that the result claims for itself, where it claims one",),
-    "front_seconds": ("no trial of the point is faster and as accurate", bool),
-    "front_effort": ("no trial of the point takes less effort and is as accurate", bool),
+POINT_COLUMNS: dict[str, tuple] = {
+    "point": (lambda name, *_: name, "name of the point", str),
+    "point_title": (lambda name, title, *_: title or name, "title of the point", str),
+    "point_motion": (lambda *row: row[2].motion, "motion", str),
+    "point_velocity": (lambda *row: row[2].velocity, "forward velocity of the point"),
+    "point_amplitude": (lambda *row: value_of(row[2]._asdict(), "amplitude"), "amplitude"),
+    "point_poisson": (lambda *row: row[2].poisson, "Poisson's ratio of the point"),
+    "reference": (lambda *row: row[3][0], "mu_macro that trials are compared with"),
+    "reference_error": (lambda *row: row[3][1], "error estimate of the reference"),
+    "reference_source": (lambda *row: row[3][2], "source of the reference", str),
+}
+"""Columns of the points: function of name, title, Point and reference; long_name, type."""
+TRIAL_COLUMNS: dict[str, tuple] = {
+    name: (itemgetter(name), *about)
+    for name, about in {
+        "trial_point": ("point of the trial", str),
+        "trial_model": ("contact model, or auto for a solve at a tolerance", str),
+        "trial_method": ("method of the run", str),
+        "trial_level": ("level of the ladder of resolutions, or of tolerances", np.int32),
+        "trial_cells": ("rings, or squares across the contact; 0 where it has none", np.int32),
+        "trial_angles": ("angular points on half a ring; 0 where it has none", np.int32),
+        "trial_steps": ("time steps in a period; 0 where it has none", np.int32),
+        "trial_tolerance": ("requested tolerance",),
+        "mu_macro": (MU_MACRO.description,),
+        "error": ("distance of mu_macro from the reference",),
+        "seconds": ("median CPU time of a compiled run", float, "s"),
+        "effort": ("iterations of the step solver times unknowns",),
+        "converged": ("the run converged", bool),
+        "reason": ("reason why the run did not converge, else empty", str),
+        "trial_machine": ("computer of the time, an index of the group machines", np.int32),
+        "claimed_error": ("error estimate of the result, where it has one",),
+        "front_seconds": ("no trial of the point is both faster and as accurate", bool),
+        "front_effort": ("no trial of the point takes less effort and is as accurate", bool),
+    }.items()
+}
+"""Columns of the trials: function of a row, long_name, type, units."""
+MACHINE_COLUMNS: dict[str, tuple] = {
+    "machine_cpu": (itemgetter("cpu"), "model of the processor", str),
+    "machine_host": (itemgetter("host"), "name of the computer", str),
+    "machine_threads": (itemgetter("threads"), "threads of a run", np.int32),
 }
 
 
@@ -72,13 +92,17 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     """
     answers = Answers(answer)
     points = study.points(settings)
-    coords = {"point": variable("point", list(points), "name of the point", str)}
-    titles = [given.title or name for name, given in settings.points.items()]
-    variables = _points(list(points.values()), titles, answers)
-    trials = _trials(settings, points, answers, variables)
+    references = {name: _reference(point, answers) for name, point in points.items()}
+    trials = [
+        row
+        for name, point in points.items()
+        for row in _trials(settings, name, point, references[name], answers)
+    ]
     tolerances = settings.map.tolerance[::-1]  # from loose to tight
-    rows = {name: (trials[name], *about) for name, about in TRIAL_VARIABLES.items()}
-    variables |= columns("trial", rows)
+    titles = [given.title for given in settings.points.values()]
+    about_points = zip(points, titles, points.values(), references.values(), strict=True)
+    variables = table("point", about_points, POINT_COLUMNS)
+    variables |= table("trial", ((row,) for row in trials), TRIAL_COLUMNS)
     variables |= profiles.variables(trials, list(points), tolerances)
     variables |= _scaling(settings, answers)
     for motion in study.MAP_MOTIONS:
@@ -88,19 +112,19 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
             ("amplitude", settings.map.amplitude[motion]),
         ):
             long_name = f"{name} in the groups of the motion {motion}"
-            coords[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
+            variables[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
     within = "largest error of mu_macro that the map allows"
-    coords["map_tolerance"] = variable("map_tolerance", tolerances, within)
+    variables["map_tolerance"] = variable("map_tolerance", tolerances, within)
     models = list(study.SCALING_SIZES)
-    coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
+    variables["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
     if answers.machines:
-        variables |= columns("machine", _machines(answers.machines))
-    return finished(variables, coords, title, answers, settings, comment=MEASURED)
+        variables |= table("machine", ((one,) for one in answers.machines), MACHINE_COLUMNS)
+    return finished(variables, title, answers, settings, comment=MEASURED)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: how many trials there are at every point, and how good the reference is."""
+    """Lines of text: number of trials at each point, and error estimate of its reference."""
     for point in dataset["point"].values:
         own = dataset["trial_point"].values == point
         bad = int(own.sum() - dataset["converged"].values[own].sum())
@@ -111,37 +135,11 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _machines(machines: list[dict]) -> dict[str, tuple]:
-    return {
-        "machine_cpu": ([m["cpu"] for m in machines], "model of the processor", str),
-        "machine_host": ([m["host"] for m in machines], "name of the computer", str),
-        "machine_threads": ([m["threads"] for m in machines], "threads of a run", np.int32),
-    }
-
-
-# Points and trials
-
-
-def _points(points: list[Point], titles: list[str], answers: Answers) -> dict:
-    found = [_reference(point, answers) for point in points]
-    amplitudes = [np.nan if p.amplitude is None else p.amplitude for p in points]
-    return columns(
-        "point",
-        {
-            "point_title": (titles, "title of the point", str),
-            "point_motion": ([p.motion for p in points], "what moves", str),
-            "point_velocity": ([p.velocity for p in points], "forward velocity of the point"),
-            "point_amplitude": (amplitudes, "amplitude of the point"),
-            "point_poisson": ([p.poisson for p in points], "Poisson's ratio of the point"),
-            "reference": ([f[0] for f in found], "mu_macro that trials are compared with"),
-            "reference_error": ([f[1] for f in found], "error that the reference claims"),
-            "reference_source": ([f[2] for f in found], "where the reference comes from", str),
-        },
-    )
+# Trials
 
 
 def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
-    """(mu, error, source) that the trials of a point are compared with."""
+    """(mu, error, source) of the reference of a point."""
     request = study.truth(point)
     if request is None:
         return float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
@@ -153,62 +151,62 @@ def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
 
 
 def _trials(
-    settings: Accuracy, points: dict[str, Point], answers: Answers, of_points: dict
-) -> dict[str, list]:
-    """Columns of TRIAL_VARIABLES, as lists."""
-    rows: list[dict] = []
-    fronts: dict[str, list] = {"front_seconds": [], "front_effort": []}
-    for i, (name, point) in enumerate(points.items()):
-        reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
-        found = []
-        for level, request in study.trials(settings, point):
-            result = answers(request)
-            if result.get("applies", True):
-                found.append(_row(name, level, request, result, reference))
-                found[-1]["trial_machine"] = answers.machine_of(result)
-        rows += found
-        # What the reference does not resolve does not count.
-        error = [max(row["error"], floor) if row["converged"] else np.nan for row in found]
-        for name, front in fronts.items():
-            front.extend(on_front([row[name.removeprefix("front_")] for row in found], error))
-    return {name: [row[name] for row in rows] for name in TRIAL_VARIABLES if name not in fronts} | (
-        fronts
-    )
+    settings: Accuracy,
+    name: str,
+    point: Point,
+    reference: tuple[float, float, str],
+    answers: Answers,
+) -> list[dict]:
+    """Rows of the trials of one point, with the keys TRIAL_COLUMNS."""
+    mu_reference, floor, _ = reference
+    rows = []
+    for level, request in study.trials(settings, point):
+        result = answers(request)
+        if not result.get("applies", True):
+            continue
+        chosen = request["kind"] == "choice"
+        used = result if chosen else request | result
+        mu = value_of(result, "mu_macro")
+        rows.append(
+            {
+                "trial_point": name,
+                "trial_model": "auto" if chosen else request["model"],
+                "trial_method": study.SHIPPED if chosen else request["method"],
+                "trial_level": level,
+                "trial_cells": value_of(used, "cells", int),
+                "trial_angles": value_of(used, "angles", int),
+                "trial_steps": value_of(used, "steps_per_period" if chosen else "steps", int),
+                "trial_tolerance": float(request["tolerance"]),
+                "mu_macro": mu,
+                "error": abs(mu - mu_reference),
+                "seconds": value_of(result, "seconds"),
+                "effort": value_of(result, "effort"),
+                "converged": value_of(result, "converged", bool),
+                "reason": value_of(result, "reason", str),
+                "trial_machine": answers.machine_of(result),
+                "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,
+            }
+        )
+    # Errors below that of the reference count as equal.
+    error = [max(row["error"], floor) if row["converged"] else np.nan for row in rows]
+    for cost in ("seconds", "effort"):
+        front = on_front([row[cost] for row in rows], error)
+        for row, mark in zip(rows, front, strict=True):
+            row[f"front_{cost}"] = mark
+    return rows
 
 
-def _row(point: str, level: int, request: dict, result: dict, reference: float) -> dict[str, Any]:
-    chosen = request["kind"] == "choice"
-    used = result if chosen else request | result
-    mu = value_of(result, "mu_macro")
-    return {
-        "trial_point": point,
-        "trial_model": "auto" if chosen else request["model"],
-        "trial_method": study.SHIPPED if chosen else request["method"],
-        "trial_level": level,
-        "trial_cells": value_of(used, "cells", int),
-        "trial_angles": value_of(used, "angles", int),
-        "trial_steps": value_of(used, "steps_per_period" if chosen else "steps", int),
-        "trial_tolerance": float(request["tolerance"]),
-        "mu_macro": mu,
-        "error": abs(mu - reference),
-        "seconds": value_of(result, "seconds"),
-        "effort": value_of(result, "effort"),
-        "converged": value_of(result, "converged", bool),
-        "reason": value_of(result, "reason", str),
-        "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,
-    }
-
-
-# Models that are good enough, and the cost of a step
+# Cheapest models, and the cost of a step
 
 
 def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
+    """Cheapest model at each point of a map, for each tolerance."""
     dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
     tolerances = settings.map.tolerance[::-1]
-    found = [_candidates(settings, p, answers) for p in study.map_points(settings, motion)]
-    best = np.empty((len(CHEAPEST), len(tolerances), len(found)), object)
+    candidates = [_candidates(settings, p, answers) for p in study.map_points(settings, motion)]
+    best = np.empty((len(CHEAPEST), len(tolerances), len(candidates)), object)
     for t, tolerance in enumerate(tolerances):
-        for p, (trials, error) in enumerate(found):
+        for p, (trials, error) in enumerate(candidates):
             i = cheapest([seconds for *_, seconds in trials], error, tolerance)
             best[:, t, p] = ("", 0, np.nan) if i is None else trials[i]
     shape = (len(tolerances), len(settings.map.amplitude[motion]), -1)
@@ -220,7 +218,7 @@ def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
 
 CHEAPEST = (
     ("", str, "", "cheapest model within the tolerance, empty if there is none"),
-    ("_cells", np.int32, "1", "cells that the cheapest model needs"),
+    ("_cells", np.int32, "1", "cells of the cheapest model"),
     ("_seconds", float, "s", "median CPU time of the cheapest model"),
 )
 """Variables of a map: end of the name, type, units and long_name."""
@@ -229,43 +227,42 @@ CHEAPEST = (
 def _candidates(
     settings: Accuracy, point: Point, answers: Answers
 ) -> tuple[list[tuple[str, int, float]], np.ndarray]:
-    """Model, cells and seconds of all trials at a point of a map, and their errors."""
+    """Model, cells and seconds of all trials at a point of a map, and their confirmed errors."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
-    requests = study.map_trials(settings, point)
-    results = [answers(request) for request in requests]
-    error = [
-        abs(value_of(r, "mu_macro") - truth) if value_of(r, "converged", bool) else np.inf
-        for r in results
-    ]
-    models = [request["model"] for request in requests]
-    trials = [
-        (request["model"], request["cells"], value_of(result, "seconds"))
-        for request, result in zip(requests, results, strict=True)
-    ]
+    trials, error = [], []
+    for request in study.map_trials(settings, point):
+        result = answers(request)
+        trials.append((request["model"], request["cells"], value_of(result, "seconds")))
+        converged = value_of(result, "converged", bool)
+        error.append(abs(value_of(result, "mu_macro") - truth) if converged else np.inf)
+    models = [model for model, *_ in trials]
     return trials, confirmed(models, error, exact_model(point.motion, point.poisson))
 
 
+SCALING: dict[str, tuple] = {
+    "unknowns": ("tractions that a step solves for",),
+    "iterations": ("iterations of the step solver in a step",),
+    "seconds": ("median CPU time of a step", float, "s"),
+    "memory": ("memory of the arrays of the contact", float, "byte"),
+}
+"""Results over the sizes of a model: long_name, type, units."""
+
+
 def _scaling(settings: Accuracy, answers: Answers) -> dict:
+    """Cost of a step over the sizes of each model, and fitted exponents."""
     dims = ("scaling_model", "scaling_size")
-    asked = [study.scaling(settings, model) for model in study.SCALING_SIZES]
-    shape = (len(asked), max(map(len, asked)))
-    described = {
-        "unknowns": ("1", "tractions that a step solves for"),
-        "iterations": ("1", "iterations of the step solver in a step"),
-        "seconds": ("s", "median CPU time of a step"),
-        "memory": ("byte", "memory that the contact's arrays take"),
-    }
-    values = {name: np.full(shape, np.nan) for name in described}
+    requests = [study.scaling(settings, model) for model in study.SCALING_SIZES]
+    shape = (len(requests), max(map(len, requests)))
+    values = {name: np.full(shape, np.nan) for name in SCALING}
     labels = np.full(shape, "", object)
-    for i, requests in enumerate(asked):
-        for j, request in enumerate(requests):
+    for i, row in enumerate(requests):
+        for j, request in enumerate(row):
             result = answers(request)
             labels[i, j] = study.size_label(request)
-            for name in described:
+            for name in SCALING:
                 values[name][i, j] = value_of(result, name)
     variables = {
-        f"scaling_{name}": variable(dims, values[name], long_name, units=units)
-        for name, (units, long_name) in described.items()
+        f"scaling_{name}": variable(dims, values[name], *about) for name, about in SCALING.items()
     }
     variables["scaling_label"] = variable(dims, labels, "size of the grid", str)
     for name in ("iterations", "seconds", "memory"):

@@ -1,21 +1,22 @@
-"""Fronts and cheapest trials, and exponents fitted to trials."""
+"""Pareto fronts, cheapest trials and fitted exponents of cost."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 AS_CHEAP = 1.5
-"""Ratio of two times up to which they may be the same."""
+"""Ratio of two measured times below which they count as equal."""
 
 
 def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
-    """Mark what nothing beats: nothing costs no more and errs no more, and one of the two less.
+    """Mark the trials on the Pareto front of cost and error, a bool array of shape (n,).
 
-    cost, error: arrays (n,); what has no finite value of both takes no part. Returns bool (n,).
+    A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
+    cost, error: arrays of shape (n,); trials without finite values are not on the front.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     front = np.isfinite(cost) & np.isfinite(error)
     best, best_cost = np.inf, np.inf
-    # From cheap to dear, of equal costs the more accurate first.
+    # From cheap to expensive; among equal costs the more accurate trial comes first.
     for i in np.lexsort((error, cost)):
         if not front[i]:
             continue
@@ -27,9 +28,9 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
-    """Index of the least cost among those within the tolerance, or None if none is.
+    """Index of the cheapest trial within the tolerance, or None without such a trial.
 
-    Costs that differ by less than clocks do count as equal: then the first one is taken.
+    Times are uncertain, so costs within a factor AS_CHEAP count as equal, and the first trial wins.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     good = np.flatnonzero(np.isfinite(cost) & (error <= tolerance))
@@ -39,25 +40,25 @@ def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
 
 
 def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
-    """The error that each rung of a ladder is good for: the largest of its own and all finer ones.
+    """Confirmed error of each level: the largest error of this and all finer levels of its model.
 
-    models: of the rungs, each from coarse to fine. A coarse run may be right by chance, where its
-    error changes sign; so the last rung has nothing to confirm it and counts as infinitely wrong,
-    but for the model `exact`, which is known to converge.
+    The error of a coarse run can be small by chance, where it changes sign. The finest level of a
+    model has no finer one to confirm it, so its error is infinite, except for the model `exact`,
+    which converges to the reference. models: model of each level, from coarse to fine.
     """
     out = np.asarray(error, float).copy()
     for model in dict.fromkeys(models):
-        rungs = [k for k, name in enumerate(models) if name == model]
-        out[rungs] = np.maximum.accumulate(out[rungs][::-1])[::-1]
+        levels = [k for k, name in enumerate(models) if name == model]
+        out[levels] = np.maximum.accumulate(out[levels][::-1])[::-1]
         if model != exact:
-            out[rungs[-1]] = np.inf
+            out[levels[-1]] = np.inf
     return out
 
 
 def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
-    """Exponent p of values ~ sizes^p by least squares of logarithms, over the larger half of sizes.
+    """Exponent p of values ~ sizes^p, fitted to the logarithms of the larger half of the sizes.
 
-    sizes, values: arrays (n,). NaN where fewer than two of them are positive numbers.
+    sizes, values: arrays (n,). NaN if fewer than two sizes have a positive value.
     """
     sizes, values = np.asarray(sizes, float), np.asarray(values, float)
     good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)

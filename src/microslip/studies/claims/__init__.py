@@ -1,1 +1,1 @@
-"""Which of the paper's claims hold."""
+"""Study of the paper's claims."""

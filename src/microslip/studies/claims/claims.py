@@ -1,8 +1,8 @@
-"""Claims: what is run to judge the statements of the paper.
+"""Claims: requests for the runs that judge the statements of the paper.
 
-Every function returns one request, and the module that judges calls the same functions, so that
-what is asked and what is judged cannot drift apart. Certified points come first; where the paper's
-own numbers or a look inside are wanted there are single runs.
+`parts` calls the functions of this module, so that the same requests are computed and judged. Most
+requests are points at the tolerance of the study. The others are single runs: the paper's own runs,
+transients, fields of tractions and periods.
 """
 
 from microslip.config.records import STATIC_AMPLITUDES
@@ -12,31 +12,31 @@ from microslip.studies import requests
 from microslip.studies.ladders import exact_model
 
 PAPER_VELOCITY = 0.005
-"""The smallest velocity in the paper's maps, of both motions."""
+"""Smallest velocity in the paper's maps of both motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""The paper's squares along a side, and steps in a period that its run here has."""
+"""Squares along a side in the paper, and steps in a period of our run of its method."""
 PAPER_TOLERANCE = 1e-3
-"""The paper's error of stresses."""
+"""Error of the stresses in the paper."""
 
 STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT_VELOCITY = 0.8
 STARTS = ("stress-free", "full-rotation", "full-slip")
 TRAVEL = 10.0
-"""Forward way of a transient in u_lim, twice that of the paper's Figure 5."""
+"""Forward travel of a transient in u_lim: twice that of the paper's Figure 5."""
 CELLS = {"fine": 32, "coarse": 16}
-"""Rings of transients and of steady tractions; the difference of the two is their error."""
+"""Rings of transients and steady tractions; the difference of both gives the error."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Velocities of steady tractions: all but the last have the centre of rotation in the contact."""
+"""Velocities of steady tractions. Up to 0.8 the contact contains the centre of rotation."""
 
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
-FEW = 2
-"""Runs of the paper in one job."""
+RUNS_PER_JOB = 2
+"""Number of runs of the paper in one job."""
 
 
 def velocities(study: Claims) -> list[float]:
-    """Velocities of the study and the paper's smallest one, ascending."""
+    """Velocities of the study and the paper's smallest velocity, in ascending order."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
@@ -48,24 +48,24 @@ def point(
     model: str = "auto",
     cells: int | None = None,
 ) -> dict:
-    """A certified point; velocity 0: the static limit; cells: an imposed number of squares."""
+    """Request for a point; velocity 0: the static limit; cells: imposed number of squares."""
     place = requests.Point(motion, velocity, amplitude)
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
 
 def resolved_limit(study: Claims, motion: str, amplitude: float) -> dict:
-    """The static limit on rings: the oscillation's tractions computed, no closed form in it."""
+    """Request for the static limit on rings, which uses no closed form."""
     return point(study, motion, 0.0, amplitude, exact_model(motion, 0.0))
 
 
 def limit_on_squares(study: Claims, motion: str, amplitude: float) -> dict:
-    """The static limit on the paper's squares."""
+    """Request for the static limit on the paper's squares."""
     return point(study, motion, 0.0, amplitude, "cartesian", PAPER_SQUARES)
 
 
 def paper_run(motion: str, amplitude: float) -> dict:
-    """The paper's own run at its smallest velocity: 32 x 32 squares, 8,000 plain steps."""
+    """Request for the paper's own run at its smallest velocity: 32 x 32 squares, 8,000 steps."""
     place = requests.Point(motion, PAPER_VELOCITY, amplitude)
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
     how = {"kind": "run", "model": "cartesian", "method": "paper"}
@@ -73,23 +73,25 @@ def paper_run(motion: str, amplitude: float) -> dict:
 
 
 def transient(start: str, cells: str) -> dict:
-    """Forces of the continuous bore from one of the three initial states on; cells: of CELLS."""
-    numbers = {"velocity": number(TRANSIENT_VELOCITY), "travel": number(TRAVEL)}
-    return (
-        {"kind": "history", "motion": "continuous-bore", "start": start}
-        | numbers
-        | {"cells": CELLS[cells]}
-    )
+    """Request for the forces of the continuous bore from a start of STARTS; cells: key of CELLS."""
+    return {
+        "kind": "history",
+        "motion": "continuous-bore",
+        "start": start,
+        "velocity": number(TRANSIENT_VELOCITY),
+        "travel": number(TRAVEL),
+        "cells": CELLS[cells],
+    }
 
 
 def field(velocity: float, cells: str) -> dict:
-    """Steady tractions of the continuous bore; cells: of CELLS."""
+    """Request for steady tractions of the continuous bore; cells: key of CELLS."""
     place = {"motion": "continuous-bore", "velocity": number(velocity)}
     return {"kind": "field", "cells": CELLS[cells]} | place
 
 
 def period(study: Claims, velocity: float, amplitude: float, coarse: bool = False) -> dict:
-    """A period of the oscillating bore from inside, or the same with half as many rings."""
+    """Request for a period of the oscillating bore; coarse: with half as many rings."""
     cells = 2 * (study.cells // 4) if coarse else study.cells
     place = requests.Point("bore", velocity, amplitude)
     sizes = {"cells": cells, "angles": cells, "steps": PERIOD_STEPS}
@@ -97,24 +99,24 @@ def period(study: Claims, velocity: float, amplitude: float, coarse: bool = Fals
 
 
 def limited(study: Claims, motion: str) -> list[float]:
-    """Amplitudes at which there is static friction that the paper's maps show."""
+    """Amplitudes of a motion at which static friction is visible in the paper's maps."""
     return [a for a in study.amplitude[motion] if a <= STATIC_AMPLITUDES[motion]]
 
 
 def sliding(study: Claims) -> list[float]:
-    """The largest transverse amplitude, in a list, if the contact slides in every stroke there."""
+    """List of the largest transverse amplitude; empty if the contact sticks in some strokes."""
     largest = study.amplitude["transverse"][-1]
     return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
 
 
 def periods(study: Claims) -> list[tuple[float, float]]:
-    """(velocity, amplitude) of the periods that are looked into, those near static friction."""
+    """(velocity, amplitude) of the periods near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
     return [(v, a) for v in slow[-2:] for a in limited(study, "bore")]
 
 
 def rows(study: Claims) -> list[list[dict]]:
-    """Certified points, a list for each motion and amplitude, from the static limit upwards."""
+    """Points of each motion and amplitude, from the static limit to the largest velocity."""
     return [
         [point(study, motion, v, amplitude) for v in (0.0, *velocities(study))]
         for motion, amplitudes in study.amplitude.items()
@@ -123,7 +125,7 @@ def rows(study: Claims) -> list[list[dict]]:
 
 
 def steady(study: Claims) -> list[dict]:
-    """Certified points of the continuous bore, resolved though Eq 21 is exact."""
+    """Points of the continuous bore, computed on a mesh although Eq 21 is exact."""
     return [point(study, "continuous-bore", v, model="polar") for v in STEADY_VELOCITIES]
 
 
@@ -131,7 +133,7 @@ def pieces(study: Claims) -> tuple[list, list]:
     """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
-    long = [of_paper[i : i + FEW] for i in range(0, len(of_paper), FEW)]
+    long = [of_paper[i : i + RUNS_PER_JOB] for i in range(0, len(of_paper), RUNS_PER_JOB)]
     slow: list[list[dict]] = []
     fast: list[list[dict]] = []
     for row in rows(study):

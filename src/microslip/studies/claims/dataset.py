@@ -1,16 +1,15 @@
-"""The dataset claims: verdicts, the checks and runs behind them, the static limit, and patches."""
+"""The dataset claims: verdicts with their checks and runs, static limits, and stick patches."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.settings import Claims
 from microslip.datasets.variables import flags, variable
-from microslip.studies.claims import claims as asked
-from microslip.studies.claims import static_limits, verdicts
+from microslip.studies.claims import claims, static_limits, verdicts
 from microslip.studies.claims.parts import PARTS
 from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
 from microslip.studies.claims.statements import STATEMENTS
@@ -19,16 +18,16 @@ from microslip.studies.tables import finished, table, value_of
 from microslip.theory import hertz, paper
 
 ABOUT = (
-    "A check decides if its margin is larger than its error. A part holds if nothing decides "
-    "against it; a statement, if all of its parts that count do."
+    "A check decides if its margin is larger than its error. A part holds if no check decides "
+    "against it. A statement holds if all of its parts that count hold."
 )
 GROUPS = {
-    "parts": ("What of a statement is asked by itself", ("part",)),
-    "checks": ("Comparisons that decide", ("check",)),
+    "parts": ("Parts of the statements, and their criteria", ("part",)),
+    "checks": ("Comparisons of the parts", ("check",)),
     "runs": ("Results behind the checks", ("run",)),
-    "patch_period": ("Share that sticks over a period of the oscillating bore", ("patch_step",)),
-    "patches": ("What sticks where, at moments of that period", ("patch_moment", "patch_point")),
-    "patch_edges": ("Theory's edges of what sticks", ("patch_moment", "patch_edge")),
+    "patch_period": ("Sticking fraction over a period of the oscillating bore", ("patch_step",)),
+    "patches": ("Stick patches at moments of this period", ("patch_moment", "patch_point")),
+    "patch_edges": ("Theoretical edges of the patches", ("patch_moment", "patch_edge")),
 }
 for _motion in static_limits.FORMULAS:
     GROUPS |= {
@@ -38,13 +37,13 @@ for _motion in static_limits.FORMULAS:
             (f"{_motion}_curve_amplitude",),
         ),
         f"{_motion}_shares": (
-            f"Shares of the friction bound, motion {_motion}",
+            f"Fractions of the friction bound, motion {_motion}",
             (f"{_motion}_share_amplitude", "share_radius"),
         ),
     }
 """Groups of the dataset besides the statements: titles and dims by the name of a group."""
 BOUNDARY = 181
-"""Angles at which the edge of the alternating patches is given."""
+"""Number of points on half the edge of a patch."""
 
 
 def build(settings: Claims, answer: Callable) -> xr.Dataset:
@@ -53,20 +52,15 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     answer(request) -> record, such as batches.answer with a store.
     """
     runs = Runs(answer)
-    found = {part.name: list(part.checks(settings, runs)) for part in PARTS}
-    variables = _claims(found) | _parts(found) | _checks(found)
+    checks = {part.name: list(part.checks(settings, runs)) for part in PARTS}
+    variables = _claims(checks) | _parts(checks) | _checks(checks)
     variables |= static_limits.variables(settings, runs) | _patches(settings, runs)
-    variables |= _runs(runs.found.values())
-    coordinates = {
-        name for name, (dims, *_) in variables.items() if dims == name and isinstance(dims, str)
-    }
-    coords = {name: variables.pop(name) for name in sorted(coordinates)}
-    title = "The statements of the paper, judged"
-    return finished(variables, coords, title, runs, settings, comment=ABOUT)
+    variables |= table("run", ((run,) for run in runs.by_request.values()), RUN_COLUMNS)
+    return finished(variables, "Verdicts on the paper's claims", runs, settings, comment=ABOUT)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: what became of every statement."""
+    """Lines of text: the verdict on every statement."""
     for claim, verdict in zip(dataset["claim"].values, dataset["verdict"].values, strict=True):
         yield f"claim {claim}: {verdicts.WORDS[int(verdict)]}"
 
@@ -74,64 +68,68 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 # Statements, parts and checks
 
 
-def verdict_on(claim: int, checks: dict[str, list[Check]]) -> int:
-    """Verdict on a statement, an index of VERDICTS; checks: list of Check by name of the part."""
-    parts = [part for part in PARTS if part.claim == claim and part.counts]
-    return verdicts.of_claim([verdicts.of_part(checks[part.name]) for part in parts])
-
-
 def _claims(checks: dict[str, list[Check]]) -> dict:
+    """Statements and verdicts; checks: list of Check by name of the part."""
     numbers = list(STATEMENTS)
+    judged = [
+        verdicts.of_claim(
+            [
+                verdicts.of_part(checks[part.name])
+                for part in PARTS
+                if part.claim == n and part.counts
+            ]
+        )
+        for n in numbers
+    ]
     return {
         "claim": variable("claim", numbers, "number of the statement", np.int32),
-        "statement": variable("claim", list(STATEMENTS.values()), "what the paper says", str),
-        "verdict": flags(
-            "claim",
-            [verdict_on(number, checks) for number in numbers],
-            "what the runs say about the statement",
-            verdicts.VERDICTS,
-        ),
+        "statement": variable("claim", list(STATEMENTS.values()), "statement of the paper", str),
+        "verdict": flags("claim", judged, "verdict on the statement", verdicts.VERDICTS),
     }
 
 
 PART_COLUMNS: dict[str, tuple] = {
     "part": (lambda part, _: part.name, "part of a statement", str),
-    "part_claim": (lambda part, _: part.claim, "statement that it is part of", np.int32),
-    "part_text": (lambda part, _: part.text, "what is asked, with its criterion", str),
-    "part_counts": (lambda part, _: part.counts, "the verdict depends on it", bool),
-    "part_where": (lambda _, row: verdicts.where(row), "where it holds and where not", str),
-    "part_shown_by": (lambda _, row: _shown_by(row), "name of the result that shows it best", str),
+    "part_claim": (lambda part, _: part.claim, "number of the statement", np.int32),
+    "part_text": (lambda part, _: part.text, "criterion of the part", str),
+    "part_counts": (lambda part, _: part.counts, "the verdict depends on the part", bool),
+    "part_where": (lambda _, row: verdicts.where(row), "where the part holds and where not", str),
+    "part_shown_by": (
+        lambda _, row: _shown_by(row),
+        "name of the result that decides the part",
+        str,
+    ),
 }
 CHECK_COLUMNS: dict[str, tuple] = {
-    "check_part": (lambda part, _: part.name, "part that it belongs to", str),
-    "check_run": (lambda _, check: check.runs[0], "name of the result that it is about", str),
+    "check_part": (lambda part, _: part.name, "part of the check", str),
+    "check_run": (lambda _, check: check.runs[0], "name of the first result of the check", str),
     "check_other_run": (
         lambda _, check: "".join(check.runs[1:2]),
-        "name of a second result behind it",
+        "name of the second result of the check",
         str,
     ),
     "check_amplitude": (lambda _, check: _place(check, "amplitude"), "amplitude of the check"),
     "check_velocity": (lambda _, check: _place(check, "velocity"), "velocity of the check"),
-    "check_value": (lambda _, check: check.value, "computed"),
-    "check_against": (lambda _, check: check.against, "what it is compared with"),
+    "check_value": (lambda _, check: check.value, "computed value"),
+    "check_against": (lambda _, check: check.against, "reference that the value is compared with"),
     "check_margin": (lambda _, check: check.margin, "positive where the part holds"),
     "check_error": (lambda _, check: check.error, "error of the margin"),
 }
-"""Columns of two groups: function of a part and its checks, or of one of these; long_name, type."""
+"""Columns of parts and checks: function of a part and its checks, or one check; long_name, type."""
 
 
 def _parts(checks: dict[str, list[Check]]) -> dict:
     rows = [checks[part.name] for part in PARTS]
-    found = table("part", zip(PARTS, rows, strict=True), PART_COLUMNS)
+    made = table("part", zip(PARTS, rows, strict=True), PART_COLUMNS)
     for outcome, name in enumerate(verdicts.OUTCOMES):
         counts = [sum(check.outcome == outcome for check in row) for row in rows]
-        found[f"part_{name}"] = variable("part", counts, f"number of checks: {name}", np.int32)
+        made[f"part_{name}"] = variable("part", counts, f"number of checks: {name}", np.int32)
     values = [verdicts.of_part(row) for row in rows]
-    return found | {"part_verdict": flags("part", values, "what the checks say", verdicts.VERDICTS)}
+    return made | {"part_verdict": flags("part", values, "verdict on the part", verdicts.VERDICTS)}
 
 
 def _shown_by(row: list[Check]) -> str:
-    """The check that a part stands or falls with: against it the clearest, for it the closest."""
+    """Name of the run of the clearest check against a part, else of the closest check for it."""
     check = verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
     return check.runs[0] if check else ""
 
@@ -143,15 +141,11 @@ def _place(check: Check, name: str) -> float:
 def _checks(checks: dict[str, list[Check]]) -> dict:
     rows = [(part, check) for part in PARTS for check in checks[part.name]]
     outcomes = [check.outcome for _, check in rows]
-    outcome = flags("check", outcomes, "what it says", verdicts.OUTCOMES)
+    outcome = flags("check", outcomes, "outcome of the check", verdicts.OUTCOMES)
     return table("check", rows, CHECK_COLUMNS) | {"check_outcome": outcome}
 
 
 # Runs, and the patches of the oscillating bore
-
-
-def _runs(found: Collection[Run]) -> dict:
-    return table("run", ((run,) for run in found), RUN_COLUMNS)
 
 
 def _number(name: str) -> Callable[[Run], float]:
@@ -169,62 +163,67 @@ def _model(run: Run) -> str:
 
 
 def _force(run: Run) -> float:
-    """mu_macro of a run, of a transient the force at its end."""
+    """mu_macro of a run, or the force at the end of a transient."""
     forces = run.result.get("force_forward")
     return float(forces[-1]) if forces else value_of(run.result, "mu_macro")
 
 
 RUN_COLUMNS: dict[str, tuple] = {
     "run": (lambda run: run.key, "name of the result in the store", str),
-    "run_what": (lambda run: made_by(run.request), "what was run", str),
-    "run_motion": (lambda run: run.request.get("motion") or "", "what moves", str),
+    "run_what": (lambda run: made_by(run.request), "kind of the run", str),
+    "run_motion": (lambda run: run.request.get("motion") or "", "motion", str),
     "run_velocity": (lambda run: float(run.request["velocity"]), "forward velocity"),
     "run_amplitude": (_number("amplitude"), "amplitude"),
     "run_poisson": (lambda run: float(run.request.get("poisson", 0)), "Poisson's ratio"),
-    "run_model": (_model, "contact model that was used", str),
+    "run_model": (_model, "contact model of the run", str),
     "run_cells": (lambda run: resolution(run)[0], "rings, or squares across", np.int32),
     "run_angles": (lambda run: resolution(run)[1], "angular points on half a ring", np.int32),
     "run_steps": (lambda run: resolution(run)[2], "time steps in a period", np.int32),
-    "run_tolerance": (_number("tolerance"), "tolerance that was asked for"),
-    "run_mu_macro": (_force, "mu_macro, where it has one"),
-    "run_error": (_error, "error of mu_macro that it claims"),
+    "run_tolerance": (_number("tolerance"), "requested tolerance"),
+    "run_mu_macro": (_force, "mu_macro, where the run has one"),
+    "run_error": (_error, "error estimate of mu_macro"),
     "run_converged": (
         lambda run: run.result.get("converged", True),
-        "the run says that it converged",
+        "the run converged",
         bool,
     ),
-    "run_command": (lambda run: command(run.request), "line that computes it again", str),
+    "run_command": (
+        lambda run: command(run.request),
+        "command that computes the result again",
+        str,
+    ),
 }
 """Columns of the runs: function of the run, long_name, type."""
 
 
 def _patches(settings: Claims, runs: Runs) -> dict:
-    """The slowest period seen from inside at the amplitude nearest 1, and theory's edges in it."""
-    slowest = min(v for v, _ in asked.periods(settings))
-    places = [(v, a) for v, a in asked.periods(settings) if v == slowest]
-    found: dict = {}
+    """Stick patches and their edges in the slowest period at the amplitude nearest 1."""
+    slowest = min(v for v, _ in claims.periods(settings))
+    places = [(v, a) for v, a in claims.periods(settings) if v == slowest]
     for velocity, amplitude in sorted(places, key=lambda place: abs(np.log(place[1]))):
-        result = runs(asked.period(settings, velocity, amplitude)).result
+        result = runs(claims.period(settings, velocity, amplitude)).result
         if value_of(result, "converged", bool):
             break
     else:
-        return found
-    found["patch_velocity"] = variable((), velocity, "velocity of the patches")
-    found["patch_amplitude"] = variable((), amplitude, "amplitude of the patches")
+        return {}
+    made = {
+        "patch_velocity": variable((), velocity, "velocity of the patches"),
+        "patch_amplitude": variable((), amplitude, "amplitude of the patches"),
+    }
     share = "size of the traction over the friction bound, 1 where a point slips"
     sides = {side: np.asarray(result[f"stick_{side}"], float) for side in ("right", "left")}
     for side, values in sides.items():
-        long_name = f"share of the contact's area that sticks, {SIDES[side]} lateral positions"
-        found[f"patch_stick_{side}"] = variable("patch_step", values, long_name)
+        long_name = f"sticking fraction of the contact area, {SIDES[side]} lateral positions"
+        made[f"patch_stick_{side}"] = variable("patch_step", values, long_name)
     both = sides["right"] + sides["left"]
-    found["patch_stick"] = variable("patch_step", both, "share of the contact's area that sticks")
-    found["patch_phase"] = variable("patch_step", result["phase"], "phase", units="rad")
+    made["patch_stick"] = variable("patch_step", both, "sticking fraction of the contact area")
+    made["patch_phase"] = variable("patch_step", result["phase"], "phase", units="rad")
     for name in ("lateral", "forward"):
         values = result[f"{name}_position"]
-        found[f"patch_{name}"] = variable("patch_point", values, f"{name} position over a")
+        made[f"patch_{name}"] = variable("patch_point", values, f"{name} position over a")
     moments = np.asarray(result["moment_phase"], float)
     dims = ("patch_moment", "patch_point")
-    return found | {
+    return made | {
         "patch_moment_phase": variable("patch_moment", moments, "phase of the moment", units="rad"),
         "patch_share": variable(dims, result["moment_share"], share),
         **_edges(amplitude, moments),
@@ -235,11 +234,11 @@ SIDES = {"right": "positive", "left": "negative"}
 
 
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
-    """Theory's edges of what sticks as v -> 0, at the moments of stick_area.patches.
+    """Edges of the stick zone for v -> 0 at the moments of stick_area.patches, by theory.
 
-    Next to a turning point a point that slips at the other one only still sticks: those of one
-    side with |cos angle| >= tau/g. In mid-stroke the inner circle that the way from the last
-    turning point has left.
+    Next to a turning point a leaf on one side sticks, where |cos angle| >= tau/g: its points slip
+    at the other turning point only. In mid-stroke the stick zone is a circle, whose radius depends
+    on the rotation since the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)
     radius = c * np.linspace(0.0, 1.0, BOUNDARY)
@@ -257,10 +256,7 @@ def _edges(amplitude: float, moments: np.ndarray) -> dict:
     dims = ("patch_moment", "patch_edge")
     return {
         f"patch_edge_{name}": variable(
-            dims, [edge[i] for edge in edges], f"{name} position, {EDGE}"
+            dims, [edge[i] for edge in edges], f"{name} position of the edge, over a"
         )
         for i, name in enumerate(("lateral", "forward"))
     }
-
-
-EDGE = "edge of what sticks as the velocity vanishes, over a"

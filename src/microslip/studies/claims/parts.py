@@ -1,8 +1,8 @@
-"""Parts of the paper's statements, and the checks that judge them.
+"""Checks that judge the parts of the paper's statements.
 
-A part has a function (study, runs) -> checks. Most parts compare values of runs with a formula:
-`_judge` makes their functions from a source of values, the formula and the margin. The error of a
-margin is that of the values behind it.
+The checks of a part are a function (study, runs) -> checks. Most parts compare values of runs with
+a formula: `_judge` makes such functions from a source of values, the formula and the margin. The
+error of a margin is the error estimate of the values.
 """
 
 from __future__ import annotations
@@ -15,13 +15,15 @@ from typing import Any
 import numpy as np
 
 from microslip.config.settings import Claims
-from microslip.studies.claims import claims as asked
+from microslip.studies.claims import claims
 from microslip.studies.claims import static_limits as static
 from microslip.studies.claims.runs import Run, Runs, friction
 from microslip.studies.claims.statements import (
     AGREES,
     ALIGNED,
     ALTERNATES,
+    BESIDE,
+    CRITERIA,
     FAR,
     GOOD,
     LARGE_BORE,
@@ -38,37 +40,16 @@ from microslip.theory import paper
 Checks = Callable[[Claims, Runs], Iterable[Check]]
 Margin = Callable[[float, float], float]
 """Margin of a computed value against its reference, positive where the part holds."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """One thing that a statement says, in a form that a number can speak for or against.
-
-    Attributes
-    ----------
-    claim : int
-        Number of the statement.
-    name : str
-        Name of the part.
-    text : str
-        The criterion.
-    checks : callable
-        (study, runs) -> checks.
-    counts : bool
-        Whether the verdict on the statement depends on it.
-    """
-
-    claim: int
-    name: str
-    text: str
-    checks: Checks
-    counts: bool = True
+Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
+"""Source of values: yields the place, the value, its error estimate and its runs."""
+Amplitudes = Callable[[float], bool]
+"""Condition on an amplitude."""
 
 
 def check(
     value: float, against: float, margin: float, error: float, runs: Sequence[Run], **place: float
 ) -> Check:
-    """A Check with plain numbers, and the names of its runs."""
+    """A Check with plain numbers and the keys of its runs."""
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
@@ -88,12 +69,6 @@ def within(limit: float) -> Margin:
     return lambda value, against: limit - abs(value - against)
 
 
-# Values against a formula
-
-Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
-"""Place, value, its error and the runs behind it, one after another."""
-
-
 def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
     """Checks of values against formula(*numbers of the place)."""
 
@@ -105,8 +80,11 @@ def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Check
     return checks
 
 
+# Sources of values
+
+
 def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Values:
-    """Friction of requested points; names: of the numbers of their place."""
+    """Friction at the points of requests; names: arguments of the points that form the place."""
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
         for request in requests(study):
@@ -116,54 +94,73 @@ def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Valu
     return values
 
 
-def _map(motion: str, chosen: Callable[[float], bool] = lambda amplitude: True) -> Values:
+def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
     """Friction at all points of a motion, by amplitude and velocity."""
     return _friction(
         lambda study: (
-            asked.point(study, motion, velocity, amplitude)
+            claims.point(study, motion, velocity, amplitude)
             for amplitude in filter(chosen, study.amplitude[motion])
-            for velocity in asked.velocities(study)
+            for velocity in claims.velocities(study)
         ),
         "amplitude",
         "velocity",
     )
 
 
-def _slow(motion: str, chosen: Callable[[float], bool], velocity: float | None = None) -> Values:
-    """Friction at a velocity, None: the smallest, for amplitudes with static friction."""
+def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Values:
+    """Friction at a velocity, by default the smallest, at amplitudes with static friction."""
     return _friction(
         lambda study: (
-            asked.point(
-                study, motion, asked.velocities(study)[0] if velocity is None else velocity, a
-            )
-            for a in filter(chosen, asked.limited(study, motion))
+            claims.point(study, motion, velocity or claims.velocities(study)[0], amplitude)
+            for amplitude in filter(chosen, claims.limited(study, motion))
         ),
         "amplitude",
     )
 
 
-def _limit(motion: str, chosen: Callable[[float], bool]) -> Values:
-    """The static limit by amplitude."""
+def _limit(motion: str, chosen: Amplitudes) -> Values:
+    """Static limit by amplitude."""
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
-        for amplitude in filter(chosen, asked.limited(study, motion)):
-            limit = static.limit(study, runs, motion, amplitude)
-            yield {"amplitude": amplitude}, limit.value, limit.error, limit.runs
+        for amplitude in filter(chosen, claims.limited(study, motion)):
+            yield {"amplitude": amplitude}, *static.limit(study, runs, motion, amplitude)
 
     return values
 
 
+def _closed_limit(low: float = 0.0) -> Values:
+    """Static limit of the bore in closed form, at amplitudes of at least `low`."""
+    return _friction(
+        lambda study: (
+            claims.point(study, "bore", 0.0, a) for a in study.amplitude["bore"] if a >= low
+        ),
+        "amplitude",
+    )
+
+
+def _limit_on_rings() -> Values:
+    """Static limit of the bore on rings, by amplitude."""
+    return _friction(
+        lambda study: (
+            claims.resolved_limit(study, "bore", a) for a in claims.limited(study, "bore")
+        ),
+        "amplitude",
+    )
+
+
 def _end(quantity: str) -> Values:
-    """The end of each transient. Its error: the change from half as many rings, and the change over
-    the last tenth of the way."""
+    """End value of each transient.
+
+    Its error is the change from half as many rings plus the change over the last tenth of the way.
+    """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
-        for start in asked.STARTS:
-            two = [runs(asked.transient(start, cells)) for cells in asked.CELLS]
+        for start in claims.STARTS:
+            two = [runs(claims.transient(start, cells)) for cells in claims.CELLS]
             fine, coarse = (np.asarray(run.result[quantity], float) for run in two)
             tail = fine[-max(fine.size // 10, 2) :]
             error = abs(fine[-1] - coarse[-1]) + np.abs(tail - fine[-1]).max()
-            yield {"velocity": asked.TRANSIENT_VELOCITY}, fine[-1], error, two
+            yield {"velocity": claims.TRANSIENT_VELOCITY}, fine[-1], error, two
 
     return values
 
@@ -172,8 +169,8 @@ def _field(index: int) -> Values:
     """A number of `_tractions`; its error is the change from half as many rings."""
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
-        for velocity in asked.FIELD_VELOCITIES:
-            two = [runs(asked.field(velocity, cells)) for cells in asked.CELLS]
+        for velocity in claims.FIELD_VELOCITIES:
+            two = [runs(claims.field(velocity, cells)) for cells in claims.CELLS]
             fine, coarse = (_tractions(run)[index] for run in two)
             yield {"velocity": velocity}, fine, abs(fine - coarse), two
 
@@ -181,7 +178,7 @@ def _field(index: int) -> Values:
 
 
 def _tractions(run: Run) -> tuple[float, float]:
-    """Least traction over its bound, and largest angle to Eq 15 in degrees."""
+    """Smallest traction over its bound, and largest angle to Eq 15 in degrees."""
     names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
     lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
     along = np.asarray(run.result["forward_position"], float)
@@ -193,16 +190,7 @@ def _tractions(run: Run) -> tuple[float, float]:
     return float((size / bound).min()), float(np.degrees(np.abs(turned).max()))
 
 
-def _below_one(amplitude: float) -> bool:
-    return amplitude < 1.0  # there is no static friction beyond
-
-
-def _above_turning(amplitude: float) -> bool:
-    return amplitude > TURNING_BORE
-
-
-def _below_turning(amplitude: float) -> bool:
-    return amplitude < TURNING_BORE
+# Formulas
 
 
 def _rigid(amplitude: float, velocity: float) -> Any:
@@ -211,6 +199,9 @@ def _rigid(amplitude: float, velocity: float) -> Any:
 
 def _steady(amplitude: float, velocity: float) -> float:
     return float(paper.large_amplitude_bore(velocity))
+
+
+# Checks of other forms
 
 
 def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -222,26 +213,48 @@ def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
-    """The paper's run has no error estimate; its distance from the certified point stands in."""
-    for amplitude in asked.sliding(study):
-        place = {"amplitude": amplitude, "velocity": asked.PAPER_VELOCITY}
-        own = runs(asked.paper_run("transverse", amplitude))
-        point = runs(asked.point(study, "transverse", asked.PAPER_VELOCITY, amplitude))
-        certified, its_error = friction(point)
+    """Checks of the paper's run, whose error is its distance from a run at the tolerance."""
+    for amplitude in claims.sliding(study):
+        place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}
+        own = runs(claims.paper_run("transverse", amplitude))
+        point = runs(claims.point(study, "transverse", claims.PAPER_VELOCITY, amplitude))
+        accurate, its_error = friction(point)
         mu = value_of(own.result, "mu_macro")
-        eq = float(_rigid(amplitude, asked.PAPER_VELOCITY))
-        yield check(mu, eq, mu - eq, its_error + abs(mu - certified), [own, point], **place)
+        eq = float(_rigid(amplitude, claims.PAPER_VELOCITY))
+        yield check(mu, eq, mu - eq, its_error + abs(mu - accurate), [own, point], **place)
 
 
 def _steady_nears(study: Claims, runs: Runs) -> Iterator[Check]:
     for before, amplitude in pairwise(study.amplitude["bore"]):
-        for velocity in asked.velocities(study):
-            two = [runs(asked.point(study, "bore", velocity, a)) for a in (amplitude, before)]
+        for velocity in claims.velocities(study):
+            two = [runs(claims.point(study, "bore", velocity, a)) for a in (amplitude, before)]
             (mu, error), (other, its_error) = map(friction, two)
             eq = _steady(amplitude, velocity)
             margin = abs(other - eq) - abs(mu - eq)
             place = {"amplitude": amplitude, "velocity": velocity}
             yield check(mu, eq, margin, error + its_error, two, **place)
+
+
+def _rises(rows: Callable[[Claims], Iterable[list[dict]]], *names: str) -> Checks:
+    """Checks of neighbours in rows of requests, from slow to fast."""
+
+    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
+        for row in rows(study):
+            for slow, fast in pairwise(row):
+                two = [runs(fast), runs(slow)]
+                (mu, error), (before, its_error) = map(friction, two)
+                place = {name: float(fast[name]) for name in names}
+                yield check(mu, before, mu - before, error + its_error, two, **place)
+
+    return checks
+
+
+def _rises_on_map(motion: str) -> Checks:
+    return _rises(
+        lambda study: [row for row in claims.rows(study) if row[0]["motion"] == motion],
+        "amplitude",
+        "velocity",
+    )
 
 
 # Periods of the oscillating bore
@@ -250,13 +263,16 @@ def _steady_nears(study: Claims, runs: Runs) -> Iterator[Check]:
 def _periods(
     judge: Callable[[np.ndarray, np.ndarray, float], tuple[float, float, float]],
 ) -> Checks:
-    """Checks of periods; judge(right, left, cell): value, reference and margin of the area shares
-    that stick on either side, and of the smallest cell. Error: the change from half the rings."""
+    """Checks of periods; the error of a margin is the change from half as many rings.
+
+    judge(right, left, cell) -> value, reference and margin; right, left: area fraction that sticks
+    on either side, shape (steps,); cell: area fraction of the smallest cell.
+    """
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        for velocity, amplitude in asked.periods(study):
+        for velocity, amplitude in claims.periods(study):
             place = {"amplitude": amplitude, "velocity": velocity}
-            requests = [asked.period(study, velocity, amplitude, c) for c in (False, True)]
+            requests = [claims.period(study, velocity, amplitude, c) for c in (False, True)]
             two = [runs(request) for request in requests]
             if all(value_of(run.result, "converged", bool) for run in two):
                 (value, against, margin), (*_, coarse) = (judge(*_sticking(run)) for run in two)
@@ -268,7 +284,7 @@ def _periods(
 
 
 def _sticking(run: Run) -> tuple[np.ndarray, np.ndarray, float]:
-    """Area shares that stick, (steps,): right, left; and the share of the smallest cell."""
+    """Arguments of a `judge` of `_periods`."""
     right, left = (np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left"))
     return right, left, min(run.result["area"]) / np.pi
 
@@ -290,191 +306,95 @@ def _alternates(right: np.ndarray, left: np.ndarray, _: float) -> tuple[float, f
     return lead, ALTERNATES, lead - ALTERNATES
 
 
-# Along the velocity
+# Parts
 
 
-def _rises(rows: Callable[[Claims], Iterable[list[dict]]], names: tuple[str, ...]) -> Checks:
-    """Checks of neighbours in rows of requests, from slow to fast."""
-
-    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
-        for row in rows(study):
-            for slow, fast in pairwise(row):
-                two = [runs(fast), runs(slow)]
-                (mu, error), (before, its_error) = map(friction, two)
-                place = {name: float(fast[name]) for name in names}
-                yield check(mu, before, mu - before, error + its_error, two, **place)
-
-    return checks
+def _below_one(amplitude: float) -> bool:
+    return amplitude < 1.0  # static friction vanishes at larger ones
 
 
-def _limits(far: float = 0.0) -> Values:
-    """The static limit of the bore in closed form, from an amplitude on."""
-    return _friction(
-        lambda study: (
-            asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"] if a >= far
-        ),
-        "amplitude",
-    )
+def _above_turning(amplitude: float) -> bool:
+    return amplitude > TURNING_BORE
 
 
-def _limits_on_rings() -> Values:
-    return _friction(
-        lambda study: (
-            asked.resolved_limit(study, "bore", a) for a in asked.limited(study, "bore")
-        ),
-        "amplitude",
-    )
+def _below_turning(amplitude: float) -> bool:
+    return amplitude < TURNING_BORE
 
 
-def _something_left(limits: Values) -> Checks:
+def _not_zero(limits: Values) -> Checks:
     return _judge(limits, lambda amplitude: 0.0, lambda mu, _: mu - VANISHES)
 
 
-def _along(motion: str) -> Checks:
-    return _rises(
-        lambda study: [row for row in asked.rows(study) if row[0]["motion"] == motion],
-        ("amplitude", "velocity"),
-    )
+ZONE, PRINTED = paper.static_bore, paper.static_bore_printed
+CHECKS: dict[str, Checks] = {
+    "rigid_below": _judge(_map("transverse"), _rigid, above),
+    "rigid_near": _judge(_map("transverse"), _rigid, within(SLIGHT)),
+    "rigid_below_squares": _rigid_below_squares,
+    "slider_above": _judge(_limit("transverse", _below_one), paper.static_slider, below),
+    "zone_nearer": _zone_nearer,
+    "slider_above_march": _judge(_slow("transverse", _below_one), paper.static_slider, below),
+    "zone_above": _judge(_limit("transverse", _below_one), paper.static_transverse, below),
+    "force_settles": _judge(_end("force_forward"), paper.bore_forward, within(AGREES)),
+    "torque_settles": _judge(_end("torque"), paper.bore_torque, within(AGREES)),
+    "force_steady": _judge(
+        _friction(claims.steady, "velocity"), paper.bore_forward, within(AGREES)
+    ),
+    "on_bound": _judge(_field(0), lambda velocity: ON_BOUND, above),
+    "aligned": _judge(_field(1), lambda velocity: ALIGNED, below),
+    "steady_near": _judge(_map("bore", lambda a: a >= LARGE_BORE), _steady, within(GOOD)),
+    "steady_nears": _steady_nears,
+    "steady_near_below": _judge(_map("bore", lambda a: a < LARGE_BORE), _steady, within(GOOD)),
+    "bore_zone_near": _judge(_limit("bore", _above_turning), ZONE, within(GOOD)),
+    "bore_zone_relative": _judge(
+        _limit("bore", _above_turning), ZONE, lambda mu, eq: RELATIVE * mu - abs(eq - mu)
+    ),
+    "bore_zone_above": _judge(_limit("bore", _below_turning), ZONE, below),
+    "bore_zone_seen": _judge(
+        _slow("bore", _above_turning, claims.PAPER_VELOCITY), ZONE, within(GOOD)
+    ),
+    "bore_zone_above_march": _judge(_slow("bore", _below_turning), ZONE, below),
+    "bore_zone_printed": _judge(_limit("bore", _above_turning), PRINTED, within(GOOD)),
+    "some_sticks": _periods(_some_sticks),
+    "alternates": _periods(_alternates),
+    "limit_positive": _not_zero(_closed_limit()),
+    "limit_positive_rings": _not_zero(_limit_on_rings()),
+    "limit_asymptote": _judge(
+        _closed_limit(FAR), static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)
+    ),
+    "rises_transverse": _rises_on_map("transverse"),
+    "rises_bore": _rises_on_map("bore"),
+    "rises_continuous_bore": _rises(lambda study: [claims.steady(study)], "velocity"),
+}
+"""Checks by name of the part."""
 
 
-ZONE = paper.static_bore
-PARTS = (
-    Part(
-        *(1, "rigid_below", "Eq 6 lies below the computed friction"),
-        _judge(_map("transverse"), _rigid, above),
-    ),
-    Part(
-        *(1, "rigid_near", f"... and within {SLIGHT:g} of it"),
-        _judge(_map("transverse"), _rigid, within(SLIGHT)),
-    ),
-    Part(
-        *(1, "rigid_below_squares"),
-        "Eq 6 lies below the friction of the paper's own run, at its smallest velocity and the "
-        "largest amplitude",
-        _rigid_below_squares,
-        counts=False,
-    ),
-    Part(
-        *(2, "slider_above", "Eq 7 lies above the static limit"),
-        _judge(_limit("transverse", _below_one), paper.static_slider, below),
-    ),
-    Part(2, "zone_nearer", "Eq 11 is nearer to the static limit than Eq 7", _zone_nearer),
-    Part(
-        *(2, "slider_above_march"),
-        "Eq 7 lies above even the friction at the smallest velocity, a bound of the limit",
-        _judge(_slow("transverse", _below_one), paper.static_slider, below),
-        counts=False,
-    ),
-    Part(
-        *(2, "zone_above", "Eq 11 lies above the static limit too"),
-        _judge(_limit("transverse", _below_one), paper.static_transverse, below),
-        counts=False,
-    ),
-    Part(
-        *(3, "force_settles", f"the force ends within {AGREES:g} of Eq 21, from each start"),
-        _judge(_end("force_forward"), paper.bore_forward, within(AGREES)),
-    ),
-    Part(
-        *(3, "torque_settles", f"the torque ends within {AGREES:g} of Eq 22, from each start"),
-        _judge(_end("torque"), paper.bore_torque, within(AGREES)),
-    ),
-    Part(
-        *(3, "force_steady", f"certified steady force within {AGREES:g} of Eq 21"),
-        _judge(_friction(asked.steady, "velocity"), paper.bore_forward, within(AGREES)),
-        counts=False,
-    ),
-    Part(
-        *(4, "on_bound", f"every traction is at least {ON_BOUND:g} of its bound"),
-        _judge(_field(0), lambda velocity: ON_BOUND, above),
-    ),
-    Part(
-        *(4, "aligned"),
-        f"every traction is within {ALIGNED:g} degrees of the rigid slip (Eq 15)",
-        _judge(_field(1), lambda velocity: ALIGNED, below),
-    ),
-    Part(
-        *(5, "steady_near", f"Eq 29 is within {GOOD:g}, at amplitudes from {LARGE_BORE:g} on"),
-        _judge(_map("bore", lambda amplitude: amplitude >= LARGE_BORE), _steady, within(GOOD)),
-    ),
-    Part(
-        *(5, "steady_nears", "Eq 29 gets nearer from one amplitude to the next"),
-        _steady_nears,
-        counts=False,
-    ),
-    Part(
-        *(5, "steady_near_below"),
-        f"Eq 29 is within {GOOD:g} at amplitudes below {LARGE_BORE:g} too",
-        _judge(_map("bore", lambda amplitude: amplitude < LARGE_BORE), _steady, within(GOOD)),
-        counts=False,
-    ),
-    Part(
-        *(6, "bore_zone_near"),
-        f"Eq 33 is within {GOOD:g} of the static limit, at amplitudes above {TURNING_BORE:g}",
-        _judge(_limit("bore", _above_turning), ZONE, within(GOOD)),
-    ),
-    Part(
-        *(6, "bore_zone_relative", f"... and within {100 * RELATIVE:g} % of the limit's own value"),
-        _judge(_limit("bore", _above_turning), ZONE, lambda mu, eq: RELATIVE * mu - abs(eq - mu)),
-    ),
-    Part(
-        *(6, "bore_zone_above"),
-        f"Eq 33 lies above the static limit, at amplitudes below {TURNING_BORE:g}",
-        _judge(_limit("bore", _below_turning), ZONE, below),
-    ),
-    Part(
-        *(6, "bore_zone_seen"),
-        f"Eq 33 is within {GOOD:g} of the friction at the paper's smallest velocity, above "
-        f"{TURNING_BORE:g}",
-        _judge(_slow("bore", _above_turning, asked.PAPER_VELOCITY), ZONE, within(GOOD)),
-        counts=False,
-    ),
-    Part(
-        *(6, "bore_zone_above_march"),
-        "there Eq 33 lies above even the friction at the smallest velocity, a bound of the limit",
-        _judge(_slow("bore", _below_turning), ZONE, below),
-        counts=False,
-    ),
-    Part(
-        *(6, "bore_zone_printed"),
-        f"Eq 33 as printed, without the square, is within {GOOD:g}, above {TURNING_BORE:g}",
-        _judge(_limit("bore", _above_turning), paper.static_bore_printed, within(GOOD)),
-        counts=False,
-    ),
-    Part(
-        *(7, "some_sticks", "at every phase part of the contact sticks, more than one cell"),
-        _periods(_some_sticks),
-    ),
-    Part(
-        *(7, "alternates"),
-        f"when least sticks one side leads by {ALTERNATES:g} of it, the other half a period later",
-        _periods(_alternates),
-    ),
-    Part(
-        *(8, "limit_positive", f"the static limit is above {VANISHES:g} (closed form)"),
-        _something_left(_limits()),
-    ),
-    Part(
-        *(8, "limit_positive_rings"),
-        f"the static limit is above {VANISHES:g} on rings too, with no closed form",
-        _something_left(_limits_on_rings()),
-        counts=False,
-    ),
-    Part(
-        *(8, "limit_asymptote"),
-        f"from amplitude {FAR:g} on it is within {100 * RELATIVE:g} % of an asymptote that never "
-        "vanishes",
-        _judge(_limits(FAR), static.asymptote, lambda mu, far: RELATIVE * far - abs(mu - far)),
-    ),
-    Part(
-        *(9, "rises_transverse", "transverse: from one velocity to the next friction rises"),
-        _along("transverse"),
-    ),
-    Part(
-        *(9, "rises_bore", "oscillating bore: from one velocity to the next friction rises"),
-        _along("bore"),
-    ),
-    Part(
-        *(9, "rises_continuous_bore", "continuous bore: likewise"),
-        _rises(lambda study: [asked.steady(study)], ("velocity",)),
-    ),
+@dataclass(frozen=True)
+class Part:
+    """One aspect of a statement that numbers can confirm or refute.
+
+    Attributes
+    ----------
+    claim : int
+        Number of the statement.
+    name : str
+        Name of the part.
+    text : str
+        The criterion.
+    checks : callable
+        (study, runs) -> checks.
+    counts : bool
+        True if the verdict on the statement depends on the part.
+    """
+
+    claim: int
+    name: str
+    text: str
+    checks: Checks
+    counts: bool
+
+
+PARTS = tuple(
+    Part(claim, name, text, CHECKS[name], name not in BESIDE)
+    for claim, criteria in CRITERIA.items()
+    for name, text in criteria.items()
 )

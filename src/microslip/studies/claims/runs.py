@@ -1,4 +1,4 @@
-"""The runs behind the verdicts: results by request, and how each can be repeated."""
+"""Runs behind the verdicts: results by request, and the command that repeats each of them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from microslip.studies.tables import Answers, value_of
 
 @dataclass(frozen=True)
 class Run:
-    """A stored result: its name, what was asked, and what came out."""
+    """A stored result: its key in the store, the request, and the result."""
 
     key: str
     request: dict
@@ -19,36 +19,36 @@ class Run:
 
 
 class Runs(Answers):
-    """Answers that keep the runs in the order in which they were first asked for."""
+    """Answers that are Runs. `by_request` holds them in the order of their first request."""
 
     def __init__(self, answer: Callable):
         super().__init__(answer)
-        self.found: dict[str, Run] = {}
+        self.by_request: dict[str, Run] = {}
 
     def __call__(self, request: dict) -> Run:
         text = canonical_json(request)
-        if text not in self.found:
+        if text not in self.by_request:
             record = self.record(request)
-            self.found[text] = Run(record["key"], request, record["result"])
-        return self.found[text]
+            self.by_request[text] = Run(record["key"], request, record["result"])
+        return self.by_request[text]
 
 
 def friction(run: Run) -> tuple[float, float]:
-    """(mu_macro, its error) of a certified point; the error is infinite if it did not converge."""
+    """(mu_macro, error estimate) of a point; the error is infinite if it is not converged."""
     error = value_of(run.result, "mu_macro_error")
     good = value_of(run.result, "converged", bool) and np.isfinite(error)
     return value_of(run.result, "mu_macro"), error if good else np.inf
 
 
 def resolution(run: Run) -> tuple[int, ...]:
-    """(cells, angles, steps) of a run as far as it has them, 0 for what it has not."""
+    """(cells, angles, steps) of a run; 0 for a number that the run does not have."""
     used = run.request | {name: n for name, n in run.result.items() if name in ("cells", "angles")}
     steps = run.result.get("steps_per_period") or run.request.get("steps")
     return tuple(int(n or 0) for n in (used.get("cells"), used.get("angles"), steps))
 
 
 def command(request: dict) -> str:
-    """A line for the shell that computes a request again."""
+    """Shell command that computes a request again."""
     kind, motion = request["kind"], request["motion"]
     if kind == "point":
         words = ["microslip point", motion, f"--velocity {request['velocity']}"]
@@ -60,11 +60,12 @@ def command(request: dict) -> str:
     place = [repr(motion), request["velocity"]]
     place += [request["amplitude"]] if request.get("amplitude") else []
     names, call = _CALLS[kind]
-    given = [f"{name}={_shown(request[name])}" for name in names if request.get(name) is not None]
+    pairs = [(name, request.get(name)) for name in names]
+    arguments = [f"{name}={_literal(value)}" for name, value in pairs if value is not None]
     module, _, function = call.partition(" ")
     return (
         f'python -c "from {module} import {function.partition("(")[0]}; '
-        f'print({function.replace("...", ", ".join([*place, *given]))})"'
+        f'print({function.replace("...", ", ".join([*place, *arguments]))})"'
     )
 
 
@@ -80,11 +81,11 @@ _CALLS = {
         "microslip.adaptive.single_run run_trial(...)['mu_macro']",
     ),
 }
-"""Names of the arguments in a request, and the function that takes them, by kind."""
+"""Names of the arguments in a request, and the call that takes them, by kind of request."""
 
 
-def _shown(value: str | float) -> str:
-    """Numbers, which requests hold as text, as they are; other text in quotes."""
+def _literal(value: str | float) -> str:
+    """Python literal of a value of a request; numbers are stored as text and get no quotes."""
     try:
         float(value)
     except ValueError:
@@ -98,7 +99,7 @@ def made_by(request: dict) -> str:
         "point": "certified point",
         "history": f"transient from {request.get('start')}",
         "field": "steady tractions",
-        "patches": "a period from inside",
+        "patches": "tractions over a period",
         "run": f"single run, method {request.get('method')}",
     }
     limit = request["kind"] == "point" and request["velocity"] == "0"

@@ -1,31 +1,33 @@
 """The statements of the paper in plain words, and the criteria of their parts.
 
-The runs behind each comparison are in `parts`.
+A part is one aspect of a statement that numbers can confirm or refute. The checks of each part are
+in `parts`.
 """
 
 GOOD = 0.02
-"""Largest distance of mu_macro from a formula that counts as good: what the eye sees on a map with
-contours of a tenth."""
+"""Largest distance of mu_macro from a formula that counts as good: visible on a map with contours
+of a tenth."""
 SLIGHT = 0.05
 """Largest distance that counts as slight."""
 AGREES = 0.01
-"""Largest distance that counts as agreement, of a curve and a dashed line drawn over it."""
+"""Largest distance that counts as agreement of a curve and a dashed line drawn over it."""
 RELATIVE = 0.1
-"""Largest distance over the true value that counts as good, where friction itself is small."""
+"""Largest distance over the true value that counts as good where friction is small."""
 LARGE_BORE = 5.0
-"""Bore amplitude from which on it counts as large: the largest that the paper's map shows."""
+"""Smallest bore amplitude that counts as large: the largest amplitude of the paper's map."""
 TURNING_BORE = 2.0
-"""Bore amplitude that divides where the paper finds Eq 33 good from where it does not."""
+"""Bore amplitude above which the paper considers Eq 33 good."""
 ON_BOUND = 0.999
-"""Share of the friction bound that a traction has to reach to count as slipping."""
+"""Traction over the friction bound above which a point counts as slipping."""
 ALIGNED = 4.0
-"""Largest angle in degrees between traction and slip: what the paper itself allows."""
+"""Largest angle in degrees between traction and slip: the tolerance of the paper."""
 ALTERNATES = 0.5
-"""Part of the sticking area by which one side has to lead where patches alternate."""
+"""Smallest lead of one side over the other, as a fraction of the sticking area, that counts as
+alternation of patches."""
 VANISHES = 1e-9
-"""Friction over mu F_z up to which there counts as being none."""
+"""Largest friction over mu F_z that counts as zero."""
 FAR = 3.0
-"""Bore amplitude from which on the stick zone is small and an asymptote may be asked for."""
+"""Smallest bore amplitude at which the stick zone is small and the asymptote applies."""
 
 STATEMENTS = {
     1: "Under transverse oscillation the rigid slider (Eq 6) gives a friction slightly too low at "
@@ -45,3 +47,71 @@ STATEMENTS = {
     8: "However slow the forward motion, the oscillating bore never takes all friction away.",
     9: "Under any superposed motion friction rises with the forward velocity.",
 }
+
+CRITERIA = {
+    1: {
+        "rigid_below": "Eq 6 lies below the computed friction",
+        "rigid_near": f"Eq 6 is within {SLIGHT:g} of the computed friction",
+        "rigid_below_squares": "Eq 6 lies below the friction of the paper's own run, at its "
+        "smallest velocity and the largest amplitude",
+    },
+    2: {
+        "slider_above": "Eq 7 lies above the static limit",
+        "zone_nearer": "Eq 11 is nearer to the static limit than Eq 7",
+        "slider_above_march": "Eq 7 lies above even the friction at the smallest velocity, an "
+        "upper bound of the limit",
+        "zone_above": "Eq 11 lies above the static limit too",
+    },
+    3: {
+        "force_settles": f"the force ends within {AGREES:g} of Eq 21, from each start",
+        "torque_settles": f"the torque ends within {AGREES:g} of Eq 22, from each start",
+        "force_steady": f"the steady force at the tolerance is within {AGREES:g} of Eq 21",
+    },
+    4: {
+        "on_bound": f"every traction is at least {ON_BOUND:g} of its bound",
+        "aligned": f"every traction is within {ALIGNED:g} degrees of the rigid slip (Eq 15)",
+    },
+    5: {
+        "steady_near": f"Eq 29 is within {GOOD:g}, at amplitudes from {LARGE_BORE:g} on",
+        "steady_nears": "Eq 29 gets nearer from one amplitude to the next",
+        "steady_near_below": f"Eq 29 is within {GOOD:g} at amplitudes below {LARGE_BORE:g} too",
+    },
+    6: {
+        "bore_zone_near": f"Eq 33 is within {GOOD:g} of the static limit, at amplitudes above "
+        f"{TURNING_BORE:g}",
+        "bore_zone_relative": f"Eq 33 is within {100 * RELATIVE:g} % of the static limit, at "
+        f"amplitudes above {TURNING_BORE:g}",
+        "bore_zone_above": f"Eq 33 lies above the static limit, at amplitudes below "
+        f"{TURNING_BORE:g}",
+        "bore_zone_seen": f"Eq 33 is within {GOOD:g} of the friction at the paper's smallest "
+        f"velocity, at amplitudes above {TURNING_BORE:g}",
+        "bore_zone_above_march": "Eq 33 lies above even the friction at the smallest velocity, an "
+        f"upper bound of the limit, at amplitudes below {TURNING_BORE:g}",
+        "bore_zone_printed": f"Eq 33 as printed, without the square, is within {GOOD:g} of the "
+        f"static limit, at amplitudes above {TURNING_BORE:g}",
+    },
+    7: {
+        "some_sticks": "at every phase a part of the contact sticks, larger than one cell",
+        "alternates": f"when the sticking area is smallest, one side leads by {ALTERNATES:g} of "
+        "this area, and the other side half a period later",
+    },
+    8: {
+        "limit_positive": f"the static limit is above {VANISHES:g} (closed form)",
+        "limit_positive_rings": f"the static limit is above {VANISHES:g} on rings, without a "
+        "closed form",
+        "limit_asymptote": f"from amplitude {FAR:g} on the static limit is within "
+        f"{100 * RELATIVE:g} % of an asymptote that never vanishes",
+    },
+    9: {
+        "rises_transverse": "transverse: friction rises from one velocity to the next",
+        "rises_bore": "oscillating bore: friction rises from one velocity to the next",
+        "rises_continuous_bore": "continuous bore: friction rises from one velocity to the next",
+    },
+}
+"""Criterion of each part, by statement and by name."""
+BESIDE = {
+    *("rigid_below_squares", "slider_above_march", "zone_above", "force_steady", "steady_nears"),
+    *("steady_near_below", "bore_zone_seen", "bore_zone_above_march", "bore_zone_printed"),
+    *("limit_positive_rings",),
+}
+"""Parts that the verdict on their statement does not depend on."""

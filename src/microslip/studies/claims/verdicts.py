@@ -1,8 +1,8 @@
-"""Verdicts: what follows from margins and errors, by rules that know nothing of friction.
+"""Verdicts on statements, from the margins and errors of checks.
 
-A statement of the paper is cut into parts, a part is judged by checks. A check is a number that is
-positive where the part holds, with an error: it decides only if it is larger than that. A part
-holds if nothing decides against it, and a statement if all its parts do.
+A statement of the paper has parts, and a part is judged by checks. A check is a margin with an
+error: the margin is positive where the part holds, and it decides only if it is larger than the
+error. A part holds if no check decides against it. A statement holds if all its parts hold.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ OPEN, HOLDS, FAILS = range(len(OUTCOMES))
 VERDICTS = ("not_decided", "holds", "holds_in_part", "does_not_hold")
 NOT_DECIDED, WHOLLY, PARTLY, NOT = range(len(VERDICTS))
 WORDS = ("not decided", "holds", "holds in part", "does not hold")
-"""The verdicts as they are written."""
+"""Verdicts in words."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One number that speaks for or against a part.
+    """A comparison of two numbers that speaks for or against a part.
 
     Attributes
     ----------
     value, against : float
-        What was computed, and what it is compared with.
+        Computed value, and its reference.
     margin, error : float
-        Positive where the part holds; error of the margin, infinite where a run gave no number to
-        trust.
+        Margin, positive where the part holds, and its error. The error is infinite if a run did
+        not converge.
     runs : tuple of str
-        Names of the results behind it, the one that it is about first.
+        Names of the results, that of the computed value first.
     place : tuple
-        (name, number) pairs that say where.
+        (name, number) pairs such as ("amplitude", 1.0).
     """
 
     value: float
@@ -45,7 +45,7 @@ class Check:
 
     @property
     def outcome(self) -> int:
-        """One of OUTCOMES, as an index: open unless the margin is larger than its error."""
+        """Index of OUTCOMES: open unless the margin is larger than its error."""
         if not (math.isfinite(self.margin) and abs(self.margin) > self.error):
             return OPEN
         return HOLDS if self.margin > 0 else FAILS
@@ -53,43 +53,43 @@ class Check:
 
 def of_part(checks: list) -> int:
     """The verdict on a part, an index of VERDICTS; checks: list of Check."""
-    found = {check.outcome for check in checks}
-    if HOLDS not in found:
-        return NOT if FAILS in found else NOT_DECIDED
-    return PARTLY if FAILS in found else WHOLLY
+    outcomes = {check.outcome for check in checks}
+    if HOLDS not in outcomes:
+        return NOT if FAILS in outcomes else NOT_DECIDED
+    return PARTLY if FAILS in outcomes else WHOLLY
 
 
 def of_claim(parts: list) -> int:
-    """The verdict on a statement, from those on its parts.
+    """The verdict on a statement, from the verdicts on its parts.
 
-    One that is open leaves the statement open too, unless the others hold and fail among
-    themselves: whatever it came to then, the statement would hold in part.
+    An undecided part leaves the statement undecided, unless other parts both hold and fail: then
+    the statement holds in part, whatever the verdict on the undecided part.
     """
-    found = set(parts)
-    if PARTLY in found or {WHOLLY, NOT} <= found:
+    distinct = set(parts)
+    if PARTLY in distinct or {WHOLLY, NOT} <= distinct:
         return PARTLY
-    if NOT_DECIDED in found or not found:
+    if NOT_DECIDED in distinct or not distinct:
         return NOT_DECIDED
-    return found.pop()
+    return distinct.pop()
 
 
 def decisive(checks: list, outcome: int) -> Check | None:
-    """The check that shows an outcome best: the one with the largest margin; None without any."""
-    found = [check for check in checks if check.outcome == outcome]
-    return max(found, key=lambda check: abs(check.margin), default=None)
+    """The check with an outcome that has the largest margin, None if no check has the outcome."""
+    decided = [check for check in checks if check.outcome == outcome]
+    return max(decided, key=lambda check: abs(check.margin), default=None)
 
 
 def tightest(checks: list) -> Check | None:
-    """The check with the least margin among those that hold; None if none does."""
-    found = [check for check in checks if check.outcome == HOLDS]
-    return min(found, key=lambda check: check.margin, default=None)
+    """The check with the smallest margin among those that hold, None if none holds."""
+    decided = [check for check in checks if check.outcome == HOLDS]
+    return min(decided, key=lambda check: check.margin, default=None)
 
 
 def where(checks: list) -> str:
-    """In words where a part holds and where not, as in "amplitude 1 to 3; not at amplitude 5".
+    """Text with the places where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
 
-    The first name in the places of the checks groups them, the second gives the range of failures
-    within a group.
+    Checks are grouped by the first number of their places. Where a group both holds and fails, the
+    text lists the second numbers of the failures.
     """
     if not checks or not checks[0].place:
         return ""
@@ -101,9 +101,9 @@ def where(checks: list) -> str:
     order = sorted(outcomes)
     texts = []
     for label, chosen in (
-        ("", lambda found: HOLDS in found and FAILS not in found),
-        ("not at ", lambda found: FAILS in found and HOLDS not in found),
-        ("open at ", lambda found: found == {OPEN}),
+        ("", lambda of: HOLDS in of and FAILS not in of),
+        ("not at ", lambda of: FAILS in of and HOLDS not in of),
+        ("open at ", lambda of: of == {OPEN}),
     ):
         at = {x for x in order if chosen(outcomes[x])}
         runs = _runs(order, at.__contains__)
@@ -121,19 +121,19 @@ def where(checks: list) -> str:
 
 
 def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
-    """Stretches of neighbours that are chosen, as text: "0.5", "1 to 3"."""
-    stretch, found = [], []
+    """Texts of runs of consecutive chosen values, such as "0.5" and "1 to 3"."""
+    stretch, texts = [], []
     for value in [*order, None]:
         if value is not None and chosen(value):
             stretch.append(value)
         elif stretch:
-            found.append(f"{stretch[0]:g}" + (f" to {stretch[-1]:g}" if stretch[1:] else ""))
+            texts.append(f"{stretch[0]:g}" + (f" to {stretch[-1]:g}" if stretch[1:] else ""))
             stretch = []
-    return found
+    return texts
 
 
 def _within(group: list[Check]) -> str:
-    """Text with the places where checks of a group fail, by the second name of their places."""
+    """Text with the second numbers of the places where checks of a group fail."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:
         return "for some"

@@ -11,56 +11,38 @@ from microslip.studies.propulsion import propulsion as study
 from microslip.studies.tables import Answers, finished, table, value_of
 
 GROUPS: dict = {}
-"""All of it is over lines and their points."""
-
-POWER = "over mu times the mean normal load, u_lim and omega"
-
-
-def _number(name: str) -> Callable[[dict], float]:
-    return lambda result: value_of(result, name)
-
+"""Groups of the dataset: it has one table only, over lines and their points."""
 
 LINE_COLUMNS: dict[str, tuple] = {
-    name: (_number(name), text)
-    for name, text in {
-        "stall_force": "load that stops the motion, over mu times the mean normal load",
-        "stall_force_error": "largest error of stall_force, by estimate",
-        "no_load_velocity": "forward velocity without a load, in the unit of the motion",
-        "no_load_velocity_error": "largest error of no_load_velocity, by estimate",
-    }.items()
-} | {
-    "converged": (
-        lambda result: value_of(result, "converged", bool),
-        "whether every force and power is within the tolerance",
-        bool,
-    ),
-    "reason": (
-        lambda result: value_of(result, "reason", str),
-        "why not, or why nothing is driven",
-        str,
-    ),
+    "stall_force": ("load that stops the motion, over mu times the mean normal load", float),
+    "stall_force_error": ("error estimate of stall_force", float),
+    "no_load_velocity": ("forward velocity without a load, in the unit of the motion", float),
+    "no_load_velocity_error": ("error estimate of no_load_velocity", float),
+    "converged": ("every force and power is within the tolerance", bool),
+    "reason": ("reason why not, or why the motion propels nothing", str),
 }
-"""Columns of a line; numbers are negative where the motion propels the contact backward."""
+"""Results of a line: long_name, type. Numbers are negative where the motion propels backward."""
 COORDINATES: dict[str, tuple] = {
     "line": (lambda name, _: name, "name of the motion", str),
     "title": (lambda name, motion: motion.title or name, "title of the line", str),
-    "panel": (lambda _, motion: motion.panel, "heading of its panels", str),
-    "motion": (lambda _, motion: motion.motion, "what moves", str),
+    "panel": (lambda _, motion: motion.panel, "heading of the panels of the line", str),
+    "motion": (lambda _, motion: motion.motion, "motion", str),
     "amplitude": (lambda _, motion: motion.amplitude, "amplitude of the motion"),
     "poisson": (lambda _, motion: motion.poisson, "Poisson's ratio"),
 }
-OF_POINT = {
-    "velocity": "forward velocity, in equal parts from 0 to no_load_velocity",
-    "force": "mean force that the motion pulls with, over mu times the mean normal load",
-    "force_error": "largest error of force, by estimate",
+POWER = "over mu times the mean normal load, u_lim and omega"
+POINT_COLUMNS = {
+    "velocity": "forward velocity, in equal steps from 0 to no_load_velocity",
+    "force": "mean propelling force, over mu times the mean normal load",
+    "force_error": "error estimate of force",
     "power_out": f"force times velocity, {POWER}",
-    "power_out_error": "largest error of power_out, by estimate",
-    "power_in": f"mean work of the oscillation on the contact, {POWER}",
-    "power_in_error": "largest error of power_in, by estimate",
+    "power_out_error": "error estimate of power_out",
+    "power_in": f"mean power of the oscillation, {POWER}",
+    "power_in_error": "error estimate of power_in",
     "efficiency": "power_out over power_in",
-    "efficiency_error": "largest error of efficiency, by estimate",
+    "efficiency_error": "error estimate of efficiency",
 }
-"""Numbers of every point of a line; NaN where nothing is driven."""
+"""Results at every point of a line: long_name. NaN where the motion propels nothing."""
 
 
 def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
@@ -70,18 +52,24 @@ def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     """
     answers = Answers(answer)
     results = [answers(study.line(settings, motion)) for motion in settings.motions.values()]
-    variables = table("line", ((result,) for result in results), LINE_COLUMNS)
-    for name, text in OF_POINT.items():
-        rows = [_padded(result, name, settings.points) for result in results]
+    variables = {}
+    for name, (text, kind) in LINE_COLUMNS.items():
+        values = [value_of(result, name, kind) for result in results]
+        variables[name] = variable("line", values, text, kind)
+    for name, text in POINT_COLUMNS.items():
+        rows = np.full((len(results), settings.points), np.nan)
+        for row, result in zip(rows, results, strict=True):
+            numbers = result.get(name) or []
+            row[: len(numbers)] = numbers
         variables[name] = variable(("line", "point"), rows, text)
-    coords = table("line", settings.motions.items(), COORDINATES)
-    title = "What motions drive a Hertz contact with, from stall force to no-load velocity"
+    variables |= table("line", settings.motions.items(), COORDINATES)
+    title = "Propulsion of a Hertz contact by self-propelled motions, from stall force to no load"
     more = {"tolerance": settings.tolerance}
-    return finished(variables, coords, title, answers, settings, **more)
+    return finished(variables, title, answers, settings, COORDINATES, **more)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: what every motion drives."""
+    """Lines of text: stall force, no-load velocity and efficiency of every motion."""
     for index, name in enumerate(dataset["line"].values):
         one = dataset.isel(line=index)
         if not bool(one["converged"]) or str(one["reason"].values):
@@ -92,9 +80,3 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
             f"{name}: stall force {float(one['stall_force']):.4g}, no-load velocity "
             f"{float(one['no_load_velocity']):.4g}, efficiency up to {best:.3g}"
         )
-
-
-def _padded(result: dict, name: str, count: int) -> np.ndarray:
-    """The numbers of a line, NaN where it has no points."""
-    found = [np.nan if value is None else value for value in result.get(name) or []]
-    return np.array(found + [np.nan] * (count - len(found)))

@@ -1,10 +1,9 @@
-"""Propulsion: the lines of self-propelled motions, from stall to no load."""
+"""Propulsion: force-velocity lines of self-propelled motions, from stall to no load."""
 
 from microslip.config.settings import Propulsion, SelfPropelledMotion
 from microslip.foundation.canonical import number
 
-LINES_TOGETHER = 2
-"""That one job computes."""
+LINES_PER_JOB = 2
 
 
 def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
@@ -21,6 +20,6 @@ def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
 
 def pieces(study: Propulsion) -> tuple[list, list]:
     """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
-    asked = [line(study, motion) for motion in study.motions.values()]
-    distinct = [request for i, request in enumerate(asked) if request not in asked[:i]]
-    return [], [distinct[i : i + LINES_TOGETHER] for i in range(0, len(distinct), LINES_TOGETHER)]
+    requests = [line(study, motion) for motion in study.motions.values()]
+    distinct = [request for i, request in enumerate(requests) if request not in requests[:i]]
+    return [], [distinct[i : i + LINES_PER_JOB] for i in range(0, len(distinct), LINES_PER_JOB)]

@@ -1,8 +1,8 @@
-"""Stability: the cases that methods are sent to, one axis at a time.
+"""Stability: the cases that all methods are tested on, along one axis at a time.
 
-Every axis varies one thing from a base point until it hurts, or holds still where others break. A
-case is a value, the point and resolution that it stands for, and what it sets in a method. All
-probes ask for the same tolerance.
+An axis varies one quantity of a base point into a range where methods fail. A case is a value of
+this quantity with its point, its resolution, or a number of the method. All probes have the same
+tolerance.
 """
 
 from dataclasses import dataclass
@@ -16,21 +16,21 @@ from microslip.studies import requests
 
 @dataclass(frozen=True)
 class Axis:
-    """A quantity that is varied.
+    """A varied quantity, with its cases.
 
     Attributes
     ----------
     name : str
     label : str
-        What it is, for axes of figures (mathtext allowed, without blanks in it).
+        Label of the axis in figures (mathtext without blanks).
     note : str
-        What is held.
+        Values of the fixed quantities.
     cases : tuple
-        Pairs of the value and what it sets in the request: motion, velocity, amplitude, poisson,
-        cells or steps.
+        Pairs of the value and a dict for the request: motion, velocity, amplitude, poisson, cells
+        or steps.
     parameters : tuple
-        By method, the name of the number that takes the value; an axis that has them asks only
-        these methods, and the shipped one to compare with.
+        Pairs of a method and its number that takes the value. With such pairs the axis applies to
+        these methods only, and to the shipped method for comparison.
     """
 
     name: str
@@ -41,10 +41,10 @@ class Axis:
 
 
 def _varied(
-    key: str | None, values: tuple[float, ...], **held: object
+    key: str | None, values: tuple[float, ...], **fixed: object
 ) -> tuple[tuple[float, dict], ...]:
-    """Cases that give the values to `key`, or to nothing but the method if that is None."""
-    return tuple((value, held if key is None else held | {key: value}) for value in values)
+    """Cases in which `key` takes the values; None: a number of the method takes the values."""
+    return tuple((value, fixed if key is None else fixed | {key: value}) for value in values)
 
 
 _SLOW = (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -81,17 +81,17 @@ AXES = (
         *("poisson", r"Poisson's ratio $\nu$", "transverse, v 0.1, A 0.7"),
         _varied("poisson", (0.0, 0.1, 0.2, 0.3, 0.4, 0.49, 0.5), **_BASE | {"amplitude": 0.7}),
     ),
-    # The outermost cells get ever smaller, and the bound of friction goes to 0 there.
+    # The outermost cells become small, and the friction bound tends to 0 there.
     Axis(
         *("edge", "rings: small at the edge", "transverse, v 0.01, A 0.5"),
         _varied("cells", (8, 16, 32, 64, 128), motion="transverse", velocity=0.01, amplitude=0.5),
     ),
-    # The innermost cells of a polar grid get ever more slender.
+    # The innermost cells of a polar grid become slender.
     Axis(
         *("centre", "rings: slender cells at the centre", "bore, v 0.1, A 1"),
         _varied("cells", (4, 8, 12, 16, 24), **_BORE),
     ),
-    # Up to 1 the instantaneous centre lies inside the contact: the slip has no direction there.
+    # Up to 1 the centre of rotation is inside the contact, and the slip has no direction there.
     Axis(
         "rotation-centre",
         "velocity: where the centre of rotation lies",
@@ -118,25 +118,25 @@ AXES = (
         parameters=(("projected-gradient", "step"),),
     ),
 )
-"""All blocks of the atlas, in the order in which it shows them."""
+"""All blocks of the atlas, in their order in the figure."""
 TRUTH_SHARE = 0.1
-"""Tolerance of what probes are compared with, over theirs."""
-BLOCKS_TOGETHER = 5
-"""Blocks that one job sends a method to."""
+"""Tolerance of the references over that of the probes."""
+BLOCKS_PER_JOB = 5
+"""Number of blocks in one job."""
 
 
 def axes(study: Stability) -> list[Axis]:
-    """The blocks that the settings ask for, in the order of AXES."""
+    """The axes in the settings, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
 def cases(study: Stability) -> list[tuple]:
-    """List (axis, value, overrides) of all blocks, in the order of the dataset."""
+    """List of (axis, value, overrides) of all axes, in the order of the dataset."""
     return [(axis, *case) for axis in axes(study) for case in axis.cases]
 
 
 def probe(study: Stability, method: str, axis: Axis, value: float, overrides: dict) -> dict | None:
-    """The request that sends a method to a case; None if the axis does not apply to the method."""
+    """The request for a case with a method; None if the axis does not apply to the method."""
     if axis.parameters:
         base, _ = split(method)
         if base in dict(axis.parameters):
@@ -148,23 +148,23 @@ def probe(study: Stability, method: str, axis: Axis, value: float, overrides: di
 
 
 def reference(study: Stability, overrides: dict) -> dict:
-    """The request that the probes of a case are compared with: as shipped, nothing imposed."""
+    """The request for the reference of a case: the shipped method without an imposed resolution."""
     return requests.reference(_point(overrides), TRUTH_SHARE * study.tolerance)
 
 
 def pieces(study: Stability) -> tuple[list, list]:
     """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
-    asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
-    known: set[str] = set()
+    blocks = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
+    requested: set[str] = set()
     long: list[list[dict]] = []
     short: list[list[dict]] = []
-    for block in asked:
-        found = {canonical_json(r): r for r in (reference(study, case[2]) for case in block)}
-        long.append([r for text, r in found.items() if text not in known])
-        known |= found.keys()
+    for block in blocks:
+        references = {canonical_json(r): r for r in (reference(study, case[2]) for case in block)}
+        long.append([r for text, r in references.items() if text not in requested])
+        requested |= references.keys()
     for method in study.methods:
-        for at in range(0, len(asked), BLOCKS_TOGETHER):
-            some = [case for block in asked[at : at + BLOCKS_TOGETHER] for case in block]
+        for at in range(0, len(blocks), BLOCKS_PER_JOB):
+            some = [case for block in blocks[at : at + BLOCKS_PER_JOB] for case in block]
             probes = [probe(study, method, *case) for case in some]
             short.append([request for request in probes if request is not None])
     return [piece for piece in long if piece], [piece for piece in short if piece]
@@ -175,7 +175,7 @@ def _point(overrides: dict) -> requests.Point:
 
 
 def _with_number(method: str, parameter: str, value: float) -> str:
-    """The text of a method with one number set: "admm:penalty=0.1,relaxation=1.5"."""
+    """Name of a method with one number replaced, such as "admm:penalty=0.1,relaxation=1.5"."""
     name, numbers = split(method)
     numbers[parameter] = value
     return f"{name}:" + ",".join(f"{key}={number(n)}" for key, n in numbers.items())
