@@ -95,11 +95,11 @@ def test_coupling_kernels_below_mode_one_are_those_of_swapped_radii(r, s):
 RING_EDGES = np.array([0.0, 0.45, 0.7, 1.2, np.pi / 2])
 
 
-def ring_average(kernel, i, j, hertzian):
+def ring_average(kernel, i, j):
     """2/G* times the mean of kernel(r, s) over rings i and j, times Integral r dr over ring j."""
 
     def shape(psi):
-        return np.sin(psi) * np.cos(psi) ** (2 if hertzian else 1)
+        return np.sin(psi) * np.cos(psi) ** 2
 
     def inner(psi):
         low, high = RING_EDGES[j : j + 2]
@@ -123,23 +123,21 @@ def ring_average(kernel, i, j, hertzian):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("hertzian", [True, False])
 @pytest.mark.parametrize(("i", "j"), [(0, 0), (2, 2), (3, 3), (1, 2), (3, 2), (0, 3), (3, 0)])
-def test_ring_influence_is_the_average_over_both_rings(i, j, hertzian):
-    near, far = ring_influence(RING_EDGES, 6, True, hertz=hertzian)
+def test_ring_influence_is_the_average_over_both_rings(i, j):
+    near, far = ring_influence(RING_EDGES, 6, True)
     for m in (0, 1, 5):
-        direct = ring_average(lambda r, s, m=m: toroidal_mean(m, r, s), i, j, hertzian)
+        direct = ring_average(lambda r, s, m=m: toroidal_mean(m, r, s), i, j)
         assert near[m, i, j] == pytest.approx(direct, rel=5e-5)
     for m in (1, 2, 5):
-        cross = ring_average(lambda r, s, m=m: coupling_mean(m, r, s), i, j, hertzian)
+        cross = ring_average(lambda r, s, m=m: coupling_mean(m, r, s), i, j)
         assert far[m - 1, i, j] == pytest.approx(cross, rel=5e-5, abs=5e-6)
 
 
 @pytest.mark.parametrize("focus", [None, 0.1, 0.8])
-@pytest.mark.parametrize("hertzian", [True, False])
-def test_ring_influence_is_reciprocal_and_positive_definite(focus, hertzian):
+def test_ring_influence_is_reciprocal_and_positive_definite(focus):
     rings = make_rings(12, focus)
-    near, far = ring_influence(rings.psi, 17, True, hertz=hertzian)
+    near, far = ring_influence(rings.psi, 17, True)
     area = rings.area[:, None]
     symmetric = near * area
     assert symmetric == pytest.approx(symmetric.transpose(0, 2, 1), rel=1e-12)

@@ -6,9 +6,9 @@ from models.test_pulled import BODIES, START, plain
 from reference_pull import pulled_march
 
 from microslip.models.contact import forward_slip
+from microslip.models.driven_body import Body
 from microslip.models.path import EULER, SDIRK2, BodyPath, half_period_phases, make_path
 from microslip.models.polar.contact import PolarContact
-from microslip.models.pull import Body
 from microslip.models.rings.contact import RadialContact
 from microslip.models.side_by_side import SideBySide
 from microslip.models.squares.contact import CartesianContact
@@ -109,10 +109,10 @@ def test_a_march_of_two_contacts_is_the_plain_one(kind, body, integrator):
         plain_of_all(contacts), of_points, phases, start, numbers, START, stages
     )
     path = path_of(phases, WAYS, integrator, turns)
-    found = joined.pulled_march(path, start, 1e-12, Body(*numbers), START)
+    found = joined.march(path, start, 1e-12, body=Body(*numbers), start=START)
     assert found.state == pytest.approx(expected[-1], abs=2e-8)
     assert found.body[:, 0] == pytest.approx(places, abs=2e-8)
-    again = joined.pulled_march(path, start, 1e-12, Body(*numbers), START, previous=found)
+    again = joined.march(path, start, 1e-12, previous=found, body=Body(*numbers), start=START)
     assert again.state == pytest.approx(found.state, abs=1e-9)
 
 
@@ -123,7 +123,7 @@ def test_the_work_on_all_contacts_is_stored_or_dissipated(kind):
     contacts, phases, force = build(), half_period_phases(1), 0.7
     joined = SideBySide(contacts, SHARES, EXTENTS)
     start, path = 0.5 * forward_slip(joined), path_of(phases, WAYS, EULER, turns)
-    found = joined.pulled_march(path, start, 1e-12, Body(0.0, 0.0, 0.0, force), START)
+    found = joined.march(path, start, 1e-12, body=Body(0.0, 0.0, 0.0, force), start=START)
     q, ahead = found.state, np.diff(base(phases)[0])[0] + found.body[1, 0]
     each = zip(contacts, WAYS, strict=True)
     swung = np.concatenate(
@@ -170,9 +170,9 @@ def test_contacts_that_do_the_same_are_one(body):
         return tuple(a + b for a, b in zip(base(phase), besides(way)(phase), strict=True))
 
     start, body = 0.5 * forward_slip(one), Body(*BODIES[body])
-    alone = one.pulled_march(make_path(whole, phases), start, 1e-12, body, START)
+    alone = one.march(make_path(whole, phases), start, 1e-12, body=body, start=START)
     path = path_of(phases, [way] * 3)
-    together = three.pulled_march(path, np.tile(start, 3), 1e-12, body, START)
+    together = three.march(path, np.tile(start, 3), 1e-12, body=body, start=START)
     assert together.state == pytest.approx(np.tile(alone.state, 3), abs=1e-9)
     assert together.body == pytest.approx(alone.body, abs=1e-9)
     assert together.forces[:, :2] == pytest.approx(alone.forces[:, :2], abs=1e-9)

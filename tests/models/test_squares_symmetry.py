@@ -5,8 +5,8 @@ import pytest
 from models.test_squares import direct_sum
 
 from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forward_slip
+from microslip.models.driven_body import Body
 from microslip.models.path import make_path
-from microslip.models.pull import Body
 from microslip.models.registry import MODELS
 from microslip.models.side_by_side import SideBySide
 from microslip.models.squares import contact as squares_contact
@@ -146,7 +146,7 @@ def test_a_march_is_that_of_all_squares(kind, motion, pressure):
 def test_a_pulled_march_is_that_of_all_squares(kind):
     path, body = path_of(MOTIONS[kind][0], KINDS[kind][2], steps=8), Body(0.4, 0.0, 0.3, 0.0)
     one, other = (
-        contact.pulled_march(path, forward_slip(contact), TOLERANCE, body, np.zeros(2))
+        contact.march(path, forward_slip(contact), TOLERANCE, body=body)
         for contact in both(kind, 8)
     )
     assert np.ptp(one.body[:, 0]) > 0.1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -34,6 +34,9 @@ class March:
     fields : np.ndarray or None, shape (1 + steps stages, shape of state)
         Unknown of the step solver at the start and after every stage: the initial guess of a march
         of the same path from a start near by.
+    body : np.ndarray, shape (steps + 1, 2)
+        Displacement x of a driven body ahead of the path, and its derivative x' by the phase; empty
+        for models without drives.
     """
 
     state: np.ndarray
@@ -42,6 +45,7 @@ class March:
     iterations: int
     solves: int
     fields: np.ndarray | None = None
+    body: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 class Guess(Protocol):

@@ -39,7 +39,7 @@ class Integrator:
     times : tuple of float
         Stage times c, over the step.
     carried : tuple of tuple of float
-        Carried slips a_ij / gamma (j < i), a row a stage.
+        Carried slips a_ij / gamma, (stages, stages), zero on and above the diagonal.
     end : float
         Where in the step the last stage sits; below 1 (a single stage then) the rest of the step is
         extrapolated, and tractions at its end may leave the bound.
@@ -51,19 +51,10 @@ class Integrator:
     carried: tuple[tuple[float, ...], ...]
     end: float = 1.0
 
-    def carry_matrix(self) -> np.ndarray:
-        """Carried slips as an array of shape (stages, stages), zero on and above the diagonal."""
-        out = np.zeros((len(self.times), len(self.times)))
-        for i, row in enumerate(self.carried):
-            out[i, : len(row)] = row
-        return out
 
-
-EULER = Integrator("euler", 1, (1.0,), ((),))
-SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,)))
+EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
+SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
 """Two stages, L-stable, second order; the default: at equal work far ahead of backward Euler."""
-
-INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
 
 
 def theta_method(theta: float) -> Integrator:
@@ -73,7 +64,7 @@ def theta_method(theta: float) -> Integrator:
     """
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
-    return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((),), theta)
+    return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((0.0,),), theta)
 
 
 LONG_STROKE = 16.0
@@ -122,7 +113,7 @@ class Path:
     stages : np.ndarray, shape (steps, stages, 3)
         Displacement at every stage: forward, lateral, angle.
     carry : np.ndarray, shape (stages, stages)
-        See `Integrator.carry_matrix`.
+        Carried slips, see Integrator.
     end : float
         See `Integrator`.
     depth : np.ndarray or None, shape (1 + steps * stages,)
@@ -213,7 +204,7 @@ def make_path(
         if integrator.end == 1.0:
             times[:, -1] = phase[1:]  # to the last bit: the end is where the next march begins
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
-    return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
+    return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
 
 
 def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:

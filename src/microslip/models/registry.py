@@ -24,14 +24,13 @@ compiled code takes a while to load and closed forms do without it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from microslip.models.contact import Contact
     from microslip.models.rings.mesh import Focus
-    from microslip.models.system_contact import SystemContact
     from microslip.motions.problem import Problem
 
 
@@ -44,26 +43,20 @@ class Model:
     build : callable
         build(problem, cells, angles, focus) -> Contact.
     refuses : callable
-        refuses(problem) -> why it does not apply, or "".
+        refuses(problem) -> reason why the model does not apply, or "".
     exact : callable
-        exact(problem) -> whether refinement converges to the truth.
+        exact(problem) -> whether the model converges to the solution of the contact problem.
     axes : callable
-        axes(problem) -> what of its space can be refined: "cells", "angles".
-    side_by_side : callable or None
-        side_by_side(contacts, shares, extents) -> Contact of a body on several of its contacts,
-        each in its own units; None where its contact cannot be pulled, see pull.PullsContact.
+        axes(problem) -> the axes of its mesh that can be refined: "cells", "angles".
+    drivable : bool
+        Whether a force or a spring can drive its contact, and a body can rest on several of them.
     """
 
     build: Callable
     refuses: Callable
     exact: Callable = lambda problem: True
     axes: Callable = lambda problem: ("cells",)
-    side_by_side: Callable | None = None
-
-    @property
-    def pulled(self) -> bool:
-        """Whether its contact may be pulled."""
-        return self.side_by_side is not None
+    drivable: bool = True
 
 
 def _never(problem: Problem) -> bool:
@@ -169,46 +162,23 @@ def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float |
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
 
 
-def _side_by_side(
-    contacts: Sequence[SystemContact], shares: Sequence[float], extents: Sequence[float]
-) -> Contact:
-    from microslip.models.side_by_side import SideBySide
-
-    return SideBySide(contacts, shares, extents)
-
-
 MODELS = {
     "rigid": Model(
         _rigid,
         _any_of(_refuse_pulsation, _refuse_rigid),
         exact=lambda problem: not problem.motion.periodic,
         axes=lambda problem: ("cells", "angles") if problem.motion.rotates else (),
+        drivable=False,
     ),
-    "slider": Model(
-        _slider,
-        _NO_ROTATION,
-        exact=_never,
-        axes=lambda problem: (),
-        side_by_side=_side_by_side,
-    ),
-    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
-    "mdr": Model(
-        _mdr,
-        _any_of(_refuse_other_loads, _refuse_springs),
-        exact=_never,
-        side_by_side=_side_by_side,
-    ),
-    "radial": Model(
-        _radial,
-        _any_of(_refuse_other_loads, _refuse_rings),
-        side_by_side=_side_by_side,
-    ),
+    "slider": Model(_slider, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
+    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: (), drivable=False),
+    "mdr": Model(_mdr, _any_of(_refuse_other_loads, _refuse_springs), exact=_never),
+    "radial": Model(_radial, _any_of(_refuse_other_loads, _refuse_rings)),
     "polar": Model(
         _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda problem: ("cells", "angles"),
-        side_by_side=_side_by_side,
     ),
-    "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_side_by_side),
+    "cartesian": Model(_cartesian, _refuse_pulsation),
 }
 """Models by name."""

@@ -10,15 +10,14 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from microslip.contacts.drive import Drive
-from microslip.contacts.march import Loading, Trace, march
+from microslip.contacts.march import Loading, march
 from microslip.contacts.operators import multiply
 from microslip.contacts.splitting import best_penalty, resolvent
 from microslip.contacts.system import COMPLIANCE, System
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import MIRROR, Guess, March
+from microslip.models.contact import MIRROR, Contact, Guess, March
+from microslip.models.driven_body import Body
 from microslip.models.path import Path
-from microslip.models.pull import Body, PulledMarch
 
 
 class Layout(NamedTuple):
@@ -45,10 +44,7 @@ class Layout(NamedTuple):
         contacts, rows, columns, width = self
         *shape, given, _ = values.shape
         out = np.full((*shape, contacts, rows, width), fill, dtype=values.dtype)
-        if contacts > 1:
-            values = np.moveaxis(values.reshape(*shape, given, contacts, columns), -2, -3)
-        else:
-            values = values.reshape(*shape, 1, given, columns)
+        values = np.moveaxis(values.reshape(*shape, given, contacts, columns), -2, -3)
         out[..., :columns] = values
         return out.reshape(*shape, contacts * rows * width)
 
@@ -56,8 +52,6 @@ class Layout(NamedTuple):
         """Fields (..., points) as states (..., rows, columns of all)."""
         contacts, rows, columns, width = self
         shape = field.shape[:-1]
-        if contacts == 1:
-            return field.reshape(*shape, rows, width)[..., :columns]
         values = field.reshape(*shape, contacts, rows, width)[..., :columns]
         return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
 
@@ -68,7 +62,7 @@ class Layout(NamedTuple):
         return np.where(place < 0, np.arange(place.size), point[mirror[place]])
 
 
-class SystemContact:
+class SystemContact(Contact):
     """A contact that is a system.System for compiled code (see models.contact.Contact).
 
     Attributes
@@ -88,23 +82,12 @@ class SystemContact:
     compiled = True
     sticks = True
     radius = 1.0
-    grading: float | None = None
-    edges: np.ndarray | None = None
     layout: Layout
     mirror: np.ndarray
-
-    angles: int
-    bound: np.ndarray
-    weight: np.ndarray
-    compliance: np.ndarray
-    forward_position: np.ndarray
-    lateral_position: np.ndarray
-    stiffness: float
-    bounds: Callable[..., np.ndarray]
-    bounds_along: Callable[[Path], np.ndarray]
-
     operators: Any
     resultants: np.ndarray
+    bounds: Callable[..., np.ndarray]
+    bounds_along: Callable[[Path], np.ndarray]
 
     def system(self) -> System:
         """The System, with scratch of its own: for one thread at a time."""
@@ -154,10 +137,6 @@ class SystemContact:
         """The motion and the friction bounds that a path imposes on the contact."""
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
-    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Tractions of a coarser contact at the points of this one; None if there is no way."""
-        return None
-
     def affordable(self, work: float) -> float:
         """Marches until a budget has to be looked at: without one, as many as you like."""
         return np.inf
@@ -178,34 +157,22 @@ class SystemContact:
         return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 
     def march(
-        self, path: Path, state: np.ndarray, tolerance: float, previous: Guess | None = None
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: Guess | None = None,
+        *,
+        body: Body | None = None,
+        start: np.ndarray | None = None,
     ) -> March:
-        """March along a path; see models.contact.Contact."""
-        trace = self._trace(path, None, state, tolerance, previous)
-        return March(**self._record(trace))
+        """March along a path; see models.contact.Contact.
 
-    def pulled_march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March of a driven body that is at `start` (x, x') at first; see models.pull."""
-        trace = self._trace(path, body.along(path, start), state, tolerance, previous)
-        return PulledMarch(**self._record(trace), body=trace.body)
-
-    def _trace(
-        self,
-        path: Path,
-        drive: Drive | None,
-        state: np.ndarray,
-        tolerance: float,
-        previous: Guess | None,
-    ) -> Trace:
-        loading, pack = self.loading(path), self.layout.pack
+        body: the driven body that the contact carries, None if it follows the path; start: x and x'
+        of that body at the start of the path, zero by default.
+        """
+        drive = None if body is None else body.along(path, np.zeros(2) if start is None else start)
+        loading, pack, unpack = self.loading(path), self.layout.pack, self.layout.unpack
         guess = None if previous is None else previous.fields
         if guess is None or guess.shape != (len(loading.motion), *state.shape):
             guess = np.empty((0, *state.shape))
@@ -213,20 +180,17 @@ class SystemContact:
         while True:
             trace = march(self.system(), loading, drive, state, guess, float(tolerance))
             if not trace.broken:
-                return trace
+                break
             signal.raise_signal(signal.SIGINT)
-
-    def _record(self, trace: Trace) -> dict:
-        """Arguments of a March."""
-        unpack = self.layout.unpack
-        return {
-            "state": unpack(trace.state),
-            "forces": trace.forces,
-            "residual": trace.residual,
-            "iterations": trace.iterations,
-            "solves": len(trace.fields) - 1,
-            "fields": unpack(trace.fields),
-        }
+        return March(
+            unpack(trace.state),
+            trace.forces,
+            trace.residual,
+            trace.iterations,
+            len(trace.fields) - 1,
+            unpack(trace.fields),
+            trace.body,
+        )
 
 
 @kernel

@@ -239,11 +239,6 @@ class Problem:
             return tuple(part.share for part in self.parts)
         return tuple(part.share * part.problem.mean_load / self.mean_load for part in self.parts)
 
-    @property
-    def moves_together(self) -> bool:
-        """Whether all contacts oscillate alike along the forward direction."""
-        return _move_together(self.parts, self.size)
-
     @cached_property
     def is_balanced(self) -> bool:
         """Whether each contact has an opposite that oscillates half a period later, where the

@@ -18,8 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from microslip.pressures.cell_loads import round_loads
-from microslip.pressures.pressure import Pressure, of_radii
+from microslip.pressures.pressure import RoundPressure
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
@@ -34,7 +33,7 @@ _REFINEMENTS = 3
 
 
 @dataclass(frozen=True)
-class Indenter(Pressure):
+class Indenter(RoundPressure):
     """Base class of axisymmetric indenters: a subclass gives `depth`, `slope` and `radius`.
 
     Attributes
@@ -135,16 +134,8 @@ class Indenter(Pressure):
     def torque(self) -> float:
         return float(self._moment_outside(0.0))
 
-    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._outside(np.sin(psi), 1.0))
 
-    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._moment_outside(np.sin(psi)))
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
-        return round_loads(cells, self._ring_loads)
-
-    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
-        return of_radii(self._ring_loads, self._ring_moments, psi)

@@ -16,7 +16,6 @@ In these units the stiffness is the number G*, 3/4 for a sphere.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -25,6 +24,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.grid import READINGS, Grid, read_grids
 
 
@@ -189,6 +189,32 @@ class Pressure:
         return float(self.radius(1.0 - displacement))
 
 
+@dataclass(frozen=True)
+class RoundPressure(Pressure):
+    """Base class of pressures that depend on the radius alone, from integrals over rings.
+
+    A subclass gives `ring_loads` and `ring_moments`: integrals of the friction bound, and of the
+    bound times the radius, over the rings between r = sin(psi); shape (n,) from (n + 1,).
+    """
+
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
+        raise NotImplementedError
+
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
+        raise NotImplementedError
+
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        loads, moments, radii = self.ring_loads(psi), self.ring_moments(psi), np.sin(psi)
+        # a ring without load needs a lever arm as well
+        lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
+        return loads / (np.pi * np.diff(radii**2)), lever
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return round_loads(cells, self.ring_loads, self.inner)
+
+
 def _numbers(name: str, values: Any) -> np.ndarray:
     """The argument of this name as an array of floats."""
     try:
@@ -256,15 +282,3 @@ class Measured(Pressure):
     def cell_loads(self, cells: int) -> np.ndarray:
         """Load on each square, (cells, cells)."""
         return self.grid.cell_loads(cells)
-
-
-def of_radii(
-    ring_loads: Callable, ring_moments: Callable, psi: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """ring_means from loads and first moments of the bound between the radii r = sin(psi)."""
-    loads, moments = ring_loads(psi), ring_moments(psi)
-    area = np.pi * np.diff(np.sin(psi) ** 2)
-    radii = np.sin(psi)
-    # a ring without load has a lever arm all the same
-    lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
-    return loads / area, lever

@@ -9,15 +9,14 @@ import numpy as np
 import scipy
 
 from microslip.foundation import spec
-from microslip.pressures.cell_loads import round_loads
-from microslip.pressures.pressure import Pressure, of_radii
+from microslip.pressures.pressure import RoundPressure
 
 LIMITS = (0.05, 0.95)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 @dataclass(frozen=True)
-class Ring(Pressure):
+class Ring(RoundPressure):
     """The pressure sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
 
     That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
@@ -72,24 +71,16 @@ class Ring(Pressure):
         values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
         return 0.5 * np.diff(at) * (values @ _WEIGHTS)
 
-    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 1)
 
-    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 2)
-
-    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
-        return of_radii(self._ring_loads, self._ring_moments, psi)
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
-        return round_loads(cells, self._ring_loads, self.inner)
 
     @property
     def torque(self) -> float:
         whole = np.linspace(np.arcsin(self.inner), np.pi / 2, 65)
-        return float(self._ring_moments(whole).sum())
+        return float(self.ring_moments(whole).sum())
 
     @property
     def largest(self) -> float:

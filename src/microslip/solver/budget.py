@@ -86,9 +86,6 @@ class _Metered:
     def march(self, *path: Any, **settings: Any) -> March:
         return self._taken(self._contact.march(*path, **settings))
 
-    def pulled_march(self, *path: Any, **settings: Any) -> March:
-        return self._taken(self._contact.pulled_march(*path, **settings))
-
     def affordable(self, work: float) -> float:
         """Marches of so much work until the budget has to be looked at."""
         budget = self._budget

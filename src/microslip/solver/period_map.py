@@ -59,7 +59,7 @@ class PeriodicState:
     converged : bool
         Whether the distance is within the tolerance.
     body : np.ndarray or None, shape (steps + 1, 2)
-        x and x' of a driven contact over the last (half) period, see pull.PulledMarch.
+        x and x' of a driven contact over the last (half) period, see models.contact.March.
     fields : np.ndarray or None
         contact.March.fields of the last (half) period: the initial guess of a march from `start`.
     """

@@ -1,6 +1,6 @@
 """One (half) period of a contact that is pulled, as a map of its state.
 
-The state is one row of numbers: the tractions, and where the body remembers (models/pull.py) how
+The state is one row of numbers: the tractions, and where the body remembers (driven_body.py) how
 far it is ahead of the path, x, and how fast that grows, x'.  In the mirror image of half a period
 later these two are what they were.
 
@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.models.driven_body import Body
 from microslip.models.path import Path
-from microslip.models.pull import Body
 from microslip.models.system_contact import SystemContact
 from microslip.solver.period_map import DriftRate, PeriodMap
 from microslip.states.search import Inertia
@@ -34,7 +34,7 @@ class PulledMap(PeriodMap):
         What is marched.
     path : path.Path
         From which the body may stay behind or run ahead.
-    body : pull.Body
+    body : driven_body.Body
         What is pulled, and by what.
     drift_rate : period_map.DriftRate or None
         Given where the motion may be slow and its velocity is known.

@@ -78,11 +78,19 @@ class RadialContact(SystemContact):
         return np.concatenate([self._weighted[None] / weight[:, None], resolvents])[:, None]
 
     @staticmethod
+    @lru_cache(maxsize=32)
     def resolved(
         cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
     ) -> RadialContact:
-        """The half-space on `cells` rings refined around the radius `focus`."""
-        return _resolved(cells, focus, pressure)
+        """The half-space on `cells` rings refined around the radius `focus`.
+
+        Runs that differ in their motion alone share this object, which must not be changed.
+        """
+        rings = make_rings(cells, focus, pressure)
+        near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
+        edges = np.sin(rings.psi)
+        growth = Growth(pressure, edges, load_on_rings, influence_power=1, weight_power=2)
+        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)
 
     @property
     def _known_growth(self) -> Growth:
@@ -158,12 +166,3 @@ class RadialContact(SystemContact):
 def width_of(rings: int) -> int:
     """Columns of a field of so many rings: whole vectors, see lanes.py."""
     return max(-(-rings // 4) * 4, LANES)
-
-
-@lru_cache(maxsize=32)
-def _resolved(cells: int, focus: Focus | float | None, pressure: Pressure) -> RadialContact:
-    """Shared by runs that differ in their motion only: a contact never changes."""
-    rings = make_rings(cells, focus, pressure)
-    near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
-    growth = Growth(pressure, np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
-    return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)

@@ -45,8 +45,6 @@ class Averaging(NamedTuple):
         Edges of the rings as angles, r = sin(psi).
     coupled : bool
         Whether modes m and 2 - m act on each other (nu > 0).
-    hertz : bool
-        Whether tractions on a ring are shaped like the bound of Hertz, else uniform.
     outer, inner : tuple of np.ndarray
         Rules for the ring that the average is over, and for the other one from the point of nearest
         approach on.
@@ -56,7 +54,6 @@ class Averaging(NamedTuple):
 
     psi: np.ndarray
     coupled: bool
-    hertz: bool
     outer: tuple
     inner: tuple
     apart: tuple
@@ -71,7 +68,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
     far[:, i, j] and far[:, j, i] those of C_{m+1}, weighted with the ring shapes (normalised to
     unit weight Integral shape r dr = 1 on each ring).
     """
-    psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
+    psi, coupled = averaging.psi, averaging.coupled
     a0, a1 = psi[i], psi[i + 1]
     b0, b1 = psi[j], psi[j + 1]
     apart = max(a0 - b1, b0 - a1) >= 0.999 * max(a1 - a0, b1 - b0)
@@ -80,12 +77,12 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
     n_modes = len(near)
     norm_i = 0.0
     for p in range(len(x_out)):
-        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p], hertz)
-    norm_j = _weight_integral(b0, b1, hertz)
+        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p])
+    norm_j = (np.cos(b0) ** 3 - np.cos(b1) ** 3) / 3.0
     torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
     for p in range(len(x_out)):
         at = a0 + (a1 - a0) * x_out[p]
-        weight_out = (a1 - a0) * w_out[p] * _weight(at, hertz) / norm_i
+        weight_out = (a1 - a0) * w_out[p] * _weight(at) / norm_i
         # the inner panel is cut at the point of nearest approach
         cut = min(max(at, b0), b1)
         for end in (b0, b1):
@@ -94,7 +91,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
                 continue
             for q in range(len(x_in)):
                 chi = cut + length * x_in[q]
-                w = weight_out * abs(length) * w_in[q] * _weight(chi, hertz) / norm_j
+                w = weight_out * abs(length) * w_in[q] * _weight(chi) / norm_j
                 torus = mode_kernels(np.sin(at), np.sin(chi), n_modes, coupled, torus, pair)
                 for m in range(n_modes):
                     near[m, i, j] += w * torus[m]
@@ -107,19 +104,10 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
 
 
 @kernel
-def _weight(psi: float, hertz: bool) -> float:
-    """Shape times r dr/dpsi on r = sin psi: uniform traction, or one shaped like the bound."""
+def _weight(psi: float) -> float:
+    """Shape of the friction bound of Hertz times r dr/dpsi, at r = sin psi."""
     c = np.cos(psi)
-    return np.sin(psi) * c * (c if hertz else 1.0)
-
-
-@kernel
-def _weight_integral(b0: float, b1: float, hertz: bool) -> float:
-    """Exact integral of _weight from b0 to b1."""
-    c0, c1 = np.cos(b0), np.cos(b1)
-    if hertz:
-        return (c0**3 - c1**3) / 3.0
-    return 0.5 * (c0 * c0 - c1 * c1)
+    return np.sin(psi) * c * c
 
 
 @kernel
@@ -150,11 +138,12 @@ def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ring_influence(
-    psi: np.ndarray, n_modes: int, coupled: bool, hertz: bool = True, modulus: float = G_STAR
+    psi: np.ndarray, n_modes: int, coupled: bool, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mode matrices of a half-space under ring tractions.
 
-    Averages are Galerkin averages, so that near is symmetric after weighting with ring areas.
+    Tractions on a ring have the shape of the friction bound of Hertz.  Averages are Galerkin
+    averages, so that near is symmetric after weighting with ring areas.
 
     Parameters
     ----------
@@ -164,8 +153,6 @@ def ring_influence(
         Modes 0 to n_modes - 1.
     coupled : bool
         Whether far is asked for, which is zero else.
-    hertz : bool
-        Average with the shape of the friction bound of Hertz, else uniformly.
     modulus : float
         G* in working units.
 
@@ -185,7 +172,6 @@ def ring_influence(
     averaging = Averaging(
         psi,
         bool(coupled),
-        bool(hertz),
         outer=_smooth_ends_gauss(OUTER_POINTS),
         inner=_unit_gauss(INNER_POINTS, CLUSTER_POWER),
         apart=_unit_gauss(APART_POINTS, 1),
