@@ -323,11 +323,8 @@ def test_a_spreadsheet_with_decimal_commas_in_windows_1252_is_read_if_declared(t
         (HEAD + "0,0,1\n0,NaN,1\n", "line 3: lateral is nan; allowed: a finite number"),
         (HEAD + "0,0,1\n0,1,inf\n", "line 3: pressure is inf"),
         (HEAD + "0,0,1\n0,1,1e999\n", "line 3: pressure is 1e999"),
-        (
-            HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,1\n3,0,1\n3,1,1\n",
-            "line 6: forward 3 after 1: not even",
-        ),
-        (HEAD + "0,0,1\n0,1,1\n", "line 2: forward 0: not evenly spaced; allowed: two coordinates"),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,1\n3,0,1\n3,1,1\n", "forward = '1, 3': not even"),
+        (HEAD + "0,0,1\n0,1,1\n", "forward = '0': not evenly spaced; allowed: two coordinates"),
         (HEAD + "0,0,1\n0,1,1\n1,0,1\n0,1,1\n", "line 5: the same point as in line 3"),
         ("forward [mm],lateral,pressure\n0,0,1\n", "forward alone has a unit"),
         (
@@ -420,14 +417,14 @@ def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
     dims = ("forward", "lateral")
     both = {"forward": axis, "lateral": axis}
     holed = np.array([[1.0, np.nan], [1.0, 1.0]])
-    assert "pressure is nan at forward 0, lateral 1" in said({"pressure": (dims, holed)}, **both)
-    assert "pressure is -1 at forward 0" in said({"pressure": (dims, -one)}, **both)
+    assert "nan: at forward 0, lateral 1" in said({"pressure": (dims, holed)}, **both)
+    assert "pressure = -1.0: at forward 0" in said({"pressure": (dims, -one)}, **both)
     assert "no variable lateral" in said({"pressure": (dims, one)}, forward=axis)
     assert "no variable pressure" in said({"load": (dims, one)}, **both)
     assert "pressure has the dimensions time, forward, lateral" in said(
         {"pressure": (("time", *dims), one[None])}, **both
     )
-    assert "forward is nan" in said({"pressure": (dims, one)}, forward=[0.0, np.nan], lateral=axis)
+    assert "forward = 'nan'" in said({"pressure": (dims, one)}, forward=[0.0, np.nan], lateral=axis)
     assert "not evenly spaced" in said({"pressure": (dims, one)}, forward=[1.0, 1.0], lateral=axis)
     assert "pressure holds" in said({"pressure": (dims, np.full((2, 2), "a"))}, **both)
     assert "lateral alone has a unit" in said(

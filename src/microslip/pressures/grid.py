@@ -51,11 +51,9 @@ def read_grids(
         For coordinates that are not regular, values below 0 or not finite, a load that is 0.
     """
     values = np.asarray(values, float)
-    _refuse(values)
-    points = [
-        _even(label, np.asarray(axis, float))
-        for label, axis in zip(AXES, (forward, lateral), strict=True)
-    ]
+    axes = [np.asarray(axis, float) for axis in (forward, lateral)]
+    points = [_even(label, axis) for label, axis in zip(AXES, axes, strict=True)]
+    _refuse(*axes, values)
     values = values / values.max()
     points = _in_steps(points)
     grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
@@ -66,38 +64,35 @@ def read_grids(
     }
 
 
-def _refuse(values: np.ndarray) -> None:
-    allowed = np.isfinite(values) & (values >= 0.0)
-    if not allowed.all():
-        bad = float(values[~allowed][0])
-        raise InputError("pressure", bad, "not allowed; allowed: finite numbers, 0 or above")
+def _refuse(forward: np.ndarray, lateral: np.ndarray, values: np.ndarray) -> None:
+    """Raise InputError for values that are no pressure, and for a load of 0."""
+    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
+    if len(bad):
+        i, j = bad[0]
+        place = f"at forward {forward[i]:g}, lateral {lateral[j]:g}"
+        allowed = f"{place}; allowed: finite numbers, 0 or above"
+        raise InputError("pressure", float(values[i, j]), allowed)
     if not values.any():
         raise InputError("pressure", 0.0, "it is 0 everywhere; allowed: a load above 0")
 
 
-def irregular_at(axis: np.ndarray) -> int | None:
-    """Index of the first coordinate, of increasing ones, that no even grid has there; None: they
-    are even but for rounding."""
-    if len(axis) < 2 or not axis[-1] > axis[0]:
-        return 0
-    even = np.linspace(axis[0], axis[-1], len(axis))
-    if np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
-        return None
-    steps = np.diff(axis)
-    usual = np.sort(steps)[(len(steps) - 1) // 2]
-    return 1 + int(np.abs(steps - usual).argmax())
-
-
 def _even(label: str, axis: np.ndarray) -> np.ndarray:
-    """The evenly spaced coordinates that those of an axis are, but for rounding."""
-    index = 0 if not np.isfinite(axis).all() else irregular_at(axis)
-    if index is not None:
-        raise InputError(
-            label,
-            ", ".join(f"{place:g}" for place in axis[max(index - 1, 0) : index + 1]),
-            "not evenly spaced; allowed: two coordinates or more, at equal distances",
-        )
-    return np.linspace(axis[0], axis[-1], len(axis))
+    """Evenly spaced coordinates (n,) in place of those of an axis, which differ by rounding alone.
+
+    Raises InputError for other coordinates; the message shows those with the oddest distance.
+    """
+    worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
+    if len(axis) > 1 and np.isfinite(axis).all():
+        even, steps = np.linspace(axis[0], axis[-1], len(axis)), np.diff(axis)
+        if even[1] > even[0] and np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
+            return even
+        usual = np.sort(steps)[(len(steps) - 1) // 2]
+        worst = int(np.abs(steps - usual).argmax())
+    raise InputError(
+        label,
+        ", ".join(f"{place:g}" for place in axis[worst : worst + 2]),
+        "not evenly spaced; allowed: two coordinates or more, at equal distances",
+    )
 
 
 def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:

@@ -93,8 +93,6 @@ def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.nd
             f"line {places[twice[again]]}: the same point as in line {places[twice[first]]}; "
             "allowed: every point of a regular grid once"
         )
-    for name, axis, at in (("forward", forward, i), ("lateral", lateral, j)):
-        _refuse_uneven(name, axis, at, places)
     if given.min() < 1.0:
         a, b = np.argwhere(given == 0.0)[0]
         raise ValueError(
@@ -120,10 +118,3 @@ def _first_pair(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
             return seen[point], number
         seen[point] = number
     raise AssertionError("no two points are the same")
-
-
-def _refuse_uneven(name: str, axis: np.ndarray, at: np.ndarray, places: Sequence[int]) -> None:
-    uneven = grid_units.first_uneven(axis)
-    if uneven is not None:
-        where = places[int(np.flatnonzero(at == uneven)[0])]
-        raise ValueError(f"line {where}: {grid_units.uneven(name, axis, uneven)}")

@@ -89,22 +89,7 @@ def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         for name, factor in zip(COLUMNS, factors, strict=True)
     )
     along, across = np.argsort(forward), np.argsort(lateral)
-    forward, lateral = forward[along], lateral[across]
-    values = values[np.ix_(along, across)]
-    for name, axis in (("forward", forward), ("lateral", lateral)):
-        if not np.isfinite(axis).all():
-            raise ValueError(f"{name} is {axis[~np.isfinite(axis)][0]:g}; allowed: finite numbers")
-        uneven = grid_units.first_uneven(axis)
-        if uneven is not None:
-            raise ValueError(grid_units.uneven(name, axis, uneven))
-    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
-    if len(bad):
-        i, j = bad[0]
-        raise ValueError(
-            f"pressure is {values[i, j]:g} at forward {forward[i]:g}, lateral {lateral[j]:g}; "
-            "allowed: finite numbers, 0 or above"
-        )
-    return forward, lateral, values
+    return forward[along], lateral[across], values[np.ix_(along, across)]
 
 
 def _unit(name: str, attributes: Mapping[str, object]) -> str | None:

@@ -1,10 +1,6 @@
-"""Columns, units and even spacing of pressure grids in files."""
+"""Columns and units of pressure grids in files."""
 
 from __future__ import annotations
-
-import numpy as np
-
-from microslip.pressures.grid import irregular_at
 
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
@@ -63,17 +59,3 @@ def _factor(name: str, text: str) -> float | None:
             f"[{EXAMPLES[name]}], or none"
         )
     return float(unit.to_base_units().magnitude)
-
-
-def first_uneven(axis: np.ndarray) -> int | None:
-    """Index of the first coordinate that is not where an even grid has it; None: all are."""
-    return irregular_at(axis)
-
-
-def uneven(name: str, axis: np.ndarray, index: int) -> str:
-    """Error message for a coordinate that is off the even grid."""
-    before = f" after {axis[index - 1]:g}" if index else ""
-    return (
-        f"{name} {axis[index]:g}{before}: not evenly spaced; allowed: two coordinates or more, at "
-        "equal distances"
-    )
