@@ -12,7 +12,6 @@ POINTS = 4
 NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)
 VECTORS = arrays(float, (2, 1, POINTS), elements=NUMBER)
 BOUNDS = arrays(float, POINTS, elements=st.floats(1e-3, 2.0))
-SEEDS = st.integers(0, 2**32 - 1)
 
 
 def size(q):
@@ -47,34 +46,6 @@ def test_zero_bound_and_zero_traction():
     assert np.array_equal(project(zero, np.zeros(1)), zero)
     assert np.array_equal(project(zero + 1.0, np.zeros(1)), zero)
     assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # of nothing, any share will do
-
-
-@st.composite
-def solutions(draw):
-    """(q, slip, bound, scale, weight) that obey Coulomb's law by construction."""
-    bound, scale = draw(BOUNDS), draw(BOUNDS)
-    weight = draw(BOUNDS)
-    angle = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 6.3)))
-    share = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 1.0)))
-    speed = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 2.0)))
-    slips = draw(arrays(bool, (1, POINTS)))
-    unit = np.stack([np.cos(angle), np.sin(angle)])
-    return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
-
-
-@pytest.mark.slow
-@settings(deadline=None)
-@given(solutions())
-def test_residual_vanishes_for_solutions(solution):
-    q, slip, bound, scale, weight = solution
-    assert coulomb_residual(q, slip, bound, weight, scale) <= 1e-14
-
-
-def test_residual_is_exactly_zero_where_no_rounding_enters():
-    q = np.array([[[0.5, 1.0, 0.0, -0.25]], [[0.25, 0.0, -2.0, 0.0]]])
-    slip = np.array([[[0.0, 3.0, 0.0, -2.0]], [[0.0, 0.0, -0.5, 0.0]]])
-    bound, ones = np.array([1.0, 1.0, 2.0, 0.25]), np.ones(4)
-    assert coulomb_residual(q, slip, bound, ones, ones) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,8 @@
 Complex notation: q = lateral + i forward, as in halfspace.py.
 """
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from microslip.models.contact import forces
 from microslip.models.polar.contact import PolarContact
@@ -399,24 +396,3 @@ def test_square_coefficients_are_the_integral_over_a_square(nu):
     assert contact.compliance[0, 0] == pytest.approx(
         square_displacement(0.0, 2 / cells, 0j)[0].real, rel=1e-12
     )
-
-
-@pytest.mark.slow
-def test_square_loads_are_those_of_the_hertz_pressure():
-    contact = CartesianContact(9)
-    loads = contact.bound * contact.weight
-    assert loads.sum() == pytest.approx(1.0, rel=1e-14)
-    edges = np.linspace(-1, 1, 10)
-    for i, j in [(4, 4), (1, 4), (0, 4), (1, 1), (2, 7), (0, 0)]:
-
-        def strip(x, j=j):
-            chord = np.sqrt(max(1 - x * x, 0.0))
-            low, high = np.clip(edges[j : j + 2], -chord, chord)
-            return quad(lambda y: hertz.friction_bound(np.hypot(x, y)), low, high)[0]
-
-        kinks = np.sqrt(1 - edges**2) * np.sign(edges[i] + 0.1)
-        ends = np.unique(np.clip(kinks, edges[i], edges[i + 1]))
-        ends = np.unique([edges[i], *ends, edges[i + 1]])
-        exact = sum(quad(strip, a, b, epsabs=1e-11)[0] for a, b in pairwise(ends))
-        assert loads[i, j] == pytest.approx(exact, abs=1e-9)
-    assert loads[0, 0] == 0.0

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from models.test_models import larger_residual
-from reference_march import solved_stage
 
 from microslip.contacts.coulomb import coulomb_residual, project
 from microslip.models.contact import energy_norm, forward_slip
@@ -48,28 +47,9 @@ def exponential_contact(cells):
     return RadialContact(kernel * weight, 1.5 / np.pi * np.sqrt(1.0 - radius**2), weight)
 
 
-def one_step(motion):
-    """A single Euler step through a displacement (forward, lateral)."""
-    forward, lateral = motion
-    return make_path(lambda t: (forward * t, lateral * t, 0.0 * t), np.array([0.0, 1.0]), EULER)
-
-
 def some_state(contact, seed, share=1.0):
     q = np.random.default_rng(seed).normal(size=(2, 1, len(contact.bound)))
     return share * project(q * contact.bound, contact.bound)
-
-
-@pytest.mark.parametrize("size", [0.02, 0.3, 1.0, 3.0])
-@pytest.mark.parametrize(("cells", "focus"), [(2, None), (7, 0.4), (12, 0.8)])
-def test_step_is_that_of_plain_descent(cells, focus, size):
-    contact = RadialContact.resolved(cells, focus)
-    before = some_state(contact, cells)
-    motion = size * np.array([np.cos(cells), np.sin(cells)])
-    march = contact.march(one_step(motion), before, 1e-13)
-    imposed = before[:, 0] @ contact.influence.T + motion[:, None]
-    matrix = np.kron(np.eye(2), contact.influence)
-    expected = solved_stage(matrix, imposed, contact.bound, np.zeros_like(before[:, 0]))
-    assert march.state[:, 0] / contact.bound == pytest.approx(expected / contact.bound, abs=1e-9)
 
 
 @pytest.mark.parametrize("cells", [1, 5, 16, 48])
@@ -103,13 +83,6 @@ def test_another_march_as_first_guess_changes_the_effort_only():
         assert energy_norm(contact, led.state - alone.state) < 1e-9
     other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # of no use here
     assert np.array_equal(contact.march(path, start, tolerance, previous=other).state, alone.state)
-
-
-def test_equal_inputs_give_equal_bits():
-    contact, path = RadialContact.resolved(10, 0.7), half_period(0.01, 0.5, 12)
-    marches = [contact.march(path, forward_slip(contact), 1e-8) for _ in range(2)]
-    for name in ("state", "forces", "fields"):
-        assert np.array_equal(*(getattr(march, name) for march in marches))
 
 
 @pytest.mark.parametrize(("cells", "steps", "velocity", "amplitude", "mu"), KNOWN)

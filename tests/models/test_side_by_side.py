@@ -117,33 +117,6 @@ def test_a_march_of_two_contacts_is_the_plain_one(kind, body, integrator):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_work_on_all_contacts_is_stored_or_dissipated(kind):
-    """As of one contact: a backward Euler step balances work exactly."""
-    build, turns = KINDS[kind]
-    contacts, phases, force = build(), half_period_phases(1), 0.7
-    joined = SideBySide(contacts, SHARES, EXTENTS)
-    start, path = 0.5 * forward_slip(joined), path_of(phases, WAYS, EULER, turns)
-    found = joined.march(path, start, 1e-12, body=Body(0.0, 0.0, 0.0, force), start=START)
-    q, ahead = found.state, np.diff(base(phases)[0])[0] + found.body[1, 0]
-    each = zip(contacts, WAYS, strict=True)
-    swung = np.concatenate(
-        [
-            np.subtract(*(moved(one, besides(way, turns)(phase), 0.0) for phase in phases[::-1]))
-            for one, way in each
-        ],
-        axis=-1,
-    )
-    strained = joined.displacement(q - start)
-    slip = swung - strained
-    slip[0] += ahead
-    work = force * ahead + np.sum(joined.weight * q * swung)
-    stored = np.sum(joined.weight * q * strained)
-    dissipated = np.sum(joined.weight * joined.bound * np.hypot(*slip))
-    assert dissipated > 0.01
-    assert work == pytest.approx(stored + dissipated, abs=1e-9)
-
-
-@pytest.mark.parametrize("kind", KINDS)
 def test_displacements_of_contacts_side_by_side_are_their_own(kind):
     build, _ = KINDS[kind]
     contacts = build()

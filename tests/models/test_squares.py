@@ -63,15 +63,6 @@ def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
     assert out == pytest.approx(direct_sum(cells, nu, state), abs=1e-13)
 
 
-@pytest.mark.parametrize("nu", NUS)
-def test_largest_eigenvalue_is_bounded_closely(nu):
-    contact = CartesianContact(8, nu)
-    units = np.eye(2 * 64).reshape(-1, 2, 8, 8)
-    matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
-    largest = np.linalg.eigvalsh(matrix)[-1]
-    assert largest < contact.largest < 2.5 * largest
-
-
 @pytest.mark.parametrize("cells", [3, 4, 7])
 def test_loads_of_cells_are_integrals_of_the_bound(cells):
     contact = CartesianContact(cells)
@@ -214,28 +205,3 @@ def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, r
     assert guided.residual <= guided.solves * tolerance
     again = contact.march(path, near, tolerance, previous=plain)
     assert again.iterations < 0.2 * plain.iterations
-
-
-def test_the_same_march_twice_is_the_same_to_the_bit():
-    contact, path = CartesianContact(8, 0.3), path_of(Bore(), 8, nu=0.3)
-    one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
-    assert np.array_equal(one.state, other.state) and np.array_equal(one.forces, other.forces)
-
-
-@pytest.mark.parametrize("nu", NUS)
-def test_the_mirrored_march_is_the_march_of_the_mirror_image(nu, rng):
-    """lateral -> -lateral turns lateral displacement and angle over."""
-    contact, tolerance = CartesianContact(8, nu), 1e-10
-    start = project(rng.normal(size=(2, 8, 8)) * contact.bound, contact.bound)
-
-    def displacement(phase, sign):
-        lateral, angle = 0.4 * np.sin(phase), np.cos(phase)
-        return 0.3 * phase, sign * lateral, sign * angle
-
-    phase = np.linspace(0.0, 3.0, 13)
-    march, image = (
-        contact.march(make_path(lambda t, s=sign: displacement(t, s), phase), state, tolerance)
-        for sign, state in [(1, start), (-1, contact.mirrored(start))]
-    )
-    assert force_between(contact, image.state, contact.mirrored(march.state)) < 1e3 * tolerance
-    assert image.forces == pytest.approx(march.forces * [1, -1, -1], abs=1e3 * tolerance)

@@ -51,18 +51,6 @@ def test_rings_and_squares_agree(motion):
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("velocity", "amplitude"),
-    [(0.05, 0.4), (0.5, 2.0), pytest.param(0.01, 0.8, marks=pytest.mark.long)],
-)
-def test_certificates_hold_against_finer_runs(velocity, amplitude):
-    answer = microslip.solve(CIRCLE, velocity, amplitude)
-    finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=2e-4)
-    assert answer.converged and finer.converged
-    assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
-
-
 @pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
 def test_a_large_ellipse_is_that_of_a_rigid_block(forward, phase):
     motion = f"elliptic:forward={forward},phase={phase}"
@@ -141,11 +129,3 @@ def test_friction_never_falls_with_velocity(motion):
     found = [microslip.solve(motion, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
     for slow, fast in zip(found, found[1:], strict=False):
         assert fast.mu_macro >= slow.mu_macro - slow.mu_macro_error - fast.mu_macro_error
-
-
-def test_a_stored_point_has_the_folder_of_its_family(tmp_path):
-    one = microslip.solve_stored("elliptic:phase=30", 0.5, 0.5, results=tmp_path)
-    other = microslip.solve_stored("elliptic:phase=30.0,lateral=1", 0.5, 0.5, results=tmp_path)
-    assert one.mu_macro == other.mu_macro
-    (stored,) = (path for path in tmp_path.rglob("*.json") if path.is_file())
-    assert stored.relative_to(tmp_path).parts[:2] == ("points", "elliptic")

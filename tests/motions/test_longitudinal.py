@@ -134,20 +134,3 @@ def test_a_period_from_inside():
     assert mean == pytest.approx(longitudinal(0.1, 0.7), abs=2e-3)
     assert np.abs(found.traction_lateral).max() < 1e-6
     assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.1 * 2 * np.pi, rel=1e-3)
-
-
-@pytest.mark.long
-def test_a_real_contact():
-    ball = {
-        "material": "steel",
-        "counterbody": "steel",
-        "radius": "5 mm",
-        "load": "10 N",
-        "mu": 0.3,
-    }
-    ball |= {"speed": "10 mm/s", "frequency": "20 kHz", "tolerance": 3e-3}
-    found = microslip.predict("longitudinal", **ball, amplitude="0.2 um")
-    expected = longitudinal(found.velocity, found.amplitude)
-    assert found.mu_macro == pytest.approx(expected, abs=found.mu_macro_error)
-    half = microslip.predict("longitudinal", **ball, reduction="50 %")
-    assert half.mu_macro == pytest.approx(0.5, abs=2e-3)

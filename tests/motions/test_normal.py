@@ -1,12 +1,9 @@
 """The normal load oscillates: against springs marched one by one, closed forms and limits."""
 
-import json
-
 import numpy as np
 import pytest
 
 import microslip
-from microslip.app import cli
 from microslip.contacts.coulomb import project
 from microslip.models import varying_load
 from microslip.models.contact import energy_norm
@@ -329,21 +326,6 @@ def test_a_method_with_another_integrator_finds_the_same():
         abs(answer.mu_macro - motion_named("normal").closed_form(0.1, 0.5, HERTZ))
         <= answer.mu_macro_error
     )
-
-
-def test_an_imposed_resolution_is_kept():
-    answer = microslip.solve("normal:lateral=1", 0.1, 0.5, cells=12, steps=64)
-    assert (answer.cells, answer.steps_per_period) == (12, 64)
-    assert answer.periodic
-    assert answer.converged is (answer.mu_macro_error <= answer.tolerance)
-
-
-def test_the_command_line_knows_it(capsys):
-    words = ["point", "normal", "--velocity", "0.1", "--amplitude", "0.5", "--json"]
-    assert cli.main(words) == 0
-    assert json.loads(capsys.readouterr().out)["model"] == "closed-form"
-    assert cli.main(["point", "normal:lateral=1,phase=90", *words[2:]]) == 0
-    assert json.loads(capsys.readouterr().out)["motion"] == "normal:lateral=1,phase=90"
 
 
 def test_a_history_follows_the_load():

@@ -78,26 +78,6 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
             assert other.torque == pytest.approx(square.torque, rel=1e-12)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
-def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, motion):
-    found = []
-    for count in (2, 41):
-        axis = np.linspace(-1.0, 1.0, count)
-        axis *= 1.0 - 1.0 / count  # centres of the cells of one square
-        name = csv(tmp_path / f"{count}.csv", axis, axis, np.ones((count, count)))
-        found.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
-    one, other = found
-    assert one.converged and other.converged
-    # the grid itself changes nothing: what differs is what the iterations leave
-    left = max(
-        each.friction.by_source["periodicity"] + each.friction.by_source["solver"] for each in found
-    )
-    assert left < 1e-3
-    assert max(one.friction.by_source["model"], other.friction.by_source["model"]) < left
-    assert one.mu_macro == pytest.approx(other.mu_macro, abs=left)
-
-
 def test_cells_are_even_up_to_half_a_step_beyond_the_points():
     values = np.array([[1.0, 2.0], [3.0, 4.0]])
     pressure = Measured.on_grid("four", [0.0, 1.0], [5.0, 6.0], values)
@@ -229,15 +209,6 @@ def test_sliding_fast_needs_no_resolution(tmp_path):
 
 
 # Any file
-
-
-@pytest.mark.slow
-def test_units_and_formats_do_not_matter(tmp_path):
-    one = pressure_named(csv(tmp_path / "p.csv"))
-    other = pressure_named(netcdf(tmp_path / "p.nc", 1e-3 * AXIS, 1e-3 * AXIS, 2e9 * HERTZIAN))
-    assert one.G_star == pytest.approx(other.G_star, rel=1e-6)
-    assert one.torque == pytest.approx(other.torque, rel=1e-6)
-    assert one.cell_loads(20) == pytest.approx(other.cell_loads(20), abs=1e-8)
 
 
 @pytest.mark.long

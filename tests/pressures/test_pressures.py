@@ -1,7 +1,6 @@
 """Pressures: their records against integrals, their closed forms against marches and each other."""
 
 import pickle
-import sys
 from dataclasses import fields
 
 import numpy as np
@@ -10,7 +9,6 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import microslip
-from microslip import pressures
 from microslip.foundation.errors import InputError
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
@@ -18,7 +16,6 @@ from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import make_rings
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.pressures import by_name
 from microslip.pressures.by_name import PRESSURES, pressure_named
 from microslip.pressures.ellipse import Ellipse
 from microslip.pressures.hertz import HERTZ
@@ -276,16 +273,6 @@ def test_an_ellipse_of_ratio_1_is_a_sphere(motion, velocity, amplitude, poisson)
     assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
 
 
-def test_the_power_2_is_a_sphere_in_motion():
-    for motion, model in (("transverse", "radial"), ("bore", "polar")):
-        one, other = (
-            microslip.solve(motion, 0.2, 0.7, pressure=name, tolerance=5e-3)
-            for name in ("hertz", "power")
-        )
-        assert one.model == other.model == model
-        assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
-
-
 @pytest.mark.long
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     """Directions of traction and places of points meet nowhere but in nu and in rotation."""
@@ -354,75 +341,6 @@ def test_a_text_is_written_back_without_numbers_that_are_usual(name):
     same = pressure_named(f"{name}:{usual}" if usual else name)
     assert str(same) == name and same == PRESSURES[name]() == pickle.loads(pickle.dumps(same))
     assert pressure_named(name) is pressure_named(name)
-
-
-BLUNT = '''"""Between a sphere and an end that is flatter: depth (1 - w) c^2 + w c^4."""
-
-from dataclasses import dataclass
-
-import numpy as np
-
-from microslip.foundation import spec
-from microslip.pressures.axisymmetric_indenter import Indenter
-
-
-@dataclass(frozen=True)
-class Blunt(Indenter):
-    """A blunt sphere."""
-
-    share: float = 0.5
-
-    summary = "a blunt sphere"
-
-    def __post_init__(self):
-        spec.refuse_outside(self.name, "pressure", "share", self.share, (0.0, 1.0))
-
-    def depth(self, c):
-        return (1.0 - self.share) * c**2 + self.share * c**4
-
-    def slope(self, c):
-        return 2.0 * (1.0 - self.share) * c + 4.0 * self.share * c**3
-
-    def radius(self, depth):
-        half = 0.5 * (1.0 - self.share)
-        return np.sqrt((np.sqrt(half**2 + self.share * np.maximum(depth, 0.0)) - half) / self.share)
-'''
-
-
-@pytest.fixture
-def blunt(tmp_path):
-    """A pressure in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(PRESSURES), list(pressures.__path__)
-    (tmp_path / "blunt.py").write_text(BLUNT)
-    by_name.find(tmp_path)
-    yield "blunt:share=0.4"
-    PRESSURES.clear()
-    PRESSURES.update(known)
-    pressures.__path__[:] = path
-    del sys.modules["microslip.pressures.blunt"]
-
-
-def test_a_pressure_is_one_file(blunt):
-    """Closed forms, rings and springs take it from its record."""
-    assert pressure_named(blunt).G_star == pytest.approx(0.5 / (1.0 - 0.6 / 3.0 - 0.4 / 5.0))
-    exact = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt)
-    rings = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="radial")
-    springs = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="mdr")
-    assert exact.model == "closed-form"
-    for found in (rings, springs):
-        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-8
-
-
-def test_a_broken_file_is_an_error_of_its_pressure_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr(by_name, "BROKEN", dict(getattr(by_name, "BROKEN", {})))
-    monkeypatch.setattr(pressures, "__path__", list(pressures.__path__))
-    file = tmp_path / "unfinished.py"
-    file.write_text("import no_such_package")
-    by_name.find(tmp_path)
-    with pytest.raises(microslip.InputError, match="No module named 'no_such_package'") as caught:
-        microslip.solve("longitudinal", 0.1, 0.5, pressure="unfinished:share=1")
-    assert caught.value.argument == "pressure" and str(file) in str(caught.value)
-    assert microslip.solve("longitudinal", 0.1, 0.5, pressure="power:exponent=1").converged
 
 
 def test_an_array_is_read_as_the_pressure_that_it_samples():
