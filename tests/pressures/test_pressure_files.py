@@ -371,7 +371,7 @@ def test_sizes_that_netcdf_declares_are_checked_before_they_are_read(tmp_path):
 def test_scattered_points_do_not_make_a_huge_grid(tmp_path, monkeypatch):
     """Points on a diagonal have as many coordinates each way as there are points."""
     monkeypatch.setattr("microslip.pressures.grid_csv.MOST_POINTS", 10)
-    monkeypatch.setattr(np, "zeros", lambda *args: pytest.fail("it was allocated"))
+    monkeypatch.setattr(np, "full", lambda *args: pytest.fail("it was allocated"))
     lines = "".join(f"{i},{i},1\n" for i in range(5))
     said = refusal(text(tmp_path / "p.csv", f"forward,lateral,pressure\n{lines}"))
     assert "5 points do not fill a grid of 5 x 5" in said

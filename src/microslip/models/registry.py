@@ -56,7 +56,7 @@ class Model:
     refuses: Callable
     exact: Callable = lambda problem: True
     axes: Callable = lambda problem: ("cells",)
-    drivable: bool = True
+    drivable: bool = False
 
 
 def _never(problem: Problem) -> bool:
@@ -168,17 +168,17 @@ MODELS = {
         _any_of(_refuse_pulsation, _refuse_rigid),
         exact=lambda problem: not problem.motion.periodic,
         axes=lambda problem: ("cells", "angles") if problem.motion.rotates else (),
-        drivable=False,
     ),
-    "slider": Model(_slider, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
-    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: (), drivable=False),
-    "mdr": Model(_mdr, _any_of(_refuse_other_loads, _refuse_springs), exact=_never),
-    "radial": Model(_radial, _any_of(_refuse_other_loads, _refuse_rings)),
+    "slider": Model(_slider, _NO_ROTATION, exact=_never, axes=lambda problem: (), drivable=True),
+    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
+    "mdr": Model(_mdr, _any_of(_refuse_other_loads, _refuse_springs), exact=_never, drivable=True),
+    "radial": Model(_radial, _any_of(_refuse_other_loads, _refuse_rings), drivable=True),
     "polar": Model(
         _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda problem: ("cells", "angles"),
+        drivable=True,
     ),
-    "cartesian": Model(_cartesian, _refuse_pulsation),
+    "cartesian": Model(_cartesian, _refuse_pulsation, drivable=True),
 }
 """Models by name."""

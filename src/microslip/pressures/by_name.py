@@ -7,6 +7,7 @@ one that a file holds, see from_file.
 from __future__ import annotations
 
 from microslip import pressures
+from microslip.foundation import named_files
 from microslip.foundation.families import Registry
 from microslip.pressures import from_file
 from microslip.pressures.pressure import Pressure
@@ -27,6 +28,6 @@ def pressure_named(text: str) -> Pressure:
     InputError
         For a text that is no pressure; the message lists the known names.
     """
-    if from_file.is_file(text):
+    if named_files.speaks_of_file(text):
         return from_file.pressure(text)
     return _REGISTRY.parse(text)

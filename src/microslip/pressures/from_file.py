@@ -32,11 +32,6 @@ _KNOWN: dict[str, Pressure] = {}
 """One record for a name: what is prepared for a pressure is found again by it."""
 
 
-def is_file(text: object) -> bool:
-    """Whether a text names a file."""
-    return named_files.speaks_of_file(text)
-
-
 def pressure(name: str) -> Pressure:
     """The Pressure in the file that a name speaks of; see named_files.
 

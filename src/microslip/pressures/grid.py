@@ -53,7 +53,7 @@ def read_grids(
     values = np.asarray(values, float)
     axes = [np.asarray(axis, float) for axis in (forward, lateral)]
     points = [_even(label, axis) for label, axis in zip(AXES, axes, strict=True)]
-    _refuse(*axes, values)
+    _refuse(axes[0], axes[1], values)
     values = values / values.max()
     points = _in_steps(points)
     grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))

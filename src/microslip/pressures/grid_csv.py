@@ -83,18 +83,19 @@ def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.nd
             f"{len(table)} points do not fill a grid of {len(forward)} x {len(lateral)}; allowed: "
             "every point of a regular grid once"
         )
-    values, given = np.zeros((2, len(forward), len(lateral)))
-    np.add.at(given, (i, j), 1.0)
-    values[i, j] = table[:, 2]
-    if given.max() > 1.0:
-        twice = np.flatnonzero(given[i, j] > 1.0)
-        first, again = _first_pair(i[twice], j[twice])
+    key = i * len(lateral) + j
+    repeated = np.setdiff1d(np.arange(len(key)), np.unique(key, return_index=True)[1])
+    if len(repeated):
+        first = np.flatnonzero(key == key[repeated[0]])[0]
         raise ValueError(
-            f"line {places[twice[again]]}: the same point as in line {places[twice[first]]}; "
+            f"line {places[repeated[0]]}: the same point as in line {places[first]}; "
             "allowed: every point of a regular grid once"
         )
-    if given.min() < 1.0:
-        a, b = np.argwhere(given == 0.0)[0]
+    values = np.full((len(forward), len(lateral)), np.nan)
+    values[i, j] = table[:, 2]
+    missing = np.argwhere(np.isnan(values))
+    if len(missing):
+        a, b = missing[0]
         raise ValueError(
             f"line {places[-1]} is the last: {len(table)} points do not fill a grid of "
             f"{len(forward)} x {len(lateral)}, there is none at forward {forward[a]:g}, lateral "
@@ -108,13 +109,3 @@ def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
-
-
-def _first_pair(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
-    """The first two of these points that are the same one."""
-    seen: dict[tuple, int] = {}
-    for number, point in enumerate(zip(i, j, strict=True)):
-        if point in seen:
-            return seen[point], number
-        seen[point] = number
-    raise AssertionError("no two points are the same")

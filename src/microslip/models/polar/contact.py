@@ -19,7 +19,6 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.models import contact
-from microslip.models.path import Path
 from microslip.models.polar.angular_modes import ROTATION, TRANSLATION, WHOLE, influence_modes
 from microslip.models.rings.contact import RadialContact, width_of
 from microslip.models.rings.mesh import Focus, make_rings
@@ -54,9 +53,6 @@ class PolarContact(SystemContact):
     ValueError
         Where the half disc cannot be filled.
     """
-
-    loaded: RadialContact | None = None
-    """Rings that know the bounds while the normal load changes, a RadialContact."""
 
     def __init__(
         self,
@@ -112,7 +108,8 @@ class PolarContact(SystemContact):
         The arguments are those of RadialContact.at_indentation.
         """
         out = self.unprepared()
-        out.loaded = loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
+        loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
+        out.bounds, out.bounds_along = loaded.bounds, loaded.bounds_along
         out.radius = radius = loaded.radius
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
@@ -122,16 +119,6 @@ class PolarContact(SystemContact):
         out.stiffness = self.stiffness * radius
         return out
 
-    def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
-        assert self.loaded is not None  # as at_indentation makes it
-        return self.loaded.bounds(depths)
-
-    def bounds_along(self, path: Path) -> np.ndarray:
-        """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
-        assert self.loaded is not None  # as at_indentation makes it
-        return self.loaded.bounds_along(path)
-
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
         brought to the points of this one; None where it does not turn, its load changes, or its
@@ -140,7 +127,8 @@ class PolarContact(SystemContact):
         What is interpolated is the share of the friction bound.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
-        if few or not self.rotates or self.whole or self.loaded is not None:
+        grows = hasattr(self, "bounds")
+        if few or grows or not self.rotates or self.whole:
             return None
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
