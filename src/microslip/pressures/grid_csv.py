@@ -1,4 +1,4 @@
-"""A grid of pressures as CSV: one point a line, under a heading that names the columns."""
+"""Read a grid of pressures from CSV: a heading with the columns, then one line for each point."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 SAME = 1e-9
-"""Coordinates that differ by less than this share of their range are the same one."""
+"""Coordinates are equal if they differ by less than this share of their range."""
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
 
 
@@ -22,13 +22,20 @@ def grid(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
 
-    Columns are parted by commas, semicolons or tabs.  Lines that are empty or begin with # do not
-    count.  decimal, encoding: the decimal mark, and the encoding of the file.
+    Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
+    ignored.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    decimal, encoding : str
+        Decimal mark and encoding of the file.
 
     Raises
     ------
     ValueError
-        For anything else; the message begins with the line.
+        If the content has another format, or if the points do not fill a grid.
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
@@ -52,7 +59,7 @@ def grid(
 
 
 def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
-    """Separator, place of each of COLUMNS, and their units (None: none given)."""
+    """Separator, position of each of COLUMNS, and their units (None without a unit)."""
     for separator in csv_text.SEPARATORS:
         words = csv_text.words(heading, separator)
         matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
@@ -74,11 +81,15 @@ def _number(where: int, name: str, word: str) -> float:
 
 
 def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The grid that the points fill, each once; places: their lines."""
+    """Coordinates and values of the grid that the points fill.
+
+    table: forward, lateral and pressure of each point, (points, 3); places: line of each point.
+    Raises ValueError if a point is missing or occurs twice.
+    """
     if len(table) == 0:
         raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
     (forward, i), (lateral, j) = (_distinct(column) for column in table.T[:2])
-    if len(forward) * len(lateral) > MOST_POINTS:  # and there are fewer: no room for the rest
+    if len(forward) * len(lateral) > MOST_POINTS:  # a grid of this size is never full
         raise ValueError(
             f"{len(table)} points do not fill a grid of {len(forward)} x {len(lateral)}; allowed: "
             "every point of a regular grid once"
@@ -105,7 +116,7 @@ def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.nd
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coordinates in order, (n,), and which of them each point has."""
+    """Distinct coordinates in increasing order, (n,), and the index of each point among them."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
