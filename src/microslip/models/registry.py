@@ -1,4 +1,4 @@
-"""The model hierarchy: which model resolves which motion, and how well.
+"""Registry of models: which motions each model resolves, and whether it is exact.
 
 | model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
 |-----------|--------------------|--------------------|------------------------------------|
@@ -10,17 +10,16 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
-In mdr, radial and polar the normal load may change; for motion along one line at nu = 0 mdr is
-exact then, too.
+In mdr, radial and polar the normal load can change.  For motion along one line at nu = 0, mdr is
+exact.
 
-"Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
-"approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
-and no refinement brings it back.
+An exact model converges to the solution of the contact problem as cells and steps are refined.  An
+approximate model neglects elasticity, partial slip or the interaction of points, whatever its
+resolution.
 
-Every model that marches keeps the contract of `models.contact.Contact`.  A new one is a file
-beside these and a row in `MODELS`.  A model is imported when its first contact is built, since
-compiled code takes a while to load and closed forms do without it.
-"""
+Every model has the interface `models.contact.Contact`.  A new model is a file beside these and a
+row in `MODELS`.  A model is imported when its first contact is built, because compiled code takes a
+while to load and closed forms do not need it. """
 
 from __future__ import annotations
 
@@ -63,7 +62,7 @@ def _never(problem: Problem) -> bool:
     return False
 
 
-LOAD_CHANGES = "it knows a constant normal load alone"
+LOAD_CHANGES = "it allows a constant normal load only"
 
 
 def _refuse_pulsation(problem: Problem) -> str:
@@ -73,11 +72,11 @@ def _refuse_pulsation(problem: Problem) -> str:
 def _refuse_other_loads(problem: Problem) -> str:
     if not problem.motion.loads or problem.pressure.is_indenter:
         return ""
-    return f"the load of axisymmetric indenters may change, not that of {problem.pressure.name}"
+    return f"the load can change for axisymmetric indenters only, not for {problem.pressure.name}"
 
 
 def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
-    """A check that returns the first refusal that is not empty, or an empty text."""
+    """Combine checks to one that returns the first reason that is not empty, or ""."""
     return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 
@@ -90,12 +89,12 @@ def _refuse_rings(problem: Problem) -> str:
 
 
 def _refuse_rotation(problem: Problem) -> str:
-    return "it has no extension that could turn" if problem.motion.rotates else ""
+    return "it has no extension that could rotate" if problem.motion.rotates else ""
 
 
 def _refuse_springs(problem: Problem) -> str:
     if not problem.pressure.is_indenter:
-        return f"it is known for axisymmetric indenters only, not for {problem.pressure.name}"
+        return f"it exists for axisymmetric indenters only, not for {problem.pressure.name}"
     return _refuse_rotation(problem)
 
 
@@ -107,7 +106,7 @@ def _refuse_angles(problem: Problem) -> str:
 
 def _refuse_rigid(problem: Problem) -> str:
     if problem.motion.rotates and not problem.motion.half_disc:
-        return "half of the contact does not tell the other half"
+        return "it needs a symmetry between the two halves of the contact"
     return _refuse_angles(problem) if problem.motion.rotates else ""
 
 
@@ -156,7 +155,7 @@ def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float |
     from microslip.models.squares import half
     from microslip.models.squares.contact import CartesianContact
 
-    symmetry = ""  # of the tractions, as far as the pressure has it, too
+    symmetry = ""  # of the tractions, if the pressure has it as well
     if problem.motion.half_disc:
         symmetry = half.MIRROR if problem.motion.rotates else half.TURN
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)

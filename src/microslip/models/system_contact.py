@@ -1,4 +1,4 @@
-"""Contacts that march in compiled code (microslip.contacts)."""
+"""Base class of contacts that march in compiled code (microslip.contacts)."""
 
 from __future__ import annotations
 
@@ -21,16 +21,17 @@ from microslip.models.path import Path
 
 
 class Layout(NamedTuple):
-    """Positions of the points of a state, (2, rows, columns), in the fields of compiled code.
+    """Conversion between states (2, rows, columns) and the fields (2, points) of compiled code.
 
-    States have the contacts of a body side by side, fields one after the other.
+    In a state the contacts of a body are joined along the columns; in a field they follow one
+    another.
 
     Attributes
     ----------
     contacts, rows, columns : int
         Number of contacts, and rows and columns of each.
     width : int
-        Columns of each in a field; those added have neither area nor bound.
+        Columns of each contact in a field; the additional points have neither area nor bound.
     """
 
     contacts: int
@@ -39,42 +40,44 @@ class Layout(NamedTuple):
     width: int
 
     def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
-        """Values of shape (..., rows or 1, columns of all) as (..., points); fill: of points
-        added."""
+        """Convert values (..., rows or 1, columns of all contacts) to fields (..., points).
+
+        fill: value at the additional points.
+        """
         contacts, rows, columns, width = self
-        *shape, given, _ = values.shape
+        *shape, count, _ = values.shape
         out = np.full((*shape, contacts, rows, width), fill, dtype=values.dtype)
-        values = np.moveaxis(values.reshape(*shape, given, contacts, columns), -2, -3)
+        values = np.moveaxis(values.reshape(*shape, count, contacts, columns), -2, -3)
         out[..., :columns] = values
         return out.reshape(*shape, contacts * rows * width)
 
     def unpack(self, field: np.ndarray) -> np.ndarray:
-        """Fields (..., points) as states (..., rows, columns of all)."""
+        """Convert fields (..., points) to states (..., rows, columns of all contacts)."""
         contacts, rows, columns, width = self
         shape = field.shape[:-1]
         values = field.reshape(*shape, contacts, rows, width)[..., :columns]
         return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
 
     def images(self, mirror: np.ndarray) -> np.ndarray:
-        """Points of a field in a mirror, from those of a state, flat indices both."""
+        """Indices of the mirror images of the points of a field, from those of a state (flat)."""
         place = self.pack(np.arange(mirror.size).reshape(self.rows, -1), -1)
         point = np.argsort(place, kind="stable")[np.count_nonzero(place < 0) :]
         return np.where(place < 0, np.arange(place.size), point[mirror[place]])
 
 
 class SystemContact(Contact):
-    """A contact that is a system.System for compiled code (see models.contact.Contact).
+    """A contact with a System for compiled code (see models.contact.Contact).
 
     Attributes
     ----------
     compiled : bool
-        True: the search for the periodic state runs in compiled code, too.
+        True, because compiled code searches for the periodic state.
     layout : Layout
-        Where points of a state are in a field.
+        Conversion between states and fields.
     mirror : np.ndarray of int
-        The point of a state across the mirror lateral -> -lateral of each point, flat indices.
+        Flat index of the mirror image of each point of a state, under lateral -> -lateral.
     operators : NamedTuple
-        A and the resolvents, see contacts/operators.py.
+        The operator A and the resolvents, see contacts/operators.py.
     resultants : np.ndarray, shape (3,)
         See system.System.
     """
@@ -90,7 +93,7 @@ class SystemContact(Contact):
     bounds_along: Callable[[Path], np.ndarray]
 
     def system(self) -> System:
-        """The System, with scratch of its own: for one thread at a time."""
+        """Return the System with new scratch arrays, for use by one thread."""
         system = self._prepared
         return system._replace(operators=system.operators.own(), solver=system.solver.own())
 
@@ -112,19 +115,19 @@ class SystemContact(Contact):
         )
 
     def unprepared(self) -> Self:
-        """A copy whose attributes may be changed."""
+        """Return a copy without cached properties, whose attributes can be changed."""
         out = copy(self)
         for name in ("_prepared", "_constant_bound"):
             vars(out).pop(name, None)
         return out
 
     def solver(self, weight: np.ndarray) -> Any:
-        """The solver of a step, of points with these areas: that of rings with resolvents."""
+        """Solver of a Coulomb step for points with the areas `weight`, by resolvents of rings."""
         penalty = best_penalty(self.compliance, self.layout.columns)
         return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
 
     def field_bounds(self, path: Path) -> np.ndarray:
-        """Friction bounds along a path as march.Loading has them."""
+        """Friction bounds along a path, see march.Loading.bound."""
         if path.depth is None:
             return self._constant_bound
         return self.layout.pack(self.bounds_along(path)[:, None])
@@ -134,19 +137,19 @@ class SystemContact(Contact):
         return self.layout.pack(np.atleast_2d(self.bound))[None]
 
     def loading(self, path: Path) -> Loading:
-        """The motion and the friction bounds that a path imposes on the contact."""
+        """Motion and friction bounds that a path imposes on the contact."""
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def affordable(self, work: float) -> float:
-        """Marches until a budget has to be looked at: without one, as many as you like."""
+        """Number of marches, of `work` each, until the budget must be checked; infinite here."""
         return np.inf
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count the marches of compiled code, where there is a budget."""
+        """Subtract marches of compiled code from the budget; does nothing here."""
         return
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes of a state."""
+        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
         system, field = self.system(), self.layout.pack(np.asarray(state, dtype=float))
         image = np.empty_like(field)
         _displace(system, field, image)
@@ -168,8 +171,8 @@ class SystemContact(Contact):
     ) -> March:
         """March along a path; see models.contact.Contact.
 
-        body: the driven body that the contact carries, None if it follows the path; start: x and x'
-        of that body at the start of the path, zero by default.
+        body: driven body that the contact carries; None if the contact follows the path.  start: x
+        and x' of the body at the start of the path, shape (2,); None for zeros.
         """
         drive = None if body is None else body.along(path, np.zeros(2) if start is None else start)
         loading, pack, unpack = self.loading(path), self.layout.pack, self.layout.unpack

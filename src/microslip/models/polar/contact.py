@@ -1,16 +1,15 @@
-"""Rings times angular modes: rotating motions at any nu, translation at nu > 0, and both at once.
+"""Contact of rings times angular modes, for rotations at any nu and for translations at nu > 0.
 
-Points sit on rings at angles theta_j = (j + 1/2) pi / M, theta from the lateral axis; the other
-half of the disc follows from symmetry:
+Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  They are on one
+half of the disc, and the other half follows from symmetry:
 
-- motions that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
-- translation: point symmetry, traction(-z) = traction(z), so even modes only.
+- for rotations, a mirror across the lateral axis (forward traction even, lateral traction odd);
+- for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
 
-A motion that does both has neither symmetry, and the points of the other half are resolved, too.
+A motion with both has neither symmetry, and the whole disc is resolved.
 
-Coulomb's law is asked for at the points; the elastic operator is block-diagonal in the angular
-modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).
-"""
+Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
+with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0. """
 
 from __future__ import annotations
 
@@ -27,31 +26,33 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Rings below which tractions of a coarser contact are no better a start than the static limit."""
+"""Smallest number of rings for which tractions of a coarser contact are a better initial guess than
+the static limit."""
 
 
 class PolarContact(SystemContact):
-    """Rings times points on the disc (see models.contact.Contact); states: (2, angles, cells).
+    """Contact of rings times angles (see models.contact.Contact); states have shape (2, angles,
+    cells).
 
     Parameters
     ----------
     cells, angles : int
-        Rings, and points of each on half the disc.
+        Number of rings, and of points of each ring on half the disc; angles must be even.
     rotates : bool
-        Mirror symmetry of rotating motions, else point symmetry of translations.
+        Whether the motion is a rotation, with mirror symmetry; otherwise a translation.
     poisson : float
         Poisson's ratio.
     focus : mesh.Focus, float or None
-        Where the rings gather.
+        Radii towards which the rings are graded.
     pressure : pressure.Pressure
-        One that depends on the radius alone.
+        Pressure that depends on the radius alone.
     whole : bool
-        Whether the other half of the disc is resolved as well; states: (2, 2 angles, cells).
+        Whether the whole disc is resolved; states then have shape (2, 2 angles, cells).
 
     Raises
     ------
     ValueError
-        Where the half disc cannot be filled.
+        If `angles` is odd or below 2.
     """
 
     def __init__(
@@ -83,7 +84,7 @@ class PolarContact(SystemContact):
             rings, angles, symmetry, poisson, pressure.G_star, self.layout.width
         )
         self.resultants = np.ones(3)
-        if not whole:  # what the half disc that is not resolved cancels
+        if not whole:  # the other half of the disc cancels this resultant
             self.resultants[contact.LATERAL if rotates else contact.TORQUE] = 0.0
         self._made_of = cells, focus, pressure
 
@@ -99,11 +100,12 @@ class PolarContact(SystemContact):
         *,
         whole: bool,
     ) -> PolarContact:
-        """The contact with these arguments, which runs that differ in their motion share."""
+        """Return the contact with these arguments; equal arguments return the same object, which
+        must not be changed."""
         return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
-        """A contact with these points spread over the largest contact area of a period.
+        """Return a contact whose points fill the largest contact area of a period.
 
         The arguments are those of RadialContact.at_indentation.
         """
@@ -120,11 +122,10 @@ class PolarContact(SystemContact):
         return out
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
-        brought to the points of this one; None where it does not turn, its load changes, or its
-        rings are too few for that to be of use.
+        """Interpolate tractions (2, angles, cells) of this contact on a coarser mesh to its points.
 
-        What is interpolated is the share of the friction bound.
+        Tractions are interpolated as shares of the friction bound.  None for translations, whole
+        discs, changing loads and fewer than FEWEST_PROLONGED rings.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
         grows = hasattr(self, "bounds")
@@ -133,16 +134,14 @@ class PolarContact(SystemContact):
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
         share = state / rings.bound
-        # forward tractions are even across the lateral axis, where the angles begin and end
+        # continue the angles beyond the lateral axis, where forward tractions are even
         beyond = share[:, [0, -1]] * contact.MIRROR
         share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
-        given, wanted = ((np.arange(-1, count + 1) + 0.5) / count, self._theta / np.pi)
-        share = _interpolated(wanted, given, share, axis=1)
+        angles = (np.arange(-1, count + 1) + 0.5) / count
+        share = _interpolated(self._theta / np.pi, angles, share, axis=1)
         return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
 
-def _interpolated(
-    wanted: np.ndarray, given: np.ndarray, values: np.ndarray, axis: int
-) -> np.ndarray:
-    """Linear between the given places along an axis, constant beyond them."""
-    return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)
+def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
+    """Interpolate values at nodes along an axis linearly to x; constant beyond the nodes."""
+    return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)
