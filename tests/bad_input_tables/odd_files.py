@@ -161,7 +161,7 @@ CSV = [
     (HEAD + "0,0,1\n0,1e-200,2\n1e-200,0,3\n1e-200,1e-200,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e-310,2\n1e-310,0,3\n1e-310,1e-310,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e300,2\n1e300,0,3\n1e300,1e300,4\n", PLAIN),
-    (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps of one unit")),
+    (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps in one unit")),
     (HEAD + "1e9,0,1\n1e9,1,2\n1000000001,0,3\n1000000001,1,4\n", PLAIN),
 ]
 

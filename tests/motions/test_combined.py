@@ -125,5 +125,7 @@ def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
 
 
 def test_a_rigid_contact_that_knows_half_of_itself_says_so():
-    with pytest.raises(ValueError, match="it needs a symmetry between the two halves of the contact"):
+    with pytest.raises(
+        ValueError, match="it needs a symmetry between the two halves of the contact"
+    ):
         microslip.solve("transverse-bore", 0.1, 0.5, model="rigid")

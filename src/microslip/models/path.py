@@ -63,7 +63,7 @@ def theta_method(theta: float) -> Integrator:
     """The integrator with one stage at the share `theta` of the step.
 
     theta is from 0.5 (midpoint rule, second order) to 1 (backward Euler, first order as all
-    others). Raises ValueError for another theta. """
+    others). Raises ValueError for another theta."""
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
     return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((0.0,),), theta)
@@ -105,7 +105,7 @@ def turning_point_width(drift: float, stroke: float) -> float:
     infinite for short strokes, to which the grading alone applies.  The slip reverses within the
     phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim in a
     radian or below the drift.  The term LONG_STROKE**2 / stroke shrinks the zone gradually from
-    LONG_STROKE on, where the longest step is twice the shortest. """
+    LONG_STROKE on, where the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
@@ -229,7 +229,7 @@ def phases_between(
     """Phases from the first turning point to the last, ((len(turns) - 1) steps + 1,).
 
     There are `steps` steps between neighbouring turning points, graded towards them; for grading
-    and width see turning_point_grading and turning_point_width. """
+    and width see turning_point_grading and turning_point_width."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:

@@ -19,7 +19,7 @@ resolution.
 
 Every model has the interface `models.contact.Contact`.  A new model is a file beside these and a
 row in `MODELS`.  A model is imported when its first contact is built, because compiled code takes a
-while to load and closed forms do not need it. """
+while to load and closed forms do not need it."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
 0 forward tractions of a mode cause forward displacements only, and lateral tractions lateral ones,
 by the same matrix of rings.  At nu > 0 the complex waves e^{i m theta} of forward - i lateral are
-coupled in pairs m and 2 - m (see rings/influence.py). """
+coupled in pairs m and 2 - m (see rings/influence.py)."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ half of the disc, and the other half follows from symmetry:
 A motion with both has neither symmetry, and the whole disc is resolved.
 
 Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
-with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0. """
+with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@
 Here k is the stiffness of the contact without slip.  The model has the stiffness and the friction
 bound of the contact, but no stick: any vibration removes all friction of an infinitely slow motion.
 Along a straight piece of the path the equation has a closed solution, which is linear in the force
-at the start. """
+at the start."""
 
 from __future__ import annotations
 

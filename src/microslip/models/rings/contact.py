@@ -156,7 +156,7 @@ class RadialContact(SystemContact):
         Rings join or leave the contact at the last stage of a step only, because the integrator
         would carry a jump at an earlier stage on to later ones.  A ring that joins there is
         strained for the share 1 / (1 + carried) of the step, but on average it should be strained
-        for half of the step.  The contact radius is therefore taken earlier by the difference. """
+        for half of the step.  The contact radius is therefore taken earlier by the difference."""
         assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
         ends = self._checked_growth.pressure.radius(path.depth[::stages])
