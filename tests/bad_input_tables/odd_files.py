@@ -194,7 +194,7 @@ NETCDF = [
     (grid().rename(pressure="Pressure"), refused("no variable pressure")),
     (grid(VALUES > 1), refused("pressure holds bool")),
     (grid(np.where(VALUES < 4, VALUES, np.inf)), refused("pressure is inf at forward 1")),
-    (grid(pressure={"missing_value": 4.0}), refused("pressure is nan at forward 1, lateral 1")),
+    (grid(pressure={"missing_value": 4.0}), refused("pressure = nan: at forward 1, lateral 1")),
 ]
 
 # Datasets, as others hand them on: what is changed, and what `at` says.

@@ -1,4 +1,4 @@
-"""The operator on rings x angles against a plain sum over modes; steps against plain descent."""
+"""The operator on rings times angles, and its resolvents, against a plain sum over modes."""
 
 import numba
 import numpy as np
@@ -37,7 +37,8 @@ def whole_disc(state, rotates):
 
 
 def ring_modes(cells, angles, nu, focus):
-    """near(m) and cross(m), ring matrices of mode m under modes m and 2 - m (conjugated)."""
+    """Functions near(m) and cross(m): matrices of rings from modes m and 2 - m (conjugated) to mode
+    m."""
     rings = make_rings(cells, focus)
     near, far = ring_influence(rings.psi, angles + 2, True)
     kappa, area = nu / (2.0 - nu), rings.area
@@ -54,9 +55,8 @@ def ring_modes(cells, angles, nu, focus):
 def plain_displacement(state, cells, angles, rotates, nu, focus):
     """u = Sum_m e^{i m theta} (near_m q_m + cross_m conj(q_{2-m})), the sums written out.
 
-    Modes are those that 2 M points tell apart; the shortest of a rotating motion couples to none,
-    since its points hold no cosine of it.
-    """
+    The modes are those that 2 M points can represent.  The shortest mode of a rotation is not
+    coupled, because its cosine vanishes at the points."""
     near, cross = ring_modes(cells, angles, nu, focus)
     theta = (np.arange(2 * angles) + 0.5) * np.pi / angles
     q = whole_disc(state, rotates)

@@ -1,4 +1,4 @@
-"""Coulomb's law at points: the projection, its residual, and the bound on the energy error."""
+"""Coulomb's law at points: the projection and the residual."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
 """Influence coefficients against brute-force quadrature, closed forms and their own symmetries.
 
-Complex notation: q = lateral + i forward, as in halfspace.py.
+Complex notation: q = lateral + i forward.
 """
 
 import numpy as np
@@ -27,12 +27,10 @@ NODES, WEIGHTS = unit_gauss(160)
 
 
 def angular_mean(function, r, s):
-    """(1/2 pi) Integral over the angle beta between two circles, for a function over R.
+    """Mean of function(beta, s) / R over the angle beta between two circles with the radii r and s.
 
-    function(beta, s) is what the mean of function / R is taken of, R the distance of r from
-    s e^{i beta}; s: float or array of shape (n, 1).  Near beta = 0 the substitution
-    2 sqrt(r s) sin(beta / 2) = |r - s| sinh(t) takes R away.
-    """
+    R is the distance between r and s e^{i beta}; s is a float or an array (n, 1).  Near beta = 0
+    the substitution 2 sqrt(r s) sin(beta / 2) = |r - s| sinh(t) removes R."""
     gap, mean = abs(r - s), np.sqrt(r * s)
     end = np.arcsinh(2 * mean * np.sin(np.pi / 4) / gap)
     beta = 2 * np.arcsin(gap * np.sinh(end * NODES) / (2 * mean))
@@ -47,7 +45,8 @@ def toroidal_mean(m, r, s):
 
 
 def coupling_mean(m, r, s):
-    """Mode m at r of the kernel e^{2 i alpha} / |z - z'| under mode 2 - m, conjugated, on s."""
+    """Response in mode m at r of the kernel e^{2 i alpha} / |z - z'| to conjugated mode 2 - m at
+    s."""
 
     def kernel(beta, s):
         apart = r - s * np.exp(1j * beta)
@@ -57,7 +56,7 @@ def coupling_mean(m, r, s):
 
 
 def both_kernels(r, s, count=33):
-    """(G_0 .. , C_1 ..) of the module, with a tail long enough for the downward recurrence."""
+    """Compiled kernels (G_0 .., C_1 ..), with enough terms for the downward recurrence."""
     torus, pair = np.empty(count + 2 + int(36 / abs(np.log(s / r)))), np.empty(count)
     toroidal_kernels(r, s, torus)
     coupling_kernels(r, s, torus, pair)
@@ -213,7 +212,8 @@ def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
     )
 
     def quarter_turn(field):
-        """Forward turns to -lateral, lateral to forward, positions likewise."""
+        """Rotate a field by a quarter turn: forward becomes -lateral, and lateral becomes
+        forward."""
         forward, lateral = field
         return np.stack([lateral.T[:, ::-1], -forward.T[:, ::-1]])
 
@@ -223,16 +223,16 @@ def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
 
 
 def smooth_traction(coefficients, z):
-    """Bound-shaped traction over its amplitude: Sum c[a, b] z^a conj(z)^b."""
+    """Traction over the friction bound: Sum c[a, b] z^a conj(z)^b."""
     return sum(c * z**a * z.conj() ** b for (a, b), c in np.ndenumerate(coefficients))
 
 
 def direct_displacement(coefficients, nu, z):
     """Displacement at z inside the contact under q = g(|z'|) smooth_traction(z').
 
-    In polar coordinates about z the kernel 1/rho is gone; along each chord the square root of the
-    bound is the weight of Gauss-Chebyshev quadrature, and around z equal angles are spectral.
-    """
+    Polar coordinates about z remove the kernel 1/rho.  Along each chord, the square root in the
+    bound is the weight of Gauss-Chebyshev quadrature; equal angles around z are spectrally
+    accurate."""
     count = 16
     k = np.arange(1, count + 1) * np.pi / (count + 1)
     nodes, w = np.cos(k), np.pi / (count + 1) * np.sin(k) ** 2
@@ -247,14 +247,14 @@ def direct_displacement(coefficients, nu, z):
 
 
 def test_direct_displacement_of_the_hertz_traction():
-    """Cattaneo: uniform shift minus a paraboloid, for nu = 0 u = 1 - |z|^2 / 2 (u_lim = 1)."""
+    """The displacement at nu = 0 is u = 1 - |z|^2 / 2 in u_lim (Cattaneo)."""
     for z in (0.0 + 0j, 0.6 + 0j, 0.3 - 0.7j):
         moved = direct_displacement(np.ones((1, 1)), 0.0, z)
         assert moved == pytest.approx(1 - abs(z) ** 2 / 2, abs=1e-13)
 
 
 def random_smooth_traction(rng, rotates):
-    """Coefficients of a traction with the symmetry that the polar contact takes for granted."""
+    """Coefficients of a random traction with the symmetry of the polar contact."""
     c = rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4))
     a, b = np.indices(c.shape)
     if rotates:  # q(conj z) = -conj(q(z)): lateral odd, forward even across the lateral axis
@@ -291,7 +291,7 @@ def fitted_order(counts, errors):
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
-    """q = F / (2 pi sqrt(1 - r^2)) moves the whole disc by F / (2 G* a), whatever nu."""
+    """q = F / (2 pi sqrt(1 - r^2)) moves the whole disc by F / (2 G* a) at any nu."""
     cells, errors = [16, 32, 64], []
     for n in cells:
         contact = PolarContact(n, 4, False, nu)
@@ -351,9 +351,8 @@ def test_lubkin_traction_turns_the_stick_zone_rigidly(nu):
 def square_displacement(nu, size, apart):
     """Displacement at ``apart`` (complex) from the centre of a square under unit tractions.
 
-    Returns it for a lateral and for a forward unit traction, as complex numbers; angular
-    quadrature about the point where it is wanted, over the part of each ray within the square.
-    """
+    Returns the displacement under a lateral and under a forward unit traction, as complex numbers.
+    Angular quadrature about the point integrates over the part of each ray within the square."""
     kappa = nu / (2 - nu)
     corners = apart - size / 2 * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
     bends = np.sort(np.angle(corners))
@@ -380,7 +379,7 @@ def square_displacement(nu, size, apart):
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_square_coefficients_are_the_integral_over_a_square(nu):
-    """Also between opposite corners: the convolution must not wrap around."""
+    """Opposite corners are included, because the convolution must not wrap around."""
     cells = 6
     contact = CartesianContact(cells, nu)
     z = contact.lateral_position + 1j * contact.forward_position

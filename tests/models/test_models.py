@@ -1,6 +1,6 @@
-"""The contact models against Mindlin, Lubkin, the rigid and the single slider, and one another.
+"""The contact models against Mindlin, Lubkin, closed forms of simple models, and each other.
 
-Motions are given here as displacements (forward, lateral, angle) at the ends of steps.
+Motions are rows of displacements (forward, lateral, angle) at the ends of steps.
 """
 
 from functools import cache
@@ -57,7 +57,7 @@ def fitted_order(counts, errors):
 def mindlin_deresiewicz(turns, points=8):
     """Displacements and forces of an oscillation from rest through the turning points.
 
-    After a turn the force departs from where it is by twice Mindlin's law of half the distance.
+    After a turning point, the force changes by twice Mindlin's law of half the displacement.
     """
     u, force = [0.0], [0.0]
     start, scale = (0.0, 0.0), 1
@@ -160,7 +160,8 @@ def test_stick_radius_of_pure_twist_is_lubkins(stick, nu):
     ids=["radial", "cartesian", "cartesian, turned", "polar", "polar, turned"],
 )
 def test_forces_that_symmetry_forbids_are_zero(build, motion, forbidden):
-    """No torque in translation; no lateral force of what is its own lateral mirror image."""
+    """A translation has no torque, and a motion with lateral mirror symmetry has no lateral
+    force."""
     contact = build()
     march = contact.march(through([[0, 0, 0], motion]), at_rest(contact), 1e-8)
     assert march.forces[:, forbidden] == pytest.approx(0.0, abs=1e-7)
@@ -171,7 +172,7 @@ def test_forces_that_symmetry_forbids_are_zero(build, motion, forbidden):
 
 @pytest.mark.parametrize("amplitude", [0.3, 0.6, 0.9])
 def test_slider_has_the_static_friction_of_eq_7(amplitude):
-    """... and approaches it in proportion to the velocity."""
+    """The excess over the static friction is proportional to the velocity."""
     excess = []
     for velocity in (1e-4, 1e-5):
         problem = Problem(Transverse(), velocity, amplitude, 0.0)
@@ -184,8 +185,8 @@ def test_slider_has_the_static_friction_of_eq_7(amplitude):
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7])
 def test_a_slow_slider_is_found_from_above_its_static_limit(tolerance):
-    """Below the limit a state only drifts, by 3e-5 in a march here; a search that stays there would
-    take thousands of them."""
+    """Below the limit a state drifts by only 3e-5 in a march, so that a search from there would
+    take thousands of marches."""
     problem = Problem(Transverse(), 1e-5, 0.3, 0.0)
     run = simulate(problem, "slider", Resolution(1, 1, 192), tolerance)
     assert run.converged
@@ -194,7 +195,7 @@ def test_a_slow_slider_is_found_from_above_its_static_limit(tolerance):
 
 
 def test_slider_is_the_closed_return_mapping():
-    """One spring of unit stiffness and unit friction: move, then cut the force back to 1."""
+    """The slider is a spring of unit stiffness whose force is limited to 1 after each step."""
     motions = np.cumsum(np.random.default_rng(5).normal(size=(200, 3)) * [0.4, 0.4, 0.0], axis=0)
     expected = [np.zeros(2)]
     for before, after in pairwise(motions):
@@ -290,7 +291,7 @@ def rigid(contact, motion):
 
 
 def residual(contact, q, slip):
-    """Distance from Coulomb's law, written out here a second time; a force."""
+    """Residual of Coulomb's law, a force, from a second implementation."""
     return np.sum(
         contact.weight
         * np.hypot(*(project(q + slip / contact.compliance, contact.bound) - q))
@@ -299,11 +300,11 @@ def residual(contact, q, slip):
 
 
 def larger_residual(contact):
-    """Largest ratio of Coulomb's residual, which `residual` is, to that of the step solver.
+    """Largest ratio of the residual of Coulomb's law to the residual of the step solver.
 
-    The splitting stops at the distance d of two tractions, one of which keeps to elasticity and the
-    other to the bound.  For the latter slip is off by A d; and the penalty is not the compliance.
-    """
+    The splitting stops at a distance d between tractions that satisfy elasticity and tractions
+    within the bound.  The slip of the latter has the error A d; besides, the penalty differs from
+    the compliance."""
     matrix = np.abs(operator(contact))
     weight = np.broadcast_to(contact.weight, (2, *contact.forward_position.shape)).ravel()
     scale = np.broadcast_to(contact.compliance, (2, *contact.forward_position.shape)).ravel()
@@ -316,7 +317,8 @@ def larger_residual(contact):
 
 
 def assert_coulomb(contact, q, slip, tolerance):
-    """|q| <= g to the last bits; slip only on the bound, along the traction."""
+    """Assert |q| <= g to the last bits, and slip only on the bound in the direction of the
+    traction."""
     size, speed = np.hypot(*q), np.hypot(*slip) * (contact.bound > 0)
     assert np.all(size <= contact.bound * (1 + 4e-16))
     assert residual(contact, q, slip) <= larger_residual(contact) * tolerance
@@ -345,7 +347,7 @@ SMALL = {
 
 @cache
 def small(name):
-    """One of these with its contact built, once and when it is needed."""
+    """The entry with its contact, which is created once."""
     build, *rest = SMALL[name]
     return build(), *rest
 
@@ -365,7 +367,8 @@ def motions_from(increments, free):
 @settings(max_examples=25, deadline=None)
 @given(increments=STEPS)
 def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
-    """Backward Euler; slip and energy from the operator and the motion, not from the solver."""
+    """Slip and energy of backward Euler steps are computed from the operator and the motion, not by
+    the solver."""
     contact, symmetry, tolerance = small(name)
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
@@ -410,7 +413,7 @@ def random_state(contact, rng):
 @settings(max_examples=10, deadline=None)
 @given(increments=STEPS, seed=st.integers(0, 2**32 - 1))
 def test_backward_euler_is_a_contraction(name, increments, seed):
-    """Two states under one motion come closer in the energy norm in every step."""
+    """The energy norm of the difference of two states never grows in a step."""
     contact, symmetry, tolerance = small(name)
     rng = np.random.default_rng(seed)
     states = [random_state(contact, rng), random_state(contact, rng)]
@@ -472,14 +475,14 @@ SMOOTH = {
 
 @cache
 def smooth(name):
-    """One of these with its contact built, once and when it is needed."""
+    """The entry with its contact, which is created once."""
     build, *rest = SMOOTH[name]
     return build(), *rest
 
 
 @pytest.mark.parametrize("name", SMOOTH)
 def test_order_of_the_integrators_on_a_smooth_stretch(name):
-    """Everything slips; states compared in the energy norm."""
+    """All points slip; errors are energy norms of states."""
     contact, motion, velocity, amplitude = smooth(name)
     tolerance = 1e-8 if name == "cartesian" else 1e-10
 

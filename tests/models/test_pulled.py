@@ -1,4 +1,4 @@
-"""Contacts that are pulled, march by march: against the plain reference, balances and limits."""
+"""Marches of driven contacts: against a plain reference, energy balance and limits."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ VELOCITY, AMPLITUDE, START = 0.3, 0.8, np.array([-0.2, 0.1])
 
 
 def moved(motion, poisson, contact):
-    """Displacement of the path, and of the points."""
+    """Functions of the phase: displacement of the path, and of the points."""
 
     def displacement(phase):
         return motion.displacement(phase, VELOCITY, AMPLITUDE, poisson)
@@ -38,7 +38,7 @@ def moved(motion, poisson, contact):
 
 
 def plain(contact):
-    """Matrix, weights and bound as the reference takes them."""
+    """Matrix, weights and bound for the reference march."""
     shape = forward_slip(contact).shape
     units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
     matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
@@ -67,7 +67,7 @@ def test_a_pulled_march_is_the_plain_one(name, body, integrator):
 
 
 def start_again(contact, path, body, march):
-    """The same march once more, with the first as its guess."""
+    """Repeat a march, with the first one as initial guess."""
     start = 0.5 * forward_slip(contact)
     return contact.march(path, start, 1e-12, previous=march, body=body, start=START)
 
@@ -98,8 +98,8 @@ def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
 
 @pytest.mark.parametrize("name", CONTACTS)
 def test_the_work_of_the_drive_is_stored_or_dissipated(name):
-    """A backward Euler step balances work exactly: the tractions at its end do the work, and each
-    point dissipates its bound times its slip."""
+    """Energy is balanced exactly in a backward Euler step: work is done by the tractions at its
+    end, and each point dissipates its bound times its slip."""
     build, motion, poisson = CONTACTS[name]
     contact, label = build(), motion_named(motion)
     displacement, of_points = moved(label, poisson, contact)
@@ -123,7 +123,7 @@ def test_the_work_of_the_drive_is_stored_or_dissipated(name):
 
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
-    """Far from slip the contact is a spring of its own stiffness; the order of the integrator."""
+    """Without slip the contact is a linear spring; the error has the order of the integrator."""
     rings = RadialContact.resolved(8)
     contact = RadialContact(rings.influence, rings.bound, rings.weight)  # as stiff as its matrix
     spring, mass, place = 0.5, 0.2, 1e-9

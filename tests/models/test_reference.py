@@ -1,4 +1,4 @@
-"""Compiled marches against the plain one, on rings, angular points and squares."""
+"""Compiled marches against a plain reference march, for rings, angular points and squares."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ VELOCITY, AMPLITUDE = 0.3, 0.8
 
 
 def plain_parts(contact, motion, poisson):
-    """Matrix of a contact, and the displacement of its points, as the reference takes them."""
+    """Matrix of a contact, and displacement of its points, for the reference march."""
     shape = forward_slip(contact).shape
     units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
     matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)

@@ -1,4 +1,4 @@
-"""Steps and marches on rings: against another solver, finite differences, and earlier results."""
+"""Steps and marches on rings against results of an independent solver."""
 
 import numpy as np
 import pytest
@@ -34,13 +34,13 @@ def half_period(velocity, amplitude, steps, integrator=SDIRK2):
 
 
 def plain_half_period(velocity, amplitude, steps):
-    """... in equal steps of time."""
+    """Half a period in equal steps."""
     phase = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     return make_path(lambda t: Transverse().displacement(t, velocity, amplitude, 0.0), phase)
 
 
 def exponential_contact(cells):
-    """Rings with a made-up influence that nothing else in the package has a say in."""
+    """Rings with an artificial influence matrix, which no other code of the package computes."""
     edges = np.sin(np.linspace(0.0, np.pi / 2, cells + 1))
     radius, weight = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
     kernel = 0.8 * np.exp(-2.0 * np.abs(radius[:, None] - radius))

@@ -1,4 +1,4 @@
-"""Contacts of one body, side by side in one system, against what is plainer."""
+"""Several contacts of one body in one system, against plain computations."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def path_of(phases, ways, integrator=SDIRK2, turns=False):
 
 
 def plain_of_all(contacts):
-    """Matrix, weights and bound of contacts none of which feels the others."""
+    """Matrix, weights and bound of independent contacts."""
     each = [plain(one) for one in contacts]
     rows = each[0][1].shape[0]
     cells = [weight.shape[1] for _, weight, _ in each]
@@ -91,8 +91,7 @@ def moved(contact, displacement, phase):
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_march_of_two_contacts_is_the_plain_one(kind, body, integrator):
-    """The plain march knows nothing of contacts: a matrix of two blocks, and points that move each
-    as they like."""
+    """The reference march has a matrix of two blocks and a displacement for each point."""
     build, turns = KINDS[kind]
     contacts, phases = build(), half_period_phases(5)
     joined = SideBySide(contacts, SHARES, EXTENTS)

@@ -1,4 +1,4 @@
-"""Squares that stand for their images against all of them, and where they are not enough."""
+"""Symmetric parts of the squares against all squares, and when a symmetry is used."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def some_state(kind, cells, rng):
 
 
 def both(kind, cells, pressure=HERTZ):
-    """All the squares, and those that stand for them."""
+    """The contact with all squares, and the contact with a symmetric part of them."""
     images, symmetry, nu = KINDS[kind]
     fewer = CartesianContact(cells, nu, pressure, symmetry)
     assert fewer.images == images and fewer.bound.size * images == cells**2
@@ -81,8 +81,8 @@ def path_of(name, nu, steps=12, velocity=0.1):
 @pytest.mark.parametrize("cells", [2, 4, 6, 8, 10, 12, 14, 18])
 @pytest.mark.parametrize("kind", KINDS)
 def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
-    """Padded to 1, 3, 6, 8, 9, 12, 16 and 18, of a half to 3, 8, 12, 16, 24, 27 and 36, so that
-    every kind of butterfly is in it, and odd lengths."""
+    """Padded lengths are 1, 3, 6, 8, 9, 12, 16 and 18 for a quarter, and 3, 8, 12, 16, 24, 27 and
+    36 for a half.  They include all kinds of butterflies and odd lengths."""
     images, symmetry, nu = KINDS[kind]
     operator = square_convolution(cells, nu, images=images, symmetry=symmetry)[0]
     state = some_state(kind, cells, rng)
@@ -109,7 +109,7 @@ def test_largest_eigenvalue_of_such_fields_is_bounded_closely(kind, cells):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_squares_count_for_their_images(kind, rng):
-    """Areas, loads, forces, energies and mirror images; in no more room."""
+    """Areas, loads, forces, energies and mirror images are those of all squares."""
     every, fewer = both(kind, 8, pressure_named(ELLIPSE))
     state = some_state(kind, 8, rng)
     full = whole(kind, state)
@@ -191,7 +191,7 @@ def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, 
 
 
 def images_of(motion, nu, cells=8, pressure="hertz"):
-    """Squares that one stands for in what the registry builds."""
+    """Number of images of the contact that the registry builds."""
     contact = MODELS["cartesian"].build(
         Problem(
             motion_named(motion),
@@ -235,7 +235,7 @@ PLACES = {
 @pytest.mark.parametrize("places", PLACES)
 @pytest.mark.parametrize("more", [1e-8, 0.5])
 def test_the_pressure_has_a_say(places, more):
-    """... unless what it says is rounding."""
+    """A difference between loads removes a symmetry, unless it is a rounding error."""
 
     def contact_of(more, symmetry, nu):
         class Uneven(Hertz):
@@ -252,7 +252,7 @@ def test_the_pressure_has_a_say(places, more):
 
 
 def test_the_mean_of_the_images_is_taken():
-    """Of arithmetic progressions along both axes: 4 i + j."""
+    """The loads are 4 i + j."""
     loads = np.arange(16.0).reshape(4, 4)
     mean = squares_contact._mean_of_images
     assert np.array_equal(mean(loads, 4, TURN), np.full((2, 2), 7.5))

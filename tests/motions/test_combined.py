@@ -1,4 +1,4 @@
-"""Sideways and rotation at once: its parts alone, symmetry, and the static limit."""
+"""The transverse-bore motion: special cases, symmetry and static limit."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
 @pytest.mark.slow
 @pytest.mark.parametrize("phase", [0.0, 90.0])
 def test_a_small_part_changes_little(phase):
-    """A disc that knows no symmetry, next to rings that do."""
+    """The whole disc without symmetry is compared with rings."""
     one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
     other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
     assert other.model == "polar"
@@ -41,8 +41,8 @@ def test_a_small_part_changes_little(phase):
 
 @pytest.mark.slow
 def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
-    """lateral -> -lateral at the same rotation is a mirror image across the forward axis, with the
-    motion forward reversed; friction resists the same."""
+    """Reversing the lateral motion at the same rotation is a mirror image with reversed sliding
+    direction; friction does not change."""
     both = [
         microslip.solve(f"transverse-bore:phase={phase}", 0.1, 0.5, tolerance=5e-3)
         for phase in (30, 210)
@@ -60,7 +60,7 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
 
 @pytest.mark.long
 def test_the_static_limit_is_approached_by_marches():
-    """All on the same few squares and steps, whose errors are the same in limit and marches."""
+    """Limit and marches use the same squares and steps, so that their errors are equal."""
     motion, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
     limit = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
     runs = [
@@ -110,8 +110,8 @@ def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amp
 
 @pytest.mark.long
 def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
-    """Without its rotation it is the load with a lateral motion, and without the lateral motion the
-    load with a rotation, both of which know half of the disc."""
+    """With almost no rotation, or almost no lateral motion, friction on the whole disc is that on
+    half of the disc."""
     for parts, rest in (
         ("lateral=1,angle=0.001", "lateral=1"),
         ("lateral=0.001,angle=1", "angle=1"),

@@ -1,4 +1,4 @@
-"""Oscillation along two directions: special cases, other models, limits."""
+"""The elliptic motion: special cases, other models and limits."""
 
 import json
 
@@ -14,7 +14,8 @@ CIRCLE = "elliptic"
 
 
 def mean_of_rigid(velocity, forward, lateral, lead):
-    """A block that always slips: mean of the forward part of the direction of its velocity."""
+    """Mean friction of a rigid block: the forward component of the unit velocity, averaged over a
+    period."""
     t = np.linspace(0, 2 * np.pi, 20001)[:-1]
     ahead = velocity + forward * np.cos(t + lead)
     return np.mean(ahead / np.hypot(ahead, lateral * np.cos(t)))
@@ -112,7 +113,7 @@ def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
 
 
 def test_a_figure_of_eight_may_drive_the_contact_forward():
-    """Mean forces below zero are told, and agree with a plain march."""
+    """The mean force can be negative, and agrees with a plain march."""
     motion, place = "elliptic:forward_cycles=2,phase=45", (0.02, 1.0)
     answer = microslip.solve(motion, *place)
     plain = microslip.history(motion, *place, cells=24, steps=256, periods=40)

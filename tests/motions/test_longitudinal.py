@@ -1,4 +1,4 @@
-"""Oscillation along the direction of sliding: closed form, rings, springs and squares agree."""
+"""The longitudinal motion: closed form, rings, springs and squares agree."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ POINTS = [
 
 
 def slowly(velocity, amplitude):
-    """The same force by adaptive quadrature, branch by branch."""
+    """Mean friction by adaptive quadrature over the branches of the force."""
 
     def way(t):
         return velocity * t + amplitude * np.sin(t)
@@ -74,7 +74,7 @@ def test_the_closed_form_is_taken_where_it_holds():
 
 @pytest.mark.slow
 def test_nu_changes_little_and_keeps_the_order():
-    """Motion along one line knows of nu only through the shape of the stick zone."""
+    """For motion along one line, nu changes the shape of the stick zone only."""
     answer = microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3)
     assert answer.converged
     assert answer.mu_macro == pytest.approx(longitudinal(0.1, 0.5), abs=0.02)
@@ -97,8 +97,8 @@ def test_limits():
 def test_the_rigid_contact_and_the_elastic_slider_have_closed_forms_of_their_own(
     velocity, amplitude
 ):
-    """Slip to and fro by the share of the time; one spring, straight up to u_lim, with Masing's
-    memory."""
+    """The rigid contact slips forward for a known share of the time; the slider is a linear spring
+    up to u_lim with Masing's rule."""
     rigid = microslip.solve("longitudinal", velocity, amplitude, model="rigid", tolerance=1e-4)
     exact = 2.0 / np.pi * np.arcsin(min(velocity / amplitude, 1.0))
     assert abs(rigid.mu_macro - exact) <= rigid.mu_macro_error + 1e-9

@@ -1,4 +1,4 @@
-"""A normal load that oscillates beside a rotation, or at nu > 0: modes against rings, limits."""
+"""Oscillating normal load with a rotation or at nu > 0: modes against rings, and limits."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def within(found, other, slack=0.0):
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
 def test_modes_find_what_rings_find(motion):
-    """At the same resolution to the tolerance of the steps, for at nu = 0 they are the same."""
+    """At nu = 0, both models are equal at the same resolution, up to the tolerance of the steps."""
     for amplitude in (0.6, 1.3):
         rings, modes = (run(motion, 0.1, amplitude, model) for model in ("radial", "polar"))
         assert rings.converged and modes.converged
@@ -45,7 +45,8 @@ def test_the_static_limit_is_that_of_rings_too():
 
 @pytest.mark.long
 def test_a_small_part_changes_little():
-    """Next to no load beside a bore, next to no bore beside a load."""
+    """With almost no oscillation of the load it is the bore, and with almost no rotation the load
+    alone."""
     bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7)
     within(microslip.solve("normal:load=0.0001,angle=1", 0.1, 0.7), bore, 1e-4)
     load = microslip.solve("normal", 0.1, 0.7)
@@ -55,7 +56,7 @@ def test_a_small_part_changes_little():
 @pytest.mark.slow
 @pytest.mark.parametrize("velocity", [0.5, 5.0, 40.0])
 def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
-    """Eq 21 at the contact radius and the rate of turning of the moment, weighted by the load."""
+    """The mean is Eq 21 at the current contact radius and rotation rate, weighted with the load."""
     amplitude, share = 60.0, 0.5 / 60.0
     found = microslip.solve(
         f"normal:load={share!r},angle=1,phase=90", velocity, amplitude, tolerance=5e-3
@@ -94,7 +95,8 @@ def test_a_turning_contact_that_lifts_off_has_no_static_friction():
 
 @pytest.mark.long
 def test_slow_marches_end_in_the_limit():
-    """Limit and marches are those of the same contact and steps, so that few of them tell."""
+    """Limit and marches use the same contact and steps, so that a coarse resolution is
+    sufficient."""
     still = Problem(motion_named(TURNING), 0.0, 0.5, 0.0)
     limit = simulate_static(still, "polar", Resolution(16, 4, 64), 1e-5)
     above = [run(TURNING, v, 0.5, resolution=(16, 4, 64)).mu - limit.mu for v in (2e-2, 2.5e-3)]

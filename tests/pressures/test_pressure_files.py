@@ -1,4 +1,4 @@
-"""Pressures from files: what they hold is what is computed, and what they must not hold is told."""
+"""Pressures from files: their meaning, the error due to the grid, formats, and bad input."""
 
 import os
 import subprocess
@@ -64,7 +64,8 @@ def refusal(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
-    """The torque is the mean distance of a square from its centre, u_lim that at the centre."""
+    """The torque is the mean distance from the centre of the square, and u_lim the displacement at
+    the centre."""
     for count in (2, 3, 41):
         axis = np.linspace(3.0, 7.0, count)
         square = Measured.on_grid("square", axis, axis, np.full((count, count), 5.0), reading)
@@ -88,7 +89,7 @@ def test_cells_are_even_up_to_half_a_step_beyond_the_points():
 
 
 def test_samples_are_bilinear_between_the_points_and_end_there():
-    """p = 1 + x on [0, 1]^2: 5/12 and 7/12 of the load in the two halves."""
+    """For p = 1 + x on [0, 1]^2 the two halves carry 5/12 and 7/12 of the load."""
     values = np.array([[1.0, 1.0], [2.0, 2.0]])
     pressure = Measured.on_grid("ramp", [0.0, 1.0], [0.0, 1.0], values, "samples")
     assert pressure.cell_loads(2).sum(axis=1) == pytest.approx([5.0 / 12.0, 7.0 / 12.0], abs=1e-14)
@@ -101,7 +102,7 @@ def test_samples_are_bilinear_between_the_points_and_end_there():
 
 
 def test_oblong_cells_and_grids_keep_their_shape():
-    """Half as wide as long: a is half the longer side, and nothing lies beyond the shorter one."""
+    """The grid is half as wide as long; a is half the longer side."""
     forward, lateral = np.arange(4) * 0.5, np.arange(8) * 0.125
     loads = Measured.on_grid("oblong", forward, lateral, np.ones((4, 8))).cell_loads(8)
     expected = np.zeros((8, 8))
@@ -142,7 +143,7 @@ def sphere(x, y):
 
 
 def cone(x, y):
-    """Love's, its peak as high as it is a quarter of a step away from it."""
+    """Pressure of a cone (Love), cut off at a quarter of a step from the centre."""
     step = x.ravel()[1] - x.ravel()[0]
     return np.arccosh(1.0 / np.clip(np.hypot(x, y), 0.25 * step, 1.0))
 
@@ -157,7 +158,7 @@ TRUTHS += [("power:exponent=1", cone, 16)]
 def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     tmp_path, name, shape, count, reading
 ):
-    """Values at the centres of cells over the disc, against rings."""
+    """Friction for values at the centres of cells over the disc is compared with rings."""
     axis = (np.arange(count) + 0.5) * 2.0 / count - 1.0
     file = csv(tmp_path / "p.csv", axis, axis, shape(axis[:, None], axis[None, :]))
     truth = microslip.solve("transverse", 0.1, 0.5, pressure=name)
@@ -174,7 +175,8 @@ def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 @pytest.mark.parametrize(("count", "shift"), [(8, 0.0), (16, 0.3), (32, 0.5)])
 def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shift, reading):
-    """A rotation feels how large the contact is; here the grid does not end with it."""
+    """Friction of a rotation depends on the size of the contact, which is smaller than the grid
+    here."""
     axis = (np.arange(-count // 2 - 2, count // 2 + 3) + shift) * 2.0 / count
     file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
     truth = microslip.solve("bore", 0.5, 1.0, tolerance=5e-3)
@@ -196,7 +198,7 @@ def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
 
 
 def test_sliding_fast_needs_no_resolution(tmp_path):
-    """The contact is rigid then, whatever its pressure."""
+    """A fast sliding contact is rigid for any pressure."""
     file = csv(tmp_path / "p.csv", *2 * [np.array([-0.5, 0.5])], np.array([[1.0, 2.0], [3.0, 4.0]]))
     found = microslip.solve("transverse", 1e3, 0.5, pressure=file, tolerance=1e-3)
     assert found.converged
@@ -257,7 +259,7 @@ def test_what_csv_may_look_like(tmp_path, content):
 
 
 def test_a_spreadsheet_with_decimal_commas_in_windows_1252_is_read_if_declared(tmp_path):
-    """Empty rows and columns at the end, as spreadsheets write them, do not count."""
+    """Empty rows and columns at the end, as written by spreadsheets, are ignored."""
     rows = ["forward [mm];lateral [µm];pressure;;"]
     rows += ["0,0;0;1,0;;", "0;1000;2;;", "1,0;0;3;;", "1;1000,0;4,0;;", ";;;;", ";;;;"]
     (tmp_path / "p.csv").write_bytes("\r\n".join(rows).encode("cp1252"))
@@ -349,7 +351,7 @@ def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
 
 @pytest.mark.slow
 def test_sizes_that_netcdf_declares_are_checked_before_they_are_read(tmp_path):
-    """A file of some kB can declare more than any memory holds."""
+    """A file of some kB can declare more data than any memory can hold."""
 
     def declared(rows, chunk):
         path = tmp_path / "p.nc"
@@ -369,7 +371,7 @@ def test_sizes_that_netcdf_declares_are_checked_before_they_are_read(tmp_path):
 
 
 def test_scattered_points_do_not_make_a_huge_grid(tmp_path, monkeypatch):
-    """Points on a diagonal have as many coordinates each way as there are points."""
+    """For n points on a diagonal, the grid would have n x n points."""
     monkeypatch.setattr("microslip.pressures.grid_csv.MOST_POINTS", 10)
     monkeypatch.setattr(np, "full", lambda *args: pytest.fail("it was allocated"))
     lines = "".join(f"{i},{i},1\n" for i in range(5))
@@ -411,7 +413,7 @@ def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
 
 @pytest.mark.slow
 def test_a_file_is_found_without_any_other_import(tmp_path):
-    """By the module that solves alone, in a fresh process."""
+    """The file is read in a new process that imports one module."""
     name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
     script = (
         "from microslip.adaptive.checks import checked_problem\n"

@@ -1,4 +1,4 @@
-"""Pressures: their records against integrals, their closed forms against marches and each other."""
+"""Pressures: integrals, closed forms, marches and text forms."""
 
 import pickle
 from dataclasses import fields
@@ -29,7 +29,7 @@ PLANAR = ["ellipse", "ellipse:ratio=0.3,across=1"]
 
 
 def pushed(name, model, cells, displacement, steps=40):
-    """Forward force after each share of a displacement from rest."""
+    """Forward displacements from rest, and the force after each of them."""
     contact = MODELS[model].build(
         Problem(motion_named("longitudinal"), 1.0, 1.0, 0.0, pressure_named(name)), cells, 8, None
     )
@@ -93,7 +93,8 @@ def test_thin_rings_give_the_loads_of_squares_in_closed_form():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
-    """Summed up on points of a fine grid, the middle cell by its own closed form."""
+    """Displacements are sums over a fine grid, with a closed form for the influence of a cell on
+    itself."""
     pressure = pressure_named(name)
     found = []
     for n in (81, 161):
@@ -119,7 +120,7 @@ def test_the_power_2_is_a_sphere():
 
 
 def test_the_cone_is_loves():
-    """p ~ arccosh(1/r), u_lim = mu d E*/G* with F = (E*/2) d a, hence G* = 1."""
+    """p ~ arccosh(1/r); u_lim = mu d E*/G* and F = (E*/2) d a give G* = 1."""
     cone, r = pressure_named("power:exponent=1"), np.array([0.01, 0.3, 0.9])
     assert cone.G_star == pytest.approx(1.0, rel=1e-12)
     assert cone.bound(r) == pytest.approx(np.arccosh(1.0 / r) / np.pi, rel=1e-12)
@@ -127,7 +128,8 @@ def test_the_cone_is_loves():
 
 @pytest.mark.parametrize("name", [*INDENTERS, *EXTREME])
 def test_the_record_of_an_indenter_keeps_what_closed_forms_claim(name):
-    """Their error is 1e-8; the whole load and that of smaller contacts are known."""
+    """The loads of the contact and of smaller contacts are known; closed forms have an error of
+    1e-8."""
     pressure, depth = pressure_named(name), np.array([0.2, 0.7, 1.0])
     radius = pressure.radius(depth)
     below = [quad(lambda x: float(pressure.depth(x)), 0.0, c, epsabs=1e-13)[0] for c in radius]
@@ -275,7 +277,8 @@ def test_an_ellipse_of_ratio_1_is_a_sphere(motion, velocity, amplitude, poisson)
 
 @pytest.mark.long
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
-    """Directions of traction and places of points meet nowhere but in nu and in rotation."""
+    """The direction of traction matters for the influence of points only at nu > 0 or with a
+    rotation."""
     settings = {"tolerance": 5e-3}
 
     def both(motion, velocity, amplitude, poisson):
@@ -344,7 +347,7 @@ def test_a_text_is_written_back_without_numbers_that_are_usual(name):
 
 
 def test_an_array_is_read_as_the_pressure_that_it_samples():
-    """An elliptic Hertz contact on cells: its shear stiffness is that of the closed form."""
+    """The shear stiffness of an elliptic Hertz contact on cells is that of the closed form."""
     x, y = np.linspace(-1, 1, 201), np.linspace(-0.5, 0.5, 101)
     values = np.sqrt(np.maximum(0.0, 1.0 - x[:, None] ** 2 - (y / 0.5) ** 2))
     read = Pressure.from_array(x, y, values)

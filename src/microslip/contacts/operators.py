@@ -2,7 +2,7 @@
 
 A field has the shape (2, points), with a forward and a lateral component.  A module registers a
 class of operators with `operator`.  An object of such a class contains several operators: number 0
-is A, from tractions to displacements, and the others are the resolvents for the step solver. """
+is A, from tractions to displacements, and the others are the resolvents for the step solver."""
 
 from __future__ import annotations
 

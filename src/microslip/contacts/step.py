@@ -2,7 +2,7 @@
 
 The unknowns of a step are tractions q with |q| <= g, whose slip b - A q is in the direction of q
 and occurs only where |q| = g.  A driven body (drive.py) adds an unknown, its displacement d, which
-is added to b, and an equation, stiffness d + forward force = load. """
+is added to b, and an equation, stiffness d + forward force = load."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 It is the general reference for the other models, and the discretisation of the paper.  Tractions
 have the symmetries that rigid displacement, pressure and influence have in common.  Only cells that
-are not images of others by these symmetries are resolved (see `_images`). """
+are not images of others by these symmetries are resolved (see `_images`)."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ def influence(
 
     They are closed forms: the kernels of rings/influence.py integrated over a square, at the
     centres of cells.  Units are u_lim over traction.  The first axis is the forward offset, and the
-    second the lateral offset; negative offsets are wrapped around. """
+    second the lateral offset; negative offsets are wrapped around."""
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")

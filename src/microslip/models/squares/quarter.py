@@ -11,7 +11,7 @@ k, and t = pi k / (2 L),
 All steps are linear, so that one complex transform serves two real fields at once.  The influence
 coefficients are even as well.  Hence the cosine transform of the displacement is the product of
 those of the tractions and of the influence coefficients.  Rows are in the order of transform.py, in
-which the first row has the frequency 0. """
+which the first row has the frequency 0."""
 
 from __future__ import annotations
 
