@@ -193,7 +193,7 @@ NETCDF = [
     (grid().rename(forward="lat", lateral="lon"), refused("no variable forward")),
     (grid().rename(pressure="Pressure"), refused("no variable pressure")),
     (grid(VALUES > 1), refused("pressure holds bool")),
-    (grid(np.where(VALUES < 4, VALUES, np.inf)), refused("pressure is inf at forward 1")),
+    (grid(np.where(VALUES < 4, VALUES, np.inf)), refused("pressure = inf: at forward 1")),
     (grid(pressure={"missing_value": 4.0}), refused("pressure = nan: at forward 1, lateral 1")),
 ]
 

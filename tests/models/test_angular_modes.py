@@ -102,7 +102,7 @@ def test_operator_is_the_plain_sum_over_modes(cells, angles, rotates, nu, focus,
         expected = plain_displacement(state, cells, angles, rotates, nu, focus)
         moved = contact.displacement(state)
         assert moved == pytest.approx(expected[:, :angles], abs=1e-12)
-        # the other half of the disc moves as the symmetry says
+        # displacements of the other half of the disc follow from symmetry
         other = whole_disc(expected[:, :angles], rotates)[angles:]
         found = expected[1, angles:] + 1j * expected[0, angles:]
         assert found == pytest.approx(other, abs=1e-12)

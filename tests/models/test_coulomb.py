@@ -26,7 +26,7 @@ def test_projection_is_the_nearest_point_of_the_disc(q, bound):
     assert np.all(size(nearest) <= bound * (1 + 1e-15))
     inside = size(q) <= bound
     assert np.array_equal(nearest[:, inside], q[:, inside])
-    # the disc lies behind the plane through the nearest point, across the way to it
+    # the disc is on one side of the tangent plane at the nearest point
     for angle in np.linspace(0, 2 * np.pi, 12, endpoint=False):
         other = bound * np.array([np.cos(angle), np.sin(angle)])[:, None, None]
         assert np.all(((q - nearest) * (other - nearest)).sum(axis=0) <= 1e-13)
@@ -45,14 +45,14 @@ def test_zero_bound_and_zero_traction():
     zero = np.zeros((2, 1))
     assert np.array_equal(project(zero, np.zeros(1)), zero)
     assert np.array_equal(project(zero + 1.0, np.zeros(1)), zero)
-    assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # of nothing, any share will do
+    assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # any factor is correct for a traction of 0
 
 
 @pytest.mark.parametrize(
     ("q", "slip", "expected"),
     [
         ((0.5, 0.0), (0.2, 0.0), 0.2),  # slips below the bound
-        ((0.5, 0.0), (4.0, 0.0), 0.5),  # ... far enough to reach it
+        ((0.5, 0.0), (4.0, 0.0), 0.5),  # slips far enough to reach the bound
         ((1.0, 0.0), (-0.3, 0.0), 0.3),  # slips backwards
         ((1.0, 0.0), (0.0, 1.0), np.hypot(1 - 0.5**0.5, 0.5**0.5)),  # slips across
         ((2.0, 0.0), (0.0, 0.0), 1.0),  # beyond the bound

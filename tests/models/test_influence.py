@@ -65,7 +65,7 @@ def both_kernels(r, s, count=33):
 
 @pytest.mark.parametrize(("r", "s"), RADII)
 def test_toroidal_kernels_are_angular_means(r, s):
-    for count in (1, 2, 5, 40):  # the count decides which recurrence runs
+    for count in (1, 2, 5, 40):  # the recurrence depends on the count
         kernels = np.empty(count)
         toroidal_kernels(r, s, kernels)
         expected = [toroidal_mean(m, r, s) for m in range(count)]
@@ -102,7 +102,7 @@ def ring_average(kernel, i, j):
         nearest = np.clip(psi, low, high)
         total = load = 0.0
         for end in (low, high):
-            # psi' - nearest = (end - nearest) t^3 takes the logarithm away
+            # psi' - nearest = (end - nearest) t^3 removes the logarithm
             t, w = unit_gauss(20)
             points = nearest + (end - nearest) * t**3
             w = w * 3 * t**2 * abs(end - nearest) * shape(points)
@@ -198,7 +198,7 @@ def test_operator_commutes_with_the_mirror(name, nu, rng):
     image = contact.mirrored(contact.displacement(state))
     assert contact.displacement(contact.mirrored(state)) == pytest.approx(image, abs=1e-12)
     assert contact.mirrored(contact.mirrored(state)) == pytest.approx(state, abs=0)
-    # what turns over with the lateral axis is the lateral force and the torque
+    # the mirror reverses the lateral force and the torque
     turned = forces(contact, contact.mirrored(state))
     assert turned == pytest.approx(forces(contact, state) * [1, -1, -1], abs=1e-12)
 
@@ -296,7 +296,7 @@ def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
     for n in cells:
         contact = PolarContact(n, 4, False, nu)
         depth = np.cos(contact.rings.psi)
-        mean = -np.diff(depth) / contact.rings.area  # of each ring, for F = 1
+        mean = -np.diff(depth) / contact.rings.area  # mean traction of each ring for F = 1
         state = np.stack([np.tile(mean, (4, 1)), np.zeros((4, n))])
         assert forces(contact, state) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
         moved = contact.displacement(state)

@@ -220,12 +220,12 @@ def test_rigid_translation_is_eq_6(velocity, amplitude):
 @pytest.mark.parametrize("velocity", [0.01, 0.1, 0.5, 1.0, 3.0])
 def test_rigid_rotation_is_eq_29(velocity):
     resolution = Resolution(32, 32, 128)
-    for amplitude in (0.3, 4.0):  # which does not matter
+    for amplitude in (0.3, 4.0):  # the result does not depend on it
         run = simulate(Problem(Bore(), velocity, amplitude, 0.3), "rigid", resolution, 1e-6)
         assert run.mu == pytest.approx(paper.large_amplitude_bore(velocity), abs=5e-4)
 
 
-# One another
+# Models against each other
 
 
 def half_period(motion, velocity, amplitude, nu, steps, integrator=SDIRK2):
@@ -322,10 +322,10 @@ def assert_coulomb(contact, q, slip, tolerance):
     size, speed = np.hypot(*q), np.hypot(*slip) * (contact.bound > 0)
     assert np.all(size <= contact.bound * (1 + 4e-16))
     assert residual(contact, q, slip) <= larger_residual(contact) * tolerance
-    # a point that is off the law by no more than the tolerance ...
+    # largest slip of a point whose residual is at most the tolerance
     off = tolerance * contact.compliance / contact.weight
     slips = speed > 100 * off
-    # ... is, if it slips by much more than that, on the bound and slips along its traction
+    # points with much more slip are on the bound and slip in the direction of the traction
     bound = np.broadcast_to(contact.bound, size.shape)
     assert size[slips] == pytest.approx(bound[slips], rel=1e-12)
     lag = bound * speed - (q * slip).sum(axis=0)
@@ -353,7 +353,7 @@ def small(name):
 
 
 FREE = {"translation": [1, 1, 0], "mirror": [1, 0, 1], "any": [1, 1, 1]}
-"""Which of (forward, lateral, angle) the symmetry of a contact leaves free."""
+"""Symmetry of a contact -> factors 0 or 1 of the (forward, lateral, angle) that it allows."""
 
 STEP = st.tuples(*[st.floats(-1.5, 1.5, allow_subnormal=False)] * 3)
 STEPS = st.lists(STEP, min_size=1, max_size=5)
@@ -373,10 +373,9 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
     for before, after in pairwise(motions):
-        march = contact.march(through([before, after]), q, tolerance)
-        assert march.residual <= tolerance
-        sums = np.array([forces(contact, q), forces(contact, march.state)])
-        if isinstance(contact, PolarContact):  # half a disc; the other half cancels one of them
+        march = contact.march(through([before, after]), q, tolerance) assert march.residual <=
+        tolerance sums = np.array([forces(contact, q), forces(contact, march.state)]) if
+        isinstance(contact, PolarContact):  # the other half of the disc cancels one of the forces
             sums[:, 1 if contact.rotates else 2] = 0.0
         assert march.forces == pytest.approx(sums, abs=1e-12)
         change = march.state - q
@@ -394,7 +393,7 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
         rounding = 1e-13 + 20 * tolerance * (1 + np.abs(after - before).sum())
         balance = stored + dissipation - 0.5 * over_area(change, slip)
         assert work == pytest.approx(balance, abs=rounding)
-        # what backward Euler adds of its own: end tractions do more work than mean ones
+        # numerical dissipation of backward Euler: end tractions do more work than mean tractions
         numerical = march.forces[1] @ (after - before) - stored - dissipation
         assert numerical >= -rounding
         assert numerical == pytest.approx(

@@ -50,12 +50,11 @@ def test_springs_in_a_row_unload_by_masings_rule():
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_static_limit_of_springs_in_a_row(amplitude):
     """The forward force of each spring is sqrt(bound^2 - (G* y)^2)."""
-    found = microslip.solve("transverse", 0.0, amplitude, model="mdr")
-    stick = np.sqrt(1.0 - amplitude)
-    expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
-    assert found.converged
-    assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
-    assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # not the half-space's
+    found = microslip.solve("transverse", 0.0, amplitude, model="mdr") stick = np.sqrt(1.0 -
+    amplitude) expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0,
+    stick)[0] assert found.converged assert abs(found.mu_macro - expected) <= found.mu_macro_error +
+    1e-9 assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # it differs from
+    the half-space
 
 
 def test_springs_in_a_row_come_close_to_the_rings():
@@ -76,7 +75,7 @@ def test_a_bristle_loads_exponentially():
     )
     expected = 1.0 - np.exp(-HERTZ.stiffness * np.array([0.0, 0.2, 0.7]))
     assert march.forces[:, 1] == pytest.approx(expected, rel=1e-13)
-    # the same stiffness at first as the half-space
+    # the initial stiffness is that of the half-space
     slope = (hertz.mindlin_force(1e-6) - hertz.mindlin_force(0.0)) / 1e-6
     assert slope == pytest.approx(HERTZ.stiffness, rel=1e-5)
 

@@ -12,7 +12,7 @@ from microslip.models.rings.contact import RadialContact
 from microslip.motions.transverse import Transverse
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
-# complex numbers, Gauss-Seidel and dense Newton, that has no line in common with this one
+# complex numbers, Gauss-Seidel and dense Newton, which shares no code with this one
 KNOWN = [
     (4, 12, 0.005, 0.5, 0.3443567651),
     (8, 16, 0.005, 0.5, 0.3207923574),
@@ -81,8 +81,9 @@ def test_another_march_as_first_guess_changes_the_effort_only():
         led = contact.march(path, start, tolerance, previous=previous)
         assert led.iterations < alone.iterations
         assert energy_norm(contact, led.state - alone.state) < 1e-9
-    other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # of no use here
-    assert np.array_equal(contact.march(path, start, tolerance, previous=other).state, alone.state)
+    other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # not usable here, because
+    the steps differ assert np.array_equal(contact.march(path, start, tolerance,
+    previous=other).state, alone.state)
 
 
 @pytest.mark.parametrize(("cells", "steps", "velocity", "amplitude", "mu"), KNOWN)

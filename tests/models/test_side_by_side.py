@@ -15,7 +15,7 @@ from microslip.models.squares.contact import CartesianContact
 
 VELOCITY = 0.3
 WAYS = ((0.8, 0.0, 0.0), (0.5, 1.1, 0.3))
-"""Amplitude, phase and share of it forward of two contacts."""
+"""Amplitude, phase and forward share of the oscillation of two contacts."""
 SHARES, EXTENTS = (0.7, 0.3), (1.25, 0.71)
 
 KINDS = {
@@ -44,7 +44,7 @@ KINDS = {
         True,
     ),
 }
-"""Two contacts of equal shape in their own units, and whether they turn."""
+"""Two contacts of equal shape in their own units, and whether they rotate."""
 
 
 def base(phase):

@@ -24,7 +24,7 @@ from microslip.solver.static_run import simulate_static
 ELLIPSE = "ellipse:ratio=0.6"
 LOOP = "elliptic:forward=0.6,lateral=1,phase=70"
 TOLERANCE = 1e-13
-"""Of steps: what differs by more than a thousand of them differs."""
+"""Tolerance of steps.  Results are equal if they differ by less than 1000 times as much."""
 
 KINDS = {
     "quarter": (4, TURN, 0.0),
@@ -32,7 +32,7 @@ KINDS = {
     "mirror image": (2, MIRROR, 0.3),
     "mirror image at nu = 0": (2, MIRROR, 0.0),
 }
-"""Squares that one stands for, the symmetry of the motion, and Poisson's ratio."""
+"""Number of images of a square, symmetry of the motion, and Poisson's ratio."""
 MOTIONS = {
     "quarter": ("transverse", "longitudinal", LOOP),
     "half turn": ("transverse", "longitudinal", LOOP),
@@ -90,7 +90,7 @@ def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
     scratch = workspace(operator)
     convolve(operator, scratch, state, out)
     assert whole(kind, out) == pytest.approx(direct_sum(cells, nu, whole(kind, state)), abs=1e-13)
-    for part in scratch:  # what is left from other tractions does not show
+    for part in scratch:  # old values in the scratch arrays have no effect
         part[:] = rng.normal(size=part.shape)
     convolve(operator, scratch, state, again)
     assert np.array_equal(again, out)
@@ -229,7 +229,7 @@ PLACES = {
     ((0, 3), (7, 4)): {(TURN, 0.0): 2, (MIRROR, 0.3): 1},
     ((1, 3), (1, 4), (6, 3), (6, 4)): {(TURN, 0.0): 4, (MIRROR, 0.0): 2},
 }
-"""Squares with more load than their images, and what one square may stand for then."""
+"""Squares with more load than their images -> number of images for each motion."""
 
 
 @pytest.mark.parametrize("places", PLACES)

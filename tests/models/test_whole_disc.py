@@ -88,7 +88,7 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
         contact.march(path, np.zeros((2, *contact.forward_position.shape)), 1e-9)
         for contact in (half, disc)
     ]
-    # at nu > 0 the shortest wave of a translation has a cosine on half of the disc alone
+    # at nu > 0 the cosine of the shortest wave of a translation exists on half of the disc only
     allowed = 2e-6 if rotates or nu == 0.0 else 1e-4
     assert marches[1].state[:, :ANGLES] == pytest.approx(marches[0].state, abs=allowed)
     assert marches[1].forces == pytest.approx(marches[0].forces, abs=allowed)

@@ -34,7 +34,7 @@ def test_a_small_part_changes_little(phase):
     one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
     other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
     assert other.model == "polar"
-    # the edge of the contact moves by no more than the angle, and friction by no more than that
+    # the displacement of the edge changes by at most the angle, and friction by at most that
     allowed = float(hertz.bore_angle(0.006)) + one.mu_macro_error + other.mu_macro_error
     assert abs(one.mu_macro - other.mu_macro) <= allowed
 
@@ -67,7 +67,7 @@ def test_the_static_limit_is_approached_by_marches():
         simulate(Problem(motion, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
     ]
     above = [run.mu for run in runs]
-    # differences shrink like v^(2/3): an eighth of the velocity leaves a quarter of them
+    # the excess is proportional to v^(2/3): at 1/8 of the velocity it is 1/4
     guess = above[1] - (above[0] - above[1]) / 3.0
     assert limit.converged and runs[0].converged and runs[1].converged
     assert limit.mu < above[1] < above[0]

@@ -86,7 +86,7 @@ def test_limits():
     assert slow == pytest.approx(paper.static_limit_longitudinal(amplitude), abs=1e-6)
     assert longitudinal(0.0, amplitude) == pytest.approx(slow, abs=1e-6)
     assert longitudinal([1.0, 3.0], [1.0, 0.5]).tolist() == [1.0, 1.0]
-    # Large amplitudes: a block that feels +1 or -1 only (Coulomb).
+    # at large amplitudes the force of a rigid block is +1 or -1
     rigid = 2.0 / np.pi * np.arcsin(0.3)
     assert longitudinal(0.3 * 1e5, 1e5) == pytest.approx(rigid, abs=1e-4)
 
@@ -104,7 +104,7 @@ def test_the_rigid_contact_and_the_elastic_slider_have_closed_forms_of_their_own
     assert abs(rigid.mu_macro - exact) <= rigid.mu_macro_error + 1e-9
     slider = microslip.solve("longitudinal", velocity, amplitude, model="slider", tolerance=1e-4)
     exact = longitudinal(velocity, amplitude, lambda way: np.minimum(way, 1.0))
-    # the corner of its curve lies within a panel of the quadrature
+    # the kink of its loading curve is inside a panel of the quadrature
     assert abs(slider.mu_macro - exact) <= slider.mu_macro_error + 1e-4
     assert longitudinal(1e-9, 0.3, lambda way: np.minimum(way, 1.0)) == pytest.approx(0.7, abs=1e-3)
 

@@ -68,7 +68,7 @@ def test_a_rigid_zigzag_keeps_the_direction_of_its_slip(velocity, amplitude):
     speed = 2.0 * amplitude / np.pi
     rigid = microslip.solve("zigzag", velocity, amplitude, model="rigid", tolerance=1e-2)
     exact = velocity / np.hypot(velocity, speed)
-    # at the turning points themselves the direction flips within a step
+    # at the turning points the direction changes within a step
     assert rigid.mu_macro == pytest.approx(exact, abs=rigid.mu_macro_error + 1e-3)
 
 

@@ -69,7 +69,7 @@ def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
     exact = motion_named(motion).closed_form(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
-    assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
+    assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # their error is of first order
 
 
 @pytest.mark.parametrize("model", ["mdr", "radial"])

@@ -67,7 +67,7 @@ def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     radius = HERTZ.radius(HERTZ.of_load(load))
     steady = paper.bore_forward(velocity / (rate * radius))
     assert found.converged
-    # the contact is late by about u_lim, a little of this path
+    # the force follows with a delay of about u_lim, which is a small part of this path
     assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
 
 

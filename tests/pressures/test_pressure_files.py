@@ -58,7 +58,7 @@ def refusal(name):
     return str(refused.value)
 
 
-# What a grid means
+# Meaning of a grid
 
 
 @pytest.mark.slow
@@ -70,7 +70,7 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
         axis = np.linspace(3.0, 7.0, count)
         square = Measured.on_grid("square", axis, axis, np.full((count, count), 5.0), reading)
         assert square.torque == pytest.approx((np.sqrt(2.0) + np.arcsinh(1.0)) / 3.0, abs=1e-12)
-        # (1/pi) Integral of 1/distance over [-1, 1]^2 at load 1, seen from cells by the centre
+        # (1/pi) Integral of 1/distance over [-1, 1]^2 at load 1, for cells next to the centre
         assert square.G_star == pytest.approx(2.0 * np.arcsinh(1.0) / np.pi, abs=2e-5)
         assert square.cell_loads(7) == pytest.approx(np.full((7, 7), 1.0 / 49.0), abs=1e-14)
         for other in square.readings:
@@ -84,7 +84,7 @@ def test_cells_are_even_up_to_half_a_step_beyond_the_points():
     pressure = Measured.on_grid("four", [0.0, 1.0], [5.0, 6.0], values)
     assert pressure.cell_loads(2) == pytest.approx(values / 10.0, abs=1e-14)
     assert pressure.cell_loads(4) == pytest.approx(np.kron(values, np.ones((2, 2))) / 40.0)
-    # mean distance of the unit square from its corner, whichever carries more
+    # mean distance of a unit square from its corner, for any loads
     assert pressure.torque == pytest.approx((np.sqrt(2.0) + np.arcsinh(1.0)) / 3.0, abs=1e-12)
 
 
@@ -135,7 +135,7 @@ def test_a_finer_grid_of_hertzs_pressure_is_nearer_to_it(reading):
     assert np.all(fine < 2e-2)
 
 
-# What it leaves open
+# Error due to the grid
 
 
 def sphere(x, y):
@@ -210,7 +210,7 @@ def test_sliding_fast_needs_no_resolution(tmp_path):
     assert abs(marched.mu_macro - rigid.mu_macro) <= 1e-3
 
 
-# Any file
+# Formats of files
 
 
 @pytest.mark.long
@@ -224,7 +224,7 @@ def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_p
     mirrored = csv(tmp_path / "m.csv", values=values[:, ::-1])
     other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=4e-2)
     assert found.converged
-    # the mirror image of the motion is the same half a period later
+    # the mirror image of the motion is the motion half a period later
     assert found.mu_macro == pytest.approx(other.mu_macro, abs=1e-3)
 
 
@@ -408,7 +408,7 @@ def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
     assert "not a netCDF file" in refusal(name)
 
 
-# Names and places
+# Names and paths
 
 
 @pytest.mark.slow

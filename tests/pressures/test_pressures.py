@@ -39,7 +39,7 @@ def pushed(name, model, cells, displacement, steps=40):
     return way, contact.march(path, start, 1e-9).forces[:, 0]
 
 
-# The records
+# Properties of pressures
 
 
 @pytest.mark.parametrize("name", ROUND)
@@ -159,7 +159,7 @@ def test_the_radius_is_the_inverse_of_the_depth(name):
     assert pressure.stick_radius(1.0) == 0.0
 
 
-# What marches make of them
+# Marches under each pressure
 
 
 @pytest.mark.parametrize("name", ["hertz", *INDENTERS])
@@ -242,7 +242,7 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
     assert abs(found.mu_torque - exact.mu_torque) <= found.torque.error + 1e-3
 
 
-# One model against the next
+# Models against each other
 
 
 @pytest.mark.slow

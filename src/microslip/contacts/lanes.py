@@ -16,8 +16,8 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 16
-"""Number of neighbouring values for which sums are accumulated at once: two times four vectors fill
-the registers of the processor."""
+"""Number of neighbouring values that are accumulated at once.  Two times four vectors are as many
+sums as the processor can accumulate in parallel."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 

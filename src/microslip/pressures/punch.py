@@ -46,8 +46,8 @@ class Punch(Indenter):
         return f"a punch with a rounded edge, flat up to {self.flat:g} of its contact radius"
 
     def _profile(self, c: np.ndarray | float) -> np.ndarray:
-        c = np.maximum(np.asarray(c, float), self.flat)
-        return c * (_root(c, self.flat) - self.flat * _angle(c, self.flat))
+        r = np.maximum(np.asarray(c, float), self.flat)
+        return r * (_root(r, self.flat) - self.flat * _angle(r, self.flat))
 
     @cached_property
     def _scale(self) -> float:
