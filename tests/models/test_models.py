@@ -373,9 +373,10 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
     for before, after in pairwise(motions):
-        march = contact.march(through([before, after]), q, tolerance) assert march.residual <=
-        tolerance sums = np.array([forces(contact, q), forces(contact, march.state)]) if
-        isinstance(contact, PolarContact):  # the other half of the disc cancels one of the forces
+        march = contact.march(through([before, after]), q, tolerance)
+        assert march.residual <= tolerance
+        sums = np.array([forces(contact, q), forces(contact, march.state)])
+        if isinstance(contact, PolarContact):  # by symmetry of the disc
             sums[:, 1 if contact.rotates else 2] = 0.0
         assert march.forces == pytest.approx(sums, abs=1e-12)
         change = march.state - q

@@ -124,10 +124,13 @@ def test_the_work_of_the_drive_is_stored_or_dissipated(name):
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
     """Without slip the contact is a linear spring; the error has the order of the integrator."""
-    rings = RadialContact.resolved(8) contact = RadialContact(rings.influence, rings.bound,
-    rings.weight)  # with the stiffness of its matrix spring, mass, place = 0.5, 0.2, 1e-9 rate =
-    np.sqrt((spring + contact.stiffness) / mass) ends = [] swung, unit = np.array([np.sin(2.0 *
-    rate), np.cos(2.0 * rate)]), place * np.array([1.0, rate]) for steps in (100, 200):
+    rings = RadialContact.resolved(8)
+    contact = RadialContact(rings.influence, rings.bound, rings.weight)  # its own stiffness
+    spring, mass, place = 0.5, 0.2, 1e-9
+    rate = np.sqrt((spring + contact.stiffness) / mass)
+    ends = []
+    swung, unit = np.array([np.sin(2.0 * rate), np.cos(2.0 * rate)]), place * np.array([1.0, rate])
+    for steps in (100, 200):
         phases = np.linspace(0.0, 2.0, steps + 1)
         path = make_path(lambda phase: np.zeros((3, *np.shape(phase))), phases, integrator)
         start, at = np.zeros((2, 1, 8)), np.array([0.0, place * rate])

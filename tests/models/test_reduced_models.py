@@ -50,11 +50,12 @@ def test_springs_in_a_row_unload_by_masings_rule():
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_static_limit_of_springs_in_a_row(amplitude):
     """The forward force of each spring is sqrt(bound^2 - (G* y)^2)."""
-    found = microslip.solve("transverse", 0.0, amplitude, model="mdr") stick = np.sqrt(1.0 -
-    amplitude) expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0,
-    stick)[0] assert found.converged assert abs(found.mu_macro - expected) <= found.mu_macro_error +
-    1e-9 assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # it differs from
-    the half-space
+    found = microslip.solve("transverse", 0.0, amplitude, model="mdr")
+    stick = np.sqrt(1.0 - amplitude)
+    expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
+    assert found.converged
+    assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
+    assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # another limit
 
 
 def test_springs_in_a_row_come_close_to_the_rings():
