@@ -7,7 +7,6 @@ A pressure is a class in a file of the folder `pressures` (see pressure.py).  A 
 from __future__ import annotations
 
 from microslip import pressures
-from microslip.foundation import named_files
 from microslip.foundation.families import Registry
 from microslip.pressures import from_file
 from microslip.pressures.pressure import Pressure
@@ -28,6 +27,6 @@ def pressure_named(text: str) -> Pressure:
     InputError
         If the text does not name a pressure; the message lists the known names.
     """
-    if named_files.speaks_of_file(text):
+    if from_file.is_file(text):
         return from_file.pressure(text)
     return _REGISTRY.parse(text)

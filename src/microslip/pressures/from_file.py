@@ -32,6 +32,11 @@ _CACHE: dict[str, Pressure] = {}
 """Name -> pressure of the files that were read last; equal content has one record."""
 
 
+def is_file(text: object) -> bool:
+    """Whether a text is the name of a file, such as "file:measured.csv"."""
+    return named_files.speaks_of_file(text)
+
+
 def pressure(name: str) -> Pressure:
     """Read the pressure from the file with this name (see foundation.named_files).
 
