@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.models.pull import Body
+from microslip.models.driven_body import Body
 from microslip.motions.body_contacts import contacts_of
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
@@ -216,7 +216,7 @@ def test_below_the_threshold_a_body_comes_to_rest(motion):
         body = Body(0.0, 0.0, 0.0, share * limit)
         state, march = np.zeros((2, 1, len(contact.bound))), None
         for _ in range(40):
-            march = contact.pulled_march(path, state, 1e-10, body, np.zeros(2), march)
+            march = contact.march(path, state, 1e-10, march, body=body)
             mirrored = problem.half_period_mirror
             state = contact.mirrored(march.state) if mirrored else march.state
         # relative displacement plus that of the path

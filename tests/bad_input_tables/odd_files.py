@@ -144,7 +144,7 @@ CSV = [
     ("version https://git-lfs.github.com/spec/v1\n", refused("line 1: the heading")),
     (HEAD + "0,0,1\n0,1e-200,2\n1e-200,0,3\n1e-200,1e-200,4\n", PLAIN),
     (HEAD + "0,0,1\n0,1e-310,2\n1e-310,0,3\n1e-310,1e-310,4\n", PLAIN),
-    (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps of one unit")),
+    (HEAD + "0,0,1\n0,1e20,2\n1,0,3\n1,1e20,4\n", refused("steps in one unit")),
     (HEAD + "1e9,0,1\n1e9,1,2\n1000000001,0,3\n1000000001,1,4\n", PLAIN),
 ]
 
@@ -176,8 +176,8 @@ NETCDF = [
     (grid().rename(forward="lat", lateral="lon"), refused("no variable forward")),
     (grid().rename(pressure="Pressure"), refused("no variable pressure")),
     (grid(VALUES > 1), refused("pressure holds bool")),
-    (grid(np.where(VALUES < 4, VALUES, np.inf)), refused("pressure is inf at forward 1")),
-    (grid(pressure={"missing_value": 4.0}), refused("pressure is nan at forward 1, lateral 1")),
+    (grid(np.where(VALUES < 4, VALUES, np.inf)), refused("pressure = inf: at forward 1")),
+    (grid(pressure={"missing_value": 4.0}), refused("pressure = nan: at forward 1, lateral 1")),
 ]
 
 # Datasets of other origin: a change, and words of the message of `at`.

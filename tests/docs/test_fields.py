@@ -115,7 +115,7 @@ def test_every_variable_of_a_map_of_drift_and_of_its_answers_is_in_its_table_and
 STUDIES = {
     "accuracy": ("The study of accuracy", studies_stub, studies_stub.accuracy_result),
     "stability": ("The study of stability", studies_stub, studies_stub.stability_result),
-    "claims": ("The claims", claims_stub, claims_stub.result),
+    "claims": ("The check of the paper", claims_stub, claims_stub.result),
     "propulsion": ("The study of propulsion", propulsion_stub, propulsion_stub.propulsion_result),
 }
 

@@ -1,4 +1,4 @@
-"""Coulomb's law at points: the projection, its residual, and the bound on the energy error."""
+"""Coulomb's law at points: the projection and the residual."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,6 @@ POINTS = 4
 NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)
 VECTORS = arrays(float, (2, 1, POINTS), elements=NUMBER)
 BOUNDS = arrays(float, POINTS, elements=st.floats(1e-3, 2.0))
-SEEDS = st.integers(0, 2**32 - 1)
 
 
 def size(q):
@@ -27,7 +26,7 @@ def test_projection_is_the_nearest_point_of_the_disc(q, bound):
     assert np.all(size(nearest) <= bound * (1 + 1e-15))
     inside = size(q) <= bound
     assert np.array_equal(nearest[:, inside], q[:, inside])
-    # the disc lies behind the plane through the nearest point, across the way to it
+    # the disc is on one side of the tangent plane at the nearest point
     for angle in np.linspace(0, 2 * np.pi, 12, endpoint=False):
         other = bound * np.array([np.cos(angle), np.sin(angle)])[:, None, None]
         assert np.all(((q - nearest) * (other - nearest)).sum(axis=0) <= 1e-13)
@@ -46,42 +45,14 @@ def test_zero_bound_and_zero_traction():
     zero = np.zeros((2, 1))
     assert np.array_equal(project(zero, np.zeros(1)), zero)
     assert np.array_equal(project(zero + 1.0, np.zeros(1)), zero)
-    assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # of nothing, any share will do
-
-
-@st.composite
-def solutions(draw):
-    """(q, slip, bound, scale, weight) that obey Coulomb's law by construction."""
-    bound, scale = draw(BOUNDS), draw(BOUNDS)
-    weight = draw(BOUNDS)
-    angle = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 6.3)))
-    share = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 1.0)))
-    speed = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 2.0)))
-    slips = draw(arrays(bool, (1, POINTS)))
-    unit = np.stack([np.cos(angle), np.sin(angle)])
-    return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
-
-
-@pytest.mark.slow
-@settings(deadline=None)
-@given(solutions())
-def test_residual_vanishes_for_solutions(solution):
-    q, slip, bound, scale, weight = solution
-    assert coulomb_residual(q, slip, bound, weight, scale) <= 1e-14
-
-
-def test_residual_is_exactly_zero_where_no_rounding_enters():
-    q = np.array([[[0.5, 1.0, 0.0, -0.25]], [[0.25, 0.0, -2.0, 0.0]]])
-    slip = np.array([[[0.0, 3.0, 0.0, -2.0]], [[0.0, 0.0, -0.5, 0.0]]])
-    bound, ones = np.array([1.0, 1.0, 2.0, 0.25]), np.ones(4)
-    assert coulomb_residual(q, slip, bound, ones, ones) == 0.0
+    assert 0.0 <= shrink(0.0, 0.0, 0.0) <= 1.0  # any factor is correct for a traction of 0
 
 
 @pytest.mark.parametrize(
     ("q", "slip", "expected"),
     [
         ((0.5, 0.0), (0.2, 0.0), 0.2),  # slips below the bound
-        ((0.5, 0.0), (4.0, 0.0), 0.5),  # ... far enough to reach it
+        ((0.5, 0.0), (4.0, 0.0), 0.5),  # slips far enough to reach the bound
         ((1.0, 0.0), (-0.3, 0.0), 0.3),  # slips backwards
         ((1.0, 0.0), (0.0, 1.0), np.hypot(1 - 0.5**0.5, 0.5**0.5)),  # slips across
         ((2.0, 0.0), (0.0, 0.0), 1.0),  # beyond the bound

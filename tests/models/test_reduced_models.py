@@ -1,4 +1,4 @@
-"""The models that leave something out, against what they must still get right."""
+"""The reduced models against the results that they reproduce exactly or approximately."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,8 @@ def straight(displacements):
 
 @pytest.mark.parametrize("u", [0.1, 0.4, 0.75, 0.99, 1.5])
 def test_springs_in_a_row_load_like_the_half_space(u):
-    """Cattaneo and Mindlin, with an error of second order in the springs."""
+    """The force is that of Cattaneo and Mindlin, with an error of second order in the number of
+    springs."""
     for cells in (16, 64):
         contact = mdr_contact(cells)
         march = contact.march(straight([0.0, u]), np.zeros((2, 1, cells)), 1e-13)
@@ -48,17 +49,17 @@ def test_springs_in_a_row_unload_by_masings_rule():
 
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_static_limit_of_springs_in_a_row(amplitude):
-    """Each spring keeps sqrt(bound^2 - (G* y)^2) for the forward direction."""
+    """The forward force of each spring is sqrt(bound^2 - (G* y)^2)."""
     found = microslip.solve("transverse", 0.0, amplitude, model="mdr")
     stick = np.sqrt(1.0 - amplitude)
     expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
     assert found.converged
     assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
-    assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # not the half-space's
+    assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # another limit
 
 
 def test_springs_in_a_row_come_close_to_the_rings():
-    """What they leave out is worth some percent of the friction, and shrinks with fast sliding."""
+    """The neglected interaction is a few percent of friction, and less at high velocity."""
     apart = []
     for velocity in (0.03, 0.3, 3.0):
         rows, rings = (
@@ -75,7 +76,7 @@ def test_a_bristle_loads_exponentially():
     )
     expected = 1.0 - np.exp(-HERTZ.stiffness * np.array([0.0, 0.2, 0.7]))
     assert march.forces[:, 1] == pytest.approx(expected, rel=1e-13)
-    # the same stiffness at first as the half-space
+    # the initial stiffness is that of the half-space
     slope = (hertz.mindlin_force(1e-6) - hertz.mindlin_force(0.0)) / 1e-6
     assert slope == pytest.approx(HERTZ.stiffness, rel=1e-5)
 

@@ -1,4 +1,4 @@
-"""Compiled marches against the plain one, on rings, angular points and squares."""
+"""Compiled marches against a plain reference march, for rings, angular points and squares."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ VELOCITY, AMPLITUDE = 0.3, 0.8
 
 
 def plain_parts(contact, motion, poisson):
-    """Matrix of a contact, and the displacement of its points, as the reference takes them."""
+    """Matrix of a contact, and displacement of its points, for the reference march."""
     shape = forward_slip(contact).shape
     units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
     matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
@@ -47,7 +47,7 @@ def test_a_march_is_the_plain_one(name, integrator):
     found = contact.march(path, start, 1e-13)
     assert found.state == pytest.approx(expected[-1], abs=1e-9)
     sums = (contact.weight * expected).sum(axis=(2, 3))
-    kept = [0] if name.startswith("angular") else [0, 1]  # half a disc knows one of them
+    kept = [0] if name.startswith("angular") else [0, 1]  # by symmetry
     assert found.forces[:, kept] == pytest.approx(sums[:, kept], abs=1e-9)
 
 

@@ -1,12 +1,12 @@
-"""Squares that stand for their images against all of them, and where they are not enough."""
+"""Symmetric parts of the squares against all squares, and when a symmetry is used."""
 
 import numpy as np
 import pytest
 from models.test_squares import direct_sum
 
 from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forward_slip
+from microslip.models.driven_body import Body
 from microslip.models.path import make_path
-from microslip.models.pull import Body
 from microslip.models.registry import MODELS
 from microslip.models.side_by_side import SideBySide
 from microslip.models.squares import contact as squares_contact
@@ -24,7 +24,7 @@ from microslip.solver.static_run import simulate_static
 ELLIPSE = "ellipse:ratio=0.6"
 LOOP = "elliptic:forward=0.6,lateral=1,phase=70"
 TOLERANCE = 1e-13
-"""Of steps: what differs by more than a thousand of them differs."""
+"""Tolerance of steps.  Results are equal if they differ by less than 1000 times as much."""
 
 KINDS = {
     "quarter": (4, TURN, 0.0),
@@ -32,7 +32,7 @@ KINDS = {
     "mirror image": (2, MIRROR, 0.3),
     "mirror image at nu = 0": (2, MIRROR, 0.0),
 }
-"""Squares that one stands for, the symmetry of the motion, and Poisson's ratio."""
+"""Number of images of a square, symmetry of the motion, and Poisson's ratio."""
 MOTIONS = {
     "quarter": ("transverse", "longitudinal", LOOP),
     "half turn": ("transverse", "longitudinal", LOOP),
@@ -64,7 +64,7 @@ def some_state(kind, cells, rng):
 
 
 def both(kind, cells, pressure=HERTZ):
-    """All the squares, and those that stand for them."""
+    """The contact with all squares, and the contact with a symmetric part of them."""
     images, symmetry, nu = KINDS[kind]
     fewer = CartesianContact(cells, nu, pressure, symmetry)
     assert fewer.images == images and fewer.bound.size * images == cells**2
@@ -81,8 +81,8 @@ def path_of(name, nu, steps=12, velocity=0.1):
 @pytest.mark.parametrize("cells", [2, 4, 6, 8, 10, 12, 14, 18])
 @pytest.mark.parametrize("kind", KINDS)
 def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
-    """Padded to 1, 3, 6, 8, 9, 12, 16 and 18, of a half to 3, 8, 12, 16, 24, 27 and 36, so that
-    every kind of butterfly is in it, and odd lengths."""
+    """Padded lengths are 1, 3, 6, 8, 9, 12, 16 and 18 for a quarter, and 3, 8, 12, 16, 24, 27 and
+    36 for a half.  They include all kinds of butterflies and odd lengths."""
     images, symmetry, nu = KINDS[kind]
     operator = square_convolution(cells, nu, images=images, symmetry=symmetry)[0]
     state = some_state(kind, cells, rng)
@@ -90,7 +90,7 @@ def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
     scratch = workspace(operator)
     convolve(operator, scratch, state, out)
     assert whole(kind, out) == pytest.approx(direct_sum(cells, nu, whole(kind, state)), abs=1e-13)
-    for part in scratch:  # what is left from other tractions does not show
+    for part in scratch:  # old values in the scratch arrays have no effect
         part[:] = rng.normal(size=part.shape)
     convolve(operator, scratch, state, again)
     assert np.array_equal(again, out)
@@ -99,17 +99,17 @@ def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
 @pytest.mark.parametrize("cells", [4, 8, 12])
 @pytest.mark.parametrize("kind", KINDS)
 def test_largest_eigenvalue_of_such_fields_is_bounded_closely(kind, cells):
-    _, contact = both(kind, cells)
-    shape = (2, *contact.bound.shape)
-    units = np.eye(np.prod(shape)).reshape(-1, *shape)
-    matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
-    largest = np.linalg.eigvalsh(matrix)[-1]
-    assert largest < contact.largest < 2.5 * largest
+    for contact in both(kind, cells):
+        shape = (2, *contact.bound.shape)
+        units = np.eye(np.prod(shape)).reshape(-1, *shape)
+        matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
+        largest = np.linalg.eigvalsh(matrix)[-1]
+        assert largest < contact.largest < 2.5 * largest
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_squares_count_for_their_images(kind, rng):
-    """Areas, loads, forces, energies and mirror images; in no more room."""
+    """Areas, loads, forces, energies and mirror images are those of all squares."""
     every, fewer = both(kind, 8, pressure_named(ELLIPSE))
     state = some_state(kind, 8, rng)
     full = whole(kind, state)
@@ -146,7 +146,7 @@ def test_a_march_is_that_of_all_squares(kind, motion, pressure):
 def test_a_pulled_march_is_that_of_all_squares(kind):
     path, body = path_of(MOTIONS[kind][0], KINDS[kind][2], steps=8), Body(0.4, 0.0, 0.3, 0.0)
     one, other = (
-        contact.pulled_march(path, forward_slip(contact), TOLERANCE, body, np.zeros(2))
+        contact.march(path, forward_slip(contact), TOLERANCE, body=body)
         for contact in both(kind, 8)
     )
     assert np.ptp(one.body[:, 0]) > 0.1
@@ -191,7 +191,7 @@ def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, 
 
 
 def images_of(motion, nu, cells=8, pressure="hertz"):
-    """Squares that one stands for in what the registry builds."""
+    """Number of images of the contact that the registry builds."""
     contact = MODELS["cartesian"].build(
         Problem(
             motion_named(motion),
@@ -229,13 +229,13 @@ PLACES = {
     ((0, 3), (7, 4)): {(TURN, 0.0): 2, (MIRROR, 0.3): 1},
     ((1, 3), (1, 4), (6, 3), (6, 4)): {(TURN, 0.0): 4, (MIRROR, 0.0): 2},
 }
-"""Squares with more load than their images, and what one square may stand for then."""
+"""Squares with more load than their images -> number of images for each motion."""
 
 
 @pytest.mark.parametrize("places", PLACES)
 @pytest.mark.parametrize("more", [1e-8, 0.5])
 def test_the_pressure_has_a_say(places, more):
-    """... unless what it says is rounding."""
+    """A difference between loads removes a symmetry, unless it is a rounding error."""
 
     def contact_of(more, symmetry, nu):
         class Uneven(Hertz):
@@ -252,7 +252,7 @@ def test_the_pressure_has_a_say(places, more):
 
 
 def test_the_mean_of_the_images_is_taken():
-    """Of arithmetic progressions along both axes: 4 i + j."""
+    """The loads are 4 i + j."""
     loads = np.arange(16.0).reshape(4, 4)
     mean = squares_contact._mean_of_images
     assert np.array_equal(mean(loads, 4, TURN), np.full((2, 2), 7.5))

@@ -1,4 +1,4 @@
-"""Angular points of a whole disc: the same operator and marches as of its halves."""
+"""Angular points of the whole disc: operator and marches are those of half of the disc."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def whole(nu, focus=None):
 
 
 def turned(field, places):
-    """A field turned about the centre by some angles between points."""
+    """Rotate a field about the centre by a number of angular points."""
     forward, lateral = np.roll(field, places, axis=1)
     angle = places * np.pi / ANGLES
     return np.stack(
@@ -33,7 +33,7 @@ def turned(field, places):
 
 
 def smooth(contact, rng):
-    """Random tractions without the shortest waves, of which points know one of two."""
+    """Random tractions without the shortest waves, whose cosine vanishes at the points."""
     theta = (np.arange(2 * ANGLES) + 0.5)[:, None] * np.pi / ANGLES
     waves = [wave(m * theta) for m in range(ANGLES - 1) for wave in (np.cos, np.sin)]
     return sum(rng.normal(size=(2, 1, RINGS)) * wave for wave in waves)
@@ -41,7 +41,7 @@ def smooth(contact, rng):
 
 @pytest.mark.parametrize("nu", RATIOS)
 def test_the_operator_knows_no_direction(nu, rng):
-    """A round contact of an isotropic body: what is turned moves as much, and turned."""
+    """The displacement under rotated tractions is the rotated displacement."""
     contact = whole(nu)
     field = smooth(contact, rng)
     for places in (1, 2, 5):
@@ -88,7 +88,7 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
         contact.march(path, np.zeros((2, *contact.forward_position.shape)), 1e-9)
         for contact in (half, disc)
     ]
-    # at nu > 0 the shortest wave of a translation has a cosine on half of the disc alone
+    # at nu > 0 the cosine of the shortest wave of a translation exists on half of the disc only
     allowed = 2e-6 if rotates or nu == 0.0 else 1e-4
     assert marches[1].state[:, :ANGLES] == pytest.approx(marches[0].state, abs=allowed)
     assert marches[1].forces == pytest.approx(marches[0].forces, abs=allowed)
@@ -96,7 +96,7 @@ def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates)
 
 
 def test_forces_are_sums_over_the_disc():
-    """Uniform slip across: no forward force, the whole bound across, and no torque."""
+    """Uniform lateral slip has no forward force, the lateral force 1, and no torque."""
     disc = whole(0.3)
     path = make_path(
         lambda phase: (0.0 * phase, 50.0 * phase, 0.0 * phase), np.linspace(0.0, 1.0, 3), SDIRK2

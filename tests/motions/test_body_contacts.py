@@ -1,4 +1,4 @@
-"""The contacts of a body as a text says them."""
+"""The text form of the contacts of a body."""
 
 import pytest
 

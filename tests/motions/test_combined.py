@@ -1,4 +1,4 @@
-"""Sideways and rotation at once: its parts alone, symmetry, and the static limit."""
+"""The transverse-bore motion: special cases, symmetry and static limit."""
 
 import numpy as np
 import pytest
@@ -30,19 +30,19 @@ def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
 @pytest.mark.slow
 @pytest.mark.parametrize("phase", [0.0, 90.0])
 def test_a_small_part_changes_little(phase):
-    """A disc that knows no symmetry, next to rings that do."""
+    """The whole disc without symmetry is compared with rings."""
     one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
     other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
     assert other.model == "polar"
-    # the edge of the contact moves by no more than the angle, and friction by no more than that
+    # the displacement of the edge changes by at most the angle, and friction by at most that
     allowed = float(hertz.bore_angle(0.006)) + one.mu_macro_error + other.mu_macro_error
     assert abs(one.mu_macro - other.mu_macro) <= allowed
 
 
 @pytest.mark.slow
 def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
-    """lateral -> -lateral at the same rotation is a mirror image across the forward axis, with the
-    motion forward reversed; friction resists the same."""
+    """Reversing the lateral motion at the same rotation is a mirror image with reversed sliding
+    direction; friction does not change."""
     both = [
         microslip.solve(f"transverse-bore:phase={phase}", 0.1, 0.5, tolerance=5e-3)
         for phase in (30, 210)
@@ -60,14 +60,14 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
 
 @pytest.mark.long
 def test_the_static_limit_is_approached_by_marches():
-    """All on the same few squares and steps, whose errors are the same in limit and marches."""
+    """Limit and marches use the same squares and steps, so that their errors are equal."""
     motion, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
     limit = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
     runs = [
         simulate(Problem(motion, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
     ]
     above = [run.mu for run in runs]
-    # differences shrink like v^(2/3): an eighth of the velocity leaves a quarter of them
+    # the excess is proportional to v^(2/3): at 1/8 of the velocity it is 1/4
     guess = above[1] - (above[0] - above[1]) / 3.0
     assert limit.converged and runs[0].converged and runs[1].converged
     assert limit.mu < above[1] < above[0]
@@ -110,8 +110,8 @@ def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amp
 
 @pytest.mark.long
 def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
-    """Without its rotation it is the load with a lateral motion, and without the lateral motion the
-    load with a rotation, both of which know half of the disc."""
+    """With almost no rotation, or almost no lateral motion, friction on the whole disc is that on
+    half of the disc."""
     for parts, rest in (
         ("lateral=1,angle=0.001", "lateral=1"),
         ("lateral=0.001,angle=1", "angle=1"),
@@ -125,5 +125,7 @@ def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
 
 
 def test_a_rigid_contact_that_knows_half_of_itself_says_so():
-    with pytest.raises(ValueError, match="half of the contact does not tell the other half"):
+    with pytest.raises(
+        ValueError, match="it needs a symmetry between the two halves of the contact"
+    ):
         microslip.solve("transverse-bore", 0.1, 0.5, model="rigid")

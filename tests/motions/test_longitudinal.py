@@ -1,4 +1,4 @@
-"""Oscillation along the direction of sliding: closed form, rings, springs and squares agree."""
+"""The longitudinal motion: closed form, rings, springs and squares agree."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ POINTS = [
 
 
 def slowly(velocity, amplitude):
-    """The same force by adaptive quadrature, branch by branch."""
+    """Mean friction by adaptive quadrature over the branches of the force."""
 
     def way(t):
         return velocity * t + amplitude * np.sin(t)
@@ -74,7 +74,7 @@ def test_the_closed_form_is_taken_where_it_holds():
 
 @pytest.mark.slow
 def test_nu_changes_little_and_keeps_the_order():
-    """Motion along one line knows of nu only through the shape of the stick zone."""
+    """For motion along one line, nu changes the shape of the stick zone only."""
     answer = microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3)
     assert answer.converged
     assert answer.mu_macro == pytest.approx(longitudinal(0.1, 0.5), abs=0.02)
@@ -86,7 +86,7 @@ def test_limits():
     assert slow == pytest.approx(paper.static_limit_longitudinal(amplitude), abs=1e-6)
     assert longitudinal(0.0, amplitude) == pytest.approx(slow, abs=1e-6)
     assert longitudinal([1.0, 3.0], [1.0, 0.5]).tolist() == [1.0, 1.0]
-    # Large amplitudes: a block that feels +1 or -1 only (Coulomb).
+    # at large amplitudes the force of a rigid block is +1 or -1
     rigid = 2.0 / np.pi * np.arcsin(0.3)
     assert longitudinal(0.3 * 1e5, 1e5) == pytest.approx(rigid, abs=1e-4)
 
@@ -97,14 +97,14 @@ def test_limits():
 def test_the_rigid_contact_and_the_elastic_slider_have_closed_forms_of_their_own(
     velocity, amplitude
 ):
-    """Slip to and fro by the share of the time; one spring, straight up to u_lim, with Masing's
-    memory."""
+    """The rigid contact slips forward for a known share of the time; the slider is a linear spring
+    up to u_lim with Masing's rule."""
     rigid = microslip.solve("longitudinal", velocity, amplitude, model="rigid", tolerance=1e-4)
     exact = 2.0 / np.pi * np.arcsin(min(velocity / amplitude, 1.0))
     assert abs(rigid.mu_macro - exact) <= rigid.mu_macro_error + 1e-9
     slider = microslip.solve("longitudinal", velocity, amplitude, model="slider", tolerance=1e-4)
     exact = longitudinal(velocity, amplitude, lambda way: np.minimum(way, 1.0))
-    # the corner of its curve lies within a panel of the quadrature
+    # the kink of its loading curve is inside a panel of the quadrature
     assert abs(slider.mu_macro - exact) <= slider.mu_macro_error + 1e-4
     assert longitudinal(1e-9, 0.3, lambda way: np.minimum(way, 1.0)) == pytest.approx(0.7, abs=1e-3)
 
@@ -134,20 +134,3 @@ def test_a_period_from_inside():
     assert mean == pytest.approx(longitudinal(0.1, 0.7), abs=2e-3)
     assert np.abs(found.traction_lateral).max() < 1e-6
     assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.1 * 2 * np.pi, rel=1e-3)
-
-
-@pytest.mark.long
-def test_a_real_contact():
-    ball = {
-        "material": "steel",
-        "counterbody": "steel",
-        "radius": "5 mm",
-        "load": "10 N",
-        "mu": 0.3,
-    }
-    ball |= {"speed": "10 mm/s", "frequency": "20 kHz", "tolerance": 3e-3}
-    found = microslip.predict("longitudinal", **ball, amplitude="0.2 um")
-    expected = longitudinal(found.velocity, found.amplitude)
-    assert found.mu_macro == pytest.approx(expected, abs=found.mu_macro_error)
-    half = microslip.predict("longitudinal", **ball, reduction="50 %")
-    assert half.mu_macro == pytest.approx(0.5, abs=2e-3)

@@ -1,4 +1,5 @@
-"""Motions: what their displacement promises, and the zigzag against closed forms."""
+"""Motions: symmetry of the displacement, the zigzag against closed forms, and user-defined
+files."""
 
 import json
 import math
@@ -35,7 +36,7 @@ PHASE = np.linspace(-3.0, 3.0, 101)
 
 @pytest.mark.parametrize("name", MIRRORED, ids=lambda name: name.name)
 def test_half_a_period_later_a_motion_is_its_own_mirror_image(name):
-    """... moved on forward: the search for the periodic state stands on it."""
+    """The search for the periodic state relies on this symmetry, up to the drift."""
     motion = Problem(name, 0.3, 0.7, 0.2)
     now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
     moved = np.pi * motion.drift
@@ -67,12 +68,12 @@ def test_a_rigid_zigzag_keeps_the_direction_of_its_slip(velocity, amplitude):
     speed = 2.0 * amplitude / np.pi
     rigid = microslip.solve("zigzag", velocity, amplitude, model="rigid", tolerance=1e-2)
     exact = velocity / np.hypot(velocity, speed)
-    # at the turning points themselves the direction flips within a step
+    # at the turning points the direction changes within a step
     assert rigid.mu_macro == pytest.approx(exact, abs=rigid.mu_macro_error + 1e-3)
 
 
 def test_an_elastic_zigzag_tends_to_the_rigid_one_at_large_amplitude():
-    """The elastic turn costs a way of the order of u_lim, of a stroke of 2 y0."""
+    """The elastic turn takes a displacement of about u_lim out of a stroke of 2 y0."""
     exact = 0.5 / np.hypot(0.5, 200.0 / np.pi)
     answer = microslip.solve("zigzag", 0.5, 100.0)
     assert answer.converged
@@ -81,7 +82,7 @@ def test_an_elastic_zigzag_tends_to_the_rigid_one_at_large_amplitude():
 
 
 def test_the_static_limit_knows_the_turning_points_alone():
-    """So it is that of the sine, for which it is known in closed form."""
+    """The static limit of the zigzag is that of the sine, which is known in closed form."""
     resolution = Resolution(64, 1, 0)
     one, other = (
         simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
@@ -120,7 +121,7 @@ class SineCubed(Transverse):
 
 @pytest.fixture
 def cube(tmp_path):
-    """A motion in one file of one's own; what it changes in the registry is undone."""
+    """A user-defined motion in a file; the registry is restored afterwards."""
     known, path = dict(by_name.MOTIONS), list(motions.__path__)
     (tmp_path / "sine_cubed.py").write_text(CUBE)
     by_name.find(tmp_path)
@@ -132,8 +133,8 @@ def cube(tmp_path):
 
 
 def test_a_motion_is_one_file(cube, capsys):
-    """It is solved with a certificate by every name that it needs, and turns where others do: its
-    static limit is theirs."""
+    """The motion of a file is solved like others, and has the static limit of the transverse
+    motion."""
     arguments = ["point", cube, "--velocity", "0.1", "--amplitude", "0.5", "--json"]
     assert main(arguments) == 0
     answer = json.loads(capsys.readouterr().out)
@@ -216,7 +217,7 @@ def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypat
 
 @pytest.mark.long
 def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
-    """Their sources count for no result, and digests are computed all the same."""
+    """Broken files do not change the digest of a result."""
     package = Path(microslip.__file__).parent
     without = shutil.ignore_patterns("__pycache__")
     shutil.copytree(package, tmp_path / "microslip", ignore=without)

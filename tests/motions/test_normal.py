@@ -1,12 +1,9 @@
-"""The normal load oscillates: against springs marched one by one, closed forms and limits."""
-
-import json
+"""Oscillating normal load: independent springs, closed forms and limits."""
 
 import numpy as np
 import pytest
 
 import microslip
-from microslip.app import cli
 from microslip.contacts.coulomb import project
 from microslip.models import varying_load
 from microslip.models.contact import energy_norm
@@ -43,10 +40,8 @@ ASIDE = [
 
 
 def marched_springs(motion, velocity, amplitude, count, periods=8):
-    """Springs with friction one by one, each stretched and let go in small steps of time.
-
-    What a spring at x can hold is the overlap with the flat, d - x^2; mean force over mean load.
-    """
+    """Mean force over mean load of independent springs with friction, marched in small steps.  The
+    friction bound of the spring at x is d - x^2, the overlap with the flat."""
     motion = motion_named(motion)
     widest = np.sqrt(motion.deepest(amplitude, HERTZ))
     edges = widest * np.sqrt(np.linspace(0.0, 1.0, count + 1))
@@ -74,7 +69,7 @@ def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
     exact = motion_named(motion).closed_form(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
-    assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
+    assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # their error is of first order
 
 
 @pytest.mark.parametrize("model", ["mdr", "radial"])
@@ -91,7 +86,7 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
 @pytest.mark.slow
 @pytest.mark.parametrize("place", ALONG, ids=str)
 def test_rings_agree_with_springs_along_one_line(place):
-    """Springs are exact there, with both the load and the motion in the plane oscillating."""
+    """Springs are exact for motion along one line, also under an oscillating load."""
     coarse, fine = (marched_springs(*place, count) for count in (100, 200))
     for model in ("mdr", "radial"):
         answer = microslip.solve(*place, model=model)
@@ -140,8 +135,8 @@ def test_the_parts_of_a_contact_carry_its_load(carried):
 
 @pytest.mark.parametrize("build", [RadialContact.resolved, mdr_contact])
 def test_a_contact_that_grows_keeps_load_and_stiffness(build):
-    """At the reference depth it is as it was; at another the load is Hertz's, and so is the
-    stiffness of all rings together, 2 G* times the radius."""
+    """At the reference depth the bounds do not change.  At another depth, load and stiffness (2 G*
+    times the radius) are those of Hertz."""
     contact = build(12, 0.6)
     same = contact.at_indentation(1.0, 1.0)
     assert same.bound == pytest.approx(contact.bound, rel=1e-9)
@@ -154,7 +149,7 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(build):
 
 
 def test_contact_that_is_lost_forgets():
-    """After a moment without contact it does not matter how a march began."""
+    """After a moment without contact, the state does not depend on the start of the march."""
     name = motion_named("normal:lateral=0.7,phase=40")
     motion = Problem(name, 0.2, 1.3, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 32))
@@ -188,7 +183,8 @@ def test_every_stage_keeps_within_the_bound_of_its_time(name, velocity):
 
 @pytest.mark.parametrize("place", [*ALONG, *ASIDE], ids=str)
 def test_work_is_dissipated(place):
-    """The motion's work is what is stored, what friction takes and what Euler steps lose."""
+    """The work of the motion is the sum of stored energy, dissipation and the numerical loss of
+    Euler steps."""
     name, velocity, amplitude = place
     motion = Problem(motion_named(name), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
@@ -213,7 +209,7 @@ def test_work_is_dissipated(place):
 
 
 def test_slow_sliding_tends_to_the_least_load():
-    """The whole contact waits for the moment at which it is pressed the least."""
+    """An infinitely slow contact slips at the moment of the smallest load only."""
     for motion, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
         mean = motion_named(motion).mean_load(0.6, HERTZ)
         exact = 0.4**power / mean
@@ -244,14 +240,16 @@ def test_without_vibration_friction_is_that_of_coulomb():
 
 
 def test_a_small_change_of_the_load_is_one_of_the_indentation():
-    """Load goes like the power 3/2 of the indentation, so that small shares differ by that."""
+    """The load is proportional to the power 3/2 of the indentation, so that a small relative change
+    of load is 3/2 of that of indentation."""
     load = 1.0 - motion_named("normal").closed_form(1e-3, 0.015, HERTZ)
     indentation = 1.0 - motion_named("normal:indentation=1").closed_form(1e-3, 0.01, HERTZ)
     assert load == pytest.approx(indentation, rel=0.01)
 
 
 def test_a_small_normal_part_leaves_the_motion_in_the_plane():
-    """... whether it is lateral or forward."""
+    """A small oscillation of the load hardly changes friction under a lateral or forward
+    oscillation."""
     aside = microslip.solve("normal:load=0.0001,lateral=1", 0.1, 0.7)
     assert aside.mu_macro == pytest.approx(
         microslip.solve("transverse", 0.1, 0.7).mu_macro, abs=2e-3
@@ -262,7 +260,8 @@ def test_a_small_normal_part_leaves_the_motion_in_the_plane():
 
 
 def test_half_a_period_suffices_where_it_is_mirrored():
-    """Twice as fast a load over a lateral oscillation; with phases a whole period later, too."""
+    """The load oscillates with twice the frequency of the lateral oscillation; marches over whole
+    periods have the same mean."""
     name = motion_named("normal:lateral=1,normal_cycles=2")
     assert name.half_period_mirror
     assert not motion_named("normal:lateral=1").half_period_mirror
@@ -289,7 +288,8 @@ def test_friction_rises_with_velocity_and_falls_with_amplitude():
 
 
 def test_in_step_with_the_load_an_oscillation_drives_the_contact():
-    """Pressed harder on its way forward than back: friction resists less, or drives."""
+    """If the load is larger during the forward motion than during the backward motion, friction
+    decreases or propels."""
     motion = "normal:forward=1,phase={}"
     ahead, back = (microslip.solve(motion.format(p), 0.02, 0.8).mu_macro for p in (180, 0))
     assert ahead < -0.3 and back > 0.5
@@ -331,23 +331,8 @@ def test_a_method_with_another_integrator_finds_the_same():
     )
 
 
-def test_an_imposed_resolution_is_kept():
-    answer = microslip.solve("normal:lateral=1", 0.1, 0.5, cells=12, steps=64)
-    assert (answer.cells, answer.steps_per_period) == (12, 64)
-    assert answer.periodic
-    assert answer.converged is (answer.mu_macro_error <= answer.tolerance)
-
-
-def test_the_command_line_knows_it(capsys):
-    words = ["point", "normal", "--velocity", "0.1", "--amplitude", "0.5", "--json"]
-    assert cli.main(words) == 0
-    assert json.loads(capsys.readouterr().out)["model"] == "closed-form"
-    assert cli.main(["point", "normal:lateral=1,phase=90", *words[2:]]) == 0
-    assert json.loads(capsys.readouterr().out)["motion"] == "normal:lateral=1,phase=90"
-
-
 def test_a_history_follows_the_load():
-    """Sliding fast the force is the load."""
+    """The force of a fast sliding contact is proportional to the load."""
     found = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
     expected = 1.0 + 0.7 * np.sin(found.phase)
     assert found.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
@@ -379,7 +364,8 @@ def test_closed_form_springs_and_rings_agree_for_other_indenters(
 
 @pytest.mark.parametrize("exponent", [1.0, 8.0])
 def test_static_friction_of_power_laws(exponent):
-    """The load goes like the power (n + 1)/n of the depth, and the least one is what is left."""
+    """The load is proportional to the power (n + 1)/n of the depth; static friction is the smallest
+    load."""
     pressure = f"power:exponent={exponent:g}"
     by_load = microslip.solve("normal", 0.0, 0.4, pressure=pressure)
     assert by_load.mu_macro == pytest.approx(0.6, abs=1e-9)

@@ -1,7 +1,6 @@
-"""Pressures: their records against integrals, their closed forms against marches and each other."""
+"""Pressures: integrals, closed forms, marches and text forms."""
 
 import pickle
-import sys
 from dataclasses import fields
 
 import numpy as np
@@ -10,7 +9,6 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import microslip
-from microslip import pressures
 from microslip.foundation.errors import InputError
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
@@ -18,7 +16,6 @@ from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import make_rings
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
-from microslip.pressures import by_name
 from microslip.pressures.by_name import PRESSURES, pressure_named
 from microslip.pressures.ellipse import Ellipse
 from microslip.pressures.hertz import HERTZ
@@ -32,7 +29,7 @@ PLANAR = ["ellipse", "ellipse:ratio=0.3,across=1"]
 
 
 def pushed(name, model, cells, displacement, steps=40):
-    """Forward force after each share of a displacement from rest."""
+    """Forward displacements from rest, and the force after each of them."""
     contact = MODELS[model].build(
         Problem(motion_named("longitudinal"), 1.0, 1.0, 0.0, pressure_named(name)), cells, 8, None
     )
@@ -42,7 +39,7 @@ def pushed(name, model, cells, displacement, steps=40):
     return way, contact.march(path, start, 1e-9).forces[:, 0]
 
 
-# The records
+# Properties of pressures
 
 
 @pytest.mark.parametrize("name", ROUND)
@@ -96,7 +93,8 @@ def test_thin_rings_give_the_loads_of_squares_in_closed_form():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
-    """Summed up on points of a fine grid, the middle cell by its own closed form."""
+    """Displacements are sums over a fine grid, with a closed form for the influence of a cell on
+    itself."""
     pressure = pressure_named(name)
     found = []
     for n in (81, 161):
@@ -122,7 +120,7 @@ def test_the_power_2_is_a_sphere():
 
 
 def test_the_cone_is_loves():
-    """p ~ arccosh(1/r), u_lim = mu d E*/G* with F = (E*/2) d a, hence G* = 1."""
+    """p ~ arccosh(1/r); u_lim = mu d E*/G* and F = (E*/2) d a give G* = 1."""
     cone, r = pressure_named("power:exponent=1"), np.array([0.01, 0.3, 0.9])
     assert cone.G_star == pytest.approx(1.0, rel=1e-12)
     assert cone.bound(r) == pytest.approx(np.arccosh(1.0 / r) / np.pi, rel=1e-12)
@@ -130,7 +128,8 @@ def test_the_cone_is_loves():
 
 @pytest.mark.parametrize("name", [*INDENTERS, *EXTREME])
 def test_the_record_of_an_indenter_keeps_what_closed_forms_claim(name):
-    """Their error is 1e-8; the whole load and that of smaller contacts are known."""
+    """The loads of the contact and of smaller contacts are known; closed forms have an error of
+    1e-8."""
     pressure, depth = pressure_named(name), np.array([0.2, 0.7, 1.0])
     radius = pressure.radius(depth)
     below = [quad(lambda x: float(pressure.depth(x)), 0.0, c, epsabs=1e-13)[0] for c in radius]
@@ -160,7 +159,7 @@ def test_the_radius_is_the_inverse_of_the_depth(name):
     assert pressure.stick_radius(1.0) == 0.0
 
 
-# What marches make of them
+# Marches under each pressure
 
 
 @pytest.mark.parametrize("name", ["hertz", *INDENTERS])
@@ -243,7 +242,7 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
     assert abs(found.mu_torque - exact.mu_torque) <= found.torque.error + 1e-3
 
 
-# One model against the next
+# Models against each other
 
 
 @pytest.mark.slow
@@ -276,19 +275,10 @@ def test_an_ellipse_of_ratio_1_is_a_sphere(motion, velocity, amplitude, poisson)
     assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
 
 
-def test_the_power_2_is_a_sphere_in_motion():
-    for motion, model in (("transverse", "radial"), ("bore", "polar")):
-        one, other = (
-            microslip.solve(motion, 0.2, 0.7, pressure=name, tolerance=5e-3)
-            for name in ("hertz", "power")
-        )
-        assert one.model == other.model == model
-        assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
-
-
 @pytest.mark.long
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
-    """Directions of traction and places of points meet nowhere but in nu and in rotation."""
+    """The direction of traction matters for the influence of points only at nu > 0 or with a
+    rotation."""
     settings = {"tolerance": 5e-3}
 
     def both(motion, velocity, amplitude, poisson):
@@ -356,77 +346,8 @@ def test_a_text_is_written_back_without_numbers_that_are_usual(name):
     assert pressure_named(name) is pressure_named(name)
 
 
-BLUNT = '''"""Between a sphere and an end that is flatter: depth (1 - w) c^2 + w c^4."""
-
-from dataclasses import dataclass
-
-import numpy as np
-
-from microslip.foundation import spec
-from microslip.pressures.axisymmetric_indenter import Indenter
-
-
-@dataclass(frozen=True)
-class Blunt(Indenter):
-    """A blunt sphere."""
-
-    share: float = 0.5
-
-    summary = "a blunt sphere"
-
-    def __post_init__(self):
-        spec.refuse_outside(self.name, "pressure", "share", self.share, (0.0, 1.0))
-
-    def depth(self, c):
-        return (1.0 - self.share) * c**2 + self.share * c**4
-
-    def slope(self, c):
-        return 2.0 * (1.0 - self.share) * c + 4.0 * self.share * c**3
-
-    def radius(self, depth):
-        half = 0.5 * (1.0 - self.share)
-        return np.sqrt((np.sqrt(half**2 + self.share * np.maximum(depth, 0.0)) - half) / self.share)
-'''
-
-
-@pytest.fixture
-def blunt(tmp_path):
-    """A pressure in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(PRESSURES), list(pressures.__path__)
-    (tmp_path / "blunt.py").write_text(BLUNT)
-    by_name.find(tmp_path)
-    yield "blunt:share=0.4"
-    PRESSURES.clear()
-    PRESSURES.update(known)
-    pressures.__path__[:] = path
-    del sys.modules["microslip.pressures.blunt"]
-
-
-def test_a_pressure_is_one_file(blunt):
-    """Closed forms, rings and springs take it from its record."""
-    assert pressure_named(blunt).G_star == pytest.approx(0.5 / (1.0 - 0.6 / 3.0 - 0.4 / 5.0))
-    exact = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt)
-    rings = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="radial")
-    springs = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="mdr")
-    assert exact.model == "closed-form"
-    for found in (rings, springs):
-        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-8
-
-
-def test_a_broken_file_is_an_error_of_its_pressure_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr(by_name, "BROKEN", dict(getattr(by_name, "BROKEN", {})))
-    monkeypatch.setattr(pressures, "__path__", list(pressures.__path__))
-    file = tmp_path / "unfinished.py"
-    file.write_text("import no_such_package")
-    by_name.find(tmp_path)
-    with pytest.raises(microslip.InputError, match="No module named 'no_such_package'") as caught:
-        microslip.solve("longitudinal", 0.1, 0.5, pressure="unfinished:share=1")
-    assert caught.value.argument == "pressure" and str(file) in str(caught.value)
-    assert microslip.solve("longitudinal", 0.1, 0.5, pressure="power:exponent=1").converged
-
-
 def test_an_array_is_read_as_the_pressure_that_it_samples():
-    """An elliptic Hertz contact on cells: its shear stiffness is that of the closed form."""
+    """The shear stiffness of an elliptic Hertz contact on cells is that of the closed form."""
     x, y = np.linspace(-1, 1, 201), np.linspace(-0.5, 0.5, 101)
     values = np.sqrt(np.maximum(0.0, 1.0 - x[:, None] ** 2 - (y / 0.5) ** 2))
     read = Pressure.from_array(x, y, values)

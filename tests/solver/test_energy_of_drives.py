@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from microslip.models.contact import forces
+from microslip.models.driven_body import Body
 from microslip.models.path import make_path
-from microslip.models.pull import Body
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
@@ -66,7 +66,7 @@ def balance(problem, drive, model, resolution):
     vibration = pulled = slipped = damped = 0.0
     for begin, end in pairwise(phases):
         step = make_path(problem.displacement, np.array([begin, end]))
-        march = contact.pulled_march(step, q, 1e-11, body, at)
+        march = contact.march(step, q, 1e-11, body=body, start=at)
         ahead = march.body[1, 0] - march.body[0, 0]
         moved = travel_of(contact, problem, end) - travel_of(contact, problem, begin)
         moved[0] += ahead

@@ -26,17 +26,16 @@ RINGS = 5e-4
 def loose_steps(monkeypatch):
     """Contacts that solve their steps to the tolerance LOOSE only."""
 
-    def loosen(contact, name):
-        march = getattr(contact, name)
+    def loosen(contact):
+        march = contact.march
 
         def loosely(self, path, state, tolerance, *others, **settings):
             return march(self, path, state, LOOSE, *others, **settings)
 
-        monkeypatch.setattr(contact, name, loosely)
+        monkeypatch.setattr(contact, "march", loosely)
 
-    for contact in (RadialContact, PolarContact):
-        loosen(contact, "march")
-        loosen(contact, "pulled_march")
+    loosen(RadialContact)
+    loosen(PolarContact)
 
 
 def run_on_a_line(amplitude):

@@ -71,7 +71,7 @@ def refuse_drive(problem: Problem, model: str) -> None:
     if drive.force is not None and drive.force < 0.0 and not problem.propels:
         allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
         raise InputError("force", drive.force, allowed)
-    if not MODELS[model].pulled:
+    if not MODELS[model].drivable:
         raise InputError("model", model, f"supports no {pulls}, only a prescribed velocity")
     if drive.force is not None:
         if not motion.periodic:

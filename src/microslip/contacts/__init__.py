@@ -1,1 +1,1 @@
-"""Discretised contacts, the Coulomb step, and the march in time that all of them share."""
+"""Compiled Coulomb step and march in time, which all discretised contacts share."""

@@ -1,13 +1,13 @@
-"""The Coulomb step at a point: projection on the friction disc and what is left to be solved.
+"""Coulomb's law at points: projection on the friction disc, and the residual of a Coulomb step.
 
-One time step asks for tractions q with slip s = b - A q (b: the displacement that the rigid motion
-and the history impose, A: the influence operator) such that |q| <= g everywhere, slip occurs only
-where |q| = g, and there q is parallel to s and along it.  That is the optimality condition of a
-convex problem, so "q is a fixed point of the projected step" says all of it:
+The unknowns of a Coulomb step are tractions q with the slip s = b - A q, where A is the influence
+operator and b the displacement imposed by the rigid motion and the history.  They satisfy |q| <= g
+everywhere; slip occurs only where |q| = g, in the direction of q.  This is the optimality condition
+of a convex problem, and is equivalent to the fixed point
 
     q = P_g(q + s / d)      for any d > 0;  P_g projects on the disc |q| <= g.
 
-Kernels on floats and flat arrays, dimensionless; no knowledge of grids, motion or time.
+All quantities are dimensionless.
 """
 
 from __future__ import annotations
@@ -19,14 +19,17 @@ from microslip.foundation.compiled import kernel
 
 @kernel(inline="always")
 def shrink(forward: float, lateral: float, bound: float) -> float:
-    """Factor in 0..1 that brings the traction (forward, lateral) onto the disc |q| <= bound."""
+    """Factor in 0..1 that projects the traction (forward, lateral) on the disc |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
-    return min(1.0, bound / max(size, 1e-300))  # no branch: the compiler can vectorise it
+    return min(
+        1.0, bound / max(size, 1e-300)
+    )  # without a branch, so that the compiler can vectorise it
 
 
 @kernel(inline="always")
 def extended(start: float, stage: float, end: float) -> float:
-    """Value at the end of a step, given that at its start and that at its share `end`."""
+    """Value at the end of a step, extrapolated from its start and from a stage at the share
+    `end`."""
     return stage if end == 1.0 else start + (stage - start) / end
 
 
@@ -34,13 +37,16 @@ def extended(start: float, stage: float, end: float) -> float:
 def coulomb_residual(
     q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
 ) -> float:
-    """How far tractions are from Coulomb's law, as a force over mu F_z.
+    """Residual of Coulomb's law as a force over mu F_z: Sum weight |P_g(q + slip/scale) - q|.
 
-    q, slip: forward and lateral components, shape (2, n, m); bound, weight (area of a point) and
-    scale (the diagonal of the influence operator): shape (m,), the same for every n.  Returns
-    Sum weight |P_g(q + slip/scale) - q|, zero exactly for a solution.
+    Parameters
+    ----------
+    q, slip : np.ndarray, shape (2, n, m)
+        Forward and lateral components of tractions and slip.
+    bound, weight, scale : np.ndarray, shape (m,)
+        Friction bound, area of a point, and diagonal of the influence operator, equal for all n.
     """
-    rows = np.zeros(q.shape[2])  # summed ring by ring, which the compiler can vectorise
+    rows = np.zeros(q.shape[2])  # separate sums for each ring, which the compiler can vectorise
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward = q[0, j, i] + slip[0, j, i] / scale[i]
@@ -53,6 +59,6 @@ def coulomb_residual(
 
 
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Tractions shrunk onto |q| <= bound; q has shape (2, ...), bound broadcasts to q[0]."""
+    """Project tractions q (2, ...) on |q| <= bound; bound broadcasts to q[0]."""
     size = np.hypot(q[0], q[1])
     return q * np.where(size > bound, bound / np.maximum(size, 1e-300), 1.0)

@@ -1,11 +1,11 @@
-"""Spectral projected gradient for a Coulomb step, for contacts without a cheap resolvent (squares).
+"""Spectral projected gradient for a Coulomb step of contacts without a cheap resolvent (squares).
 
-Steps have Barzilai and Borwein's lengths without a line search: the comparison of energies that a
-line search needs drowns in rounding long before the tractions do.  Where the residual does not fall
-for a while, steps short enough to lower the energy take over until it does.
+Gradient steps have the lengths of Barzilai and Borwein, without a line search, because rounding
+errors of the energy are much larger than those of the tractions.  If the residual does not fall for
+a number of iterations, steps that are short enough to lower the energy are used until it falls.
 
-With a driven body a secant finds the displacement d at which its forces balance: the forward force
-does not fall with d, and rises by the stiffness of the contact at most.
+For a driven body, the secant method finds the displacement d at which its forces balance.  The
+forward force never decreases with d, and its slope is at most the stiffness of the contact.
 """
 
 from __future__ import annotations
@@ -30,16 +30,18 @@ from microslip.contacts.system import (
 from microslip.foundation.compiled import kernel
 
 MOST_ITERATIONS = 5000
+"""Largest number of iterations of a step."""
 PATIENCE = 60
-"""Calibrated by benchmarks/splitting.py."""
+"""Default of Descent.patience, calibrated by benchmarks/splitting.py."""
 SHORT_STEP_BELOW = 0.3
-"""Ratio of the two Barzilai-Borwein lengths below which the shorter one is taken (Zhou, Gao and Dai
-2006: 0.1 to 0.5)."""
+"""Ratio of the two Barzilai-Borwein lengths below which the shorter one is used; usual values are
+0.1 to 0.5 (Zhou, Gao and Dai 2006)."""
 MOST_DISPLACEMENTS = 60
+"""Largest number of trial displacements of a driven body in a step."""
 FLATTEST = 1e-3
-"""Least slope of the balance that a secant may have, over its largest."""
+"""Smallest slope of a secant over the largest possible slope."""
 INNER = 0.3
-"""Share of the tolerance that a step at a trial displacement may leave."""
+"""Residual of a step at a trial displacement, over the tolerance of the driven step."""
 
 
 class Descent(NamedTuple):
@@ -50,11 +52,11 @@ class Descent(NamedTuple):
     largest : float
         Upper bound on the eigenvalues of A.
     patience : int
-        Iterations granted to the Barzilai-Borwein steps for halving the residual.
+        Number of iterations in which Barzilai-Borwein steps must halve the residual.
     length : np.ndarray, shape (1,)
-        Length of the last gradient step, with which the next step begins; changed.
+        Length of the last gradient step, with which the next Coulomb step begins.
     sums : np.ndarray, shape (3, columns)
-        Scratch: sums column by column, which the compiler turns into vector instructions.
+        Scratch array of separate sums for each column, which the compiler can vectorise.
     """
 
     largest: float
@@ -68,7 +70,7 @@ class Descent(NamedTuple):
 
     @staticmethod
     def joined(each: Sequence[Descent], extents: np.ndarray, weight: np.ndarray) -> Descent:
-        """The solver of several equal contacts on one body, see models/side_by_side.py."""
+        """Join the solvers of several equal contacts on one body (see models/side_by_side.py)."""
         first, largest = each[0], float(extents.max())
         length, sums = first.length / largest, np.empty_like(first.sums)
         return first._replace(largest=first.largest * largest, length=length, sums=sums)
@@ -76,7 +78,7 @@ class Descent(NamedTuple):
 
 @kernel
 def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
-    """No response is known; the slope is at most the stiffness."""
+    """Fill the slope with its upper bound, the stiffness; there is no response."""
     slope[0] = system.stiffness
 
 
@@ -84,14 +86,15 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
 def descend_driven(
     system: System, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step of a driven contact from fields.y on; see step.solve_driven_step."""
+    """Solve a Coulomb step of a driven contact from the initial guess fields.y; see
+    step.solve_driven_step."""
     copy(fields.q, fields.y)
     project(fields.q, step.bound)
     steepest = balance.stiffness + balance.slope[0]
     b, place, slope = step.imposed.copy(), 0.0, steepest
     inner = Step(b, step.bound, INNER * step.tolerance)
     low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
-    iterations, left = 0, np.inf
+    iterations, unsolved = 0, np.inf
     for _ in range(MOST_DISPLACEMENTS):
         copy(b, step.imposed)
         move_forward(place, b)
@@ -100,8 +103,8 @@ def descend_driven(
             return -1, residual, place
         iterations += count
         gap = balance.load - balance.stiffness * place - forward_force(system, fields.q)
-        left = residual + abs(gap)
-        if left <= step.tolerance:
+        unsolved = residual + abs(gap)
+        if unsolved <= step.tolerance:
             break
         if gap > 0.0:
             low = max(low, place)
@@ -115,7 +118,7 @@ def descend_driven(
         if not low < place < high:
             place = 0.5 * (low + high)
     copy(fields.y, fields.q)
-    return iterations, left, place
+    return iterations, unsolved, place
 
 
 @step_solver(Descent, descend_driven, _respond)
@@ -123,7 +126,7 @@ def descend_driven(
 def descend(
     system: System, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    """Solve a Coulomb step from the initial guess fields.y; see step.solve_step."""
     copy(fields.q, fields.y)
     project(fields.q, step.bound)
     count, residual = _descend(system, step, fields)
@@ -133,7 +136,10 @@ def descend(
 
 @kernel
 def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
-    """Iterations (-1: interrupted) and residual of a step at a displacement."""
+    """Solve a step at a fixed displacement of the body.
+
+    Returns the number of iterations (-1 after an interrupt) and the residual.
+    """
     q, solver = fields.q, system.solver
     trial, elastic = fields.scratch[0], fields.scratch[1]
     copy(trial, q)
@@ -143,7 +149,7 @@ def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
         multiply(system.operators, COMPLIANCE, trial, elastic)
         dd, ds, ss = _replace(system, step, fields, trial, elastic)
         if iteration == 0:
-            length = solver.length[0]  # of the last step
+            length = solver.length[0]  # of the previous Coulomb step
         elif iteration - best_at > solver.patience or not ds > 0.0:
             length = 1.0 / solver.largest
         elif ds * ds < SHORT_STEP_BELOW * dd * ss:
@@ -165,7 +171,7 @@ def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
 def _projected_step(
     system: System, step: Step, fields: Fields, length: float, trial: np.ndarray
 ) -> float:
-    """trial = P(q + length slip); returns the residual as coulomb.coulomb_residual."""
+    """Fill trial with P(q + length slip); returns the residual, see coulomb.coulomb_residual."""
     q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
     scale, bound, weight, columns = system.scale, step.bound, system.weight, len(sums)
     sums[:] = 0.0
@@ -186,8 +192,10 @@ def _projected_step(
 def _replace(
     system: System, step: Step, fields: Fields, trial: np.ndarray, elastic: np.ndarray
 ) -> tuple[float, float, float]:
-    """q = trial, slip = b - A q; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change, weighted
-    with the areas."""
+    """Set q = trial and slip = b - A q.
+
+    Returns <dq, dq>, -<dq, ds> and <ds, ds> of the changes of q and slip, weighted with the areas.
+    """
     q, slip, sums, b, bound = fields.q, fields.slip, system.solver.sums, step.imposed, step.bound
     weight, columns = system.weight, sums.shape[1]
     sums[:] = 0.0

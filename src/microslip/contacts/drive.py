@@ -1,16 +1,17 @@
-"""A body that a force or a spring drives forward, in compiled code: one unknown more, one equation.
+"""Equation of a body that a force or a spring drives forward, for compiled code.
 
-Let x be how far the contact is ahead of its path.  A body of mass m on a dashpot c, driven by a
-spring k whose far end follows the path, or by a force P, obeys
+Let x be the displacement of the contact ahead of its path.  A body of mass m with a dashpot c,
+which a constant force or a spring k drives, obeys
 
     m x'' + c x' + k x + f = load,    f: forward force of the contact,
 
-in working units, primes for derivatives by the phase.  The integrator of the contact serves the
-body, too: with the increment d = g x' of a stage (g: its implicit part) every stage leaves
+in working units, where primes are derivatives by the phase.  The far end of the spring follows the
+path.  The integrator of the contact integrates the body as well.  With the increment d = g x' of a
+stage, where g is the implicit part of the stage, each stage adds the equation
 
     stiffness d + f(q) = load,    stiffness = k + c / g + m / g^2,
 
-next to the Coulomb step.  As f does not fall with d, the two have one solution.
+to the Coulomb step.  The solution is unique, because f never decreases with d.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ class Drive(NamedTuple):
     load : float
         Constant force, over mu F_z.
     lengths : np.ndarray, shape (steps,)
-        g of every step, in radians.
+        g of each step, in radians.
     start : np.ndarray, shape (2,)
-        x and x' at the start; ignored without mass and dashpot.
+        x and x' at the start of the path; ignored without mass and dashpot.
     """
 
     stiffness: float
@@ -47,7 +48,7 @@ class Drive(NamedTuple):
 
 @kernel
 def starting_place(drive: Drive, force: float) -> float:
-    """x at the start, where the contact carries `force`."""
+    """x at the start of the path, if the forward force of the contact is `force`."""
     if drive.mass > 0.0 or drive.damping > 0.0:
         return drive.start[0]
     return (drive.load - force) / drive.stiffness if drive.stiffness > 0.0 else 0.0
@@ -55,7 +56,10 @@ def starting_place(drive: Drive, force: float) -> float:
 
 @kernel
 def stage_balance(drive: Drive, step: int, place: float, rate: float) -> tuple[float, float]:
-    """Stiffness and load of the body in a stage; place, rate: x and x' from earlier stages."""
+    """Stiffness and load of the equation of a stage.
+
+    place, rate: x and x' from earlier stages and the start of the step.
+    """
     length = drive.lengths[step]
     stiffness = drive.stiffness + (drive.damping + drive.mass / length) / length
     return stiffness, drive.load - drive.stiffness * place + drive.mass * rate / length

@@ -1,8 +1,8 @@
-"""Ctrl-C in the middle of a march: compiled code that runs for minutes looks out for it.
+"""Check for Ctrl-C in compiled code, which can run for minutes.
 
-Python hands on a signal between two of its own instructions, and there is none in a compiled march.
-So the march asks the interpreter itself from time to time and ends early after a Ctrl-C; the caller
-raises the signal again where Python can handle it.
+Python handles a signal between two of its instructions, which compiled code does not have.  So
+compiled code calls `interrupted` from time to time and ends early after Ctrl-C.  Its caller raises
+the signal again in Python.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from numba import types
 
 from microslip.foundation.compiled import kernel
 
-_hold = types.ExternalFunction("PyGILState_Ensure", types.intc())
-_let_go = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
-_happened = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
+_acquire = types.ExternalFunction("PyGILState_Ensure", types.intc())
+_release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
+_occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
 
 BETWEEN_LOOKS = 2e7
-"""Multiplications, about, between two looks: some hundredths of a second.  A look has to wait for
-the other threads of the interpreter, so there should not be many."""
+"""Approximate number of multiplications between two calls of `interrupted`, some hundredths of a
+second.  A call waits for the other threads of the interpreter, so calls should be rare."""
 
 
 @kernel
 def interrupted() -> bool:
-    """Whether Ctrl-C was pressed since somebody asked: only the main thread is told, and once."""
-    held = _hold()
-    found = _happened()
-    _let_go(held)
-    return found != 0
+    """Whether Ctrl-C was pressed since the last call; always false except in the main thread."""
+    state = _acquire()
+    occurred = _occurred()
+    _release(state)
+    return occurred != 0

@@ -1,9 +1,8 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
-The compiler turns operations on tuples of four numbers into vector instructions, if it knows that
-their indices are not negative.  No kernel is compiled with fastmath, by which the compiler may
-reorder and fuse operations: then the last bits of a result would depend on which kernels were
-compiled before.
+The compiler turns operations on tuples of four numbers into vector instructions, if indices are
+unsigned.  No kernel is compiled with fastmath, which allows the compiler to reorder and fuse
+operations.  The last bits of a result would then depend on which kernels were compiled before.
 """
 
 from __future__ import annotations
@@ -17,13 +16,14 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 16
-"""Numbers at a time: two times four vectors are as many sums as the processor adds up at once."""
+"""Number of neighbouring values that are accumulated at once.  Two times four vectors are as many
+sums as the processor can accumulate in parallel."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
 @kernel(inline="always")
 def four(values: np.ndarray, first: int) -> tuple:
-    """Four numbers of a row, from the index `first` >= 0 on."""
+    """Four numbers of a row from the index `first` >= 0 on."""
     i = np.uint64(first)
     return values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)]
 
@@ -60,7 +60,7 @@ def times(a: tuple, b: tuple) -> tuple:
 
 @kernel(inline="always")
 def sum_of(a: tuple) -> float:
-    """Sum of the four."""
+    """Sum of the four numbers."""
     return (a[0] + a[1]) + (a[2] + a[3])
 
 
@@ -77,7 +77,7 @@ def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
 
 @kernel(inline="always")
 def put(values: np.ndarray, a: tuple, b: tuple, c: tuple, d: tuple) -> None:
-    """Fill a row of sixteen numbers."""
+    """Fill a row of sixteen numbers with four vectors."""
     values[0], values[1], values[2], values[3] = a
     values[4], values[5], values[6], values[7] = b
     values[8], values[9], values[10], values[11] = c

@@ -1,10 +1,11 @@
-"""The march in time: the stages of the integrator along a path, for every contact and drive.
+"""The march in time along a path, for all contacts and drives.
 
-With z = A q - w (w: rigid displacement), stage i of a step asks for tractions and slip with
+With the rigid displacement w and z = A q - w, stage i of a step is a Coulomb step (step.py) for
+tractions q_i and slip r_i,
 
-    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
+    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j.
 
-one Coulomb step (step.py).  The last stage is the end of the step: z <- b - r - w.
+The last stage is the end of the step, after which z = b - r - w.
 """
 
 from __future__ import annotations
@@ -39,18 +40,18 @@ from microslip.foundation.compiled import kernel
 
 
 class Loading(NamedTuple):
-    """The motion and the friction bounds imposed on contacts along a path, and the integrator.
+    """Motion and friction bounds imposed on contacts along a path, and the integrator.
 
     Attributes
     ----------
     motion : np.ndarray, shape (1 + steps stages, contacts, 3)
         Forward, lateral and angular displacement at the start and at every stage.
     bound : np.ndarray, shape (1 + steps stages or 1, points)
-        Friction bound at the start and at every stage; one where the normal load is constant.
+        Friction bound at the start and at every stage; a single row for a constant normal load.
     carry : np.ndarray, shape (stages, stages)
-        Slips that a stage carries from earlier ones, a_ij / gamma.
+        Factors a_ij / gamma of the slips of earlier stages.
     end : float
-        Where in the step the last stage lies; below 1 the rest is extrapolated.
+        Time of the last stage over the length of the step; below 1 the end is extrapolated.
     """
 
     motion: np.ndarray
@@ -67,18 +68,18 @@ class Trace(NamedTuple):
     state : np.ndarray, field
         Tractions at the end.
     fields : np.ndarray, shape (1 + steps stages, *field)
-        Unknown of the step solver at the start and after every stage; its projection on the bound
+        Unknown of the step solver at the start and after every stage.  Its projection on the bound
         is the traction.
     forces : np.ndarray, shape (1 + steps, 3)
         Forward force, lateral force, torque at the start and after every step.
     body : np.ndarray, shape (1 + steps, 2)
-        x and x' of the body, 0 without one.
+        x and x' of the driven body; 0 without a drive.
     residual : float
         Residual force over mu F_z, summed over the stages.
     iterations : int
-        Iterations of the step solver.
+        Number of iterations of the step solver.
     broken : bool
-        Whether it was interrupted, which makes the rest worthless.
+        Whether the march was interrupted; the other attributes are then invalid.
     """
 
     state: np.ndarray
@@ -108,13 +109,13 @@ def march(
     loading : Loading
         The path.
     drive : drive.Drive or None
-        The body, which is driven along the path; None: it follows the path.
+        Equation of the driven body; None if the contact follows the path.
     state : np.ndarray, field
         Tractions at the start.
     guess : np.ndarray
-        Trace.fields of a march from a start near by, or of shape (0, ...).
+        Trace.fields of a march from a similar state, or an array of shape (0, ...).
     tolerance : float
-        Tolerance of every stage, a force over mu F_z.
+        Largest residual of every stage, a force over mu F_z.
 
     Returns
     -------
@@ -150,7 +151,7 @@ def march(
             if len(guess) > 0:
                 if at == 1:
                     copy(y, guess[1])
-                else:  # the change from stage to stage is that of the other march
+                else:  # add the change from stage to stage of the other march
                     add(y, 1.0, guess[at])
                     add(y, -1.0, guess[at - 1])
             elif k > 1:

@@ -1,9 +1,8 @@
 """Linear operators on the fields of a contact, for compiled code.
 
-A field has the shape (2, points): forward and lateral component.  An object of a class that a
-module registers with `operator` holds several operators: number 0 is A, from tractions to
-displacements, the others, if there are any, are what a step solver needs.
-"""
+A field has the shape (2, points), with a forward and a lateral component.  A module registers a
+class of operators with `operator`.  An object of such a class contains several operators: number 0
+is A, from tractions to displacements, and the others are the resolvents for the step solver."""
 
 from __future__ import annotations
 
@@ -21,8 +20,10 @@ _KERNELS: dict[type, Callable] = {}
 
 
 def operator(of: type) -> Callable:
-    """Decorator of the kernel(operators, number, field, image) that applies an operator of a
-    NamedTuple."""
+    """Decorator that registers kernel(operators, number, field, image) for the NamedTuple `of`.
+
+    The kernel fills image with an operator applied to field.
+    """
 
     def register(function: Callable) -> Callable:
         _KERNELS[of] = function
@@ -32,11 +33,11 @@ def operator(of: type) -> Callable:
 
 
 def multiply(operators: object, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image = operator field, in compiled code; both (2, points)."""
+    """Fill image (2, points) with an operator applied to field (2, points), in compiled code."""
     raise NotImplementedError("multiply is for compiled code")
 
 
-# Numba compares the signature with that of the lambda: it may have no hints
+# without type hints, because Numba compares the signature with that of the lambda
 @overload(multiply, inline="always")
 def _multiply(operators, number, field, image):  # type: ignore[no-untyped-def]
     apply = _KERNELS[operators.instance_class]
@@ -44,12 +45,13 @@ def _multiply(operators, number, field, image):  # type: ignore[no-untyped-def]
 
 
 class Matrices(NamedTuple):
-    """Matrices on the rows of a field that is cut into rows of equal width.
+    """Matrices that act on the rows of a field, which have equal width.
 
     Attributes
     ----------
     blocks : np.ndarray, shape (operators, rows, chunks, columns, LANES)
-        blocks[number, row, h, k] are rows of a matrix in column k, from row `start(h, width)` on.
+        blocks[number, row, h, k] is a part of column k of a matrix, from its row `start(h, width)`
+        on.
     """
 
     blocks: np.ndarray
@@ -60,14 +62,13 @@ class Matrices(NamedTuple):
 
     @staticmethod
     def joined(each: Sequence[Matrices], extents: np.ndarray) -> Matrices:
-        """The matrices of several contacts on one body, see `scaled`."""
+        """Join the matrices of several contacts on one body, see `scaled`."""
         parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
         return Matrices(np.concatenate(parts, axis=1))
 
 
 def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
-    """Blocks (operators, ...) of a contact whose A is larger by a factor: its resolvents are
-    smaller by that."""
+    """Blocks (operators, ...) for an A that is larger by a factor; resolvents are smaller by it."""
     factors = np.full(len(blocks), 1.0 / factor)
     factors[0] = factor
     return blocks * factors.reshape(-1, *(1,) * (blocks.ndim - 1))
@@ -75,12 +76,12 @@ def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
 
 @kernel(inline="always")
 def start(chunk: int, width: int) -> int:
-    """First of the rows of a chunk: the last chunk overlaps the one before."""
+    """First row of a chunk; the last chunk can overlap the one before."""
     return min(LANES * chunk, width - LANES)
 
 
 def packed(matrices: np.ndarray, width: int) -> np.ndarray:
-    """Matrices (..., n, n) as Matrices.blocks, for rows of a width of at least LANES."""
+    """Convert matrices (..., n, n) to Matrices.blocks, for rows with at least LANES columns."""
     *shape, n, _ = matrices.shape
     padded = np.zeros((*shape, width, n))
     padded[..., :n, :] = matrices

@@ -4,17 +4,16 @@ With one field y as its state, P the projection on the discs |q| <= g and s the 
 
     q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q),
 
-until Sum weight |v - q|, a force, is within the tolerance.  Then b - A v = s (v - t): the slip
-comes without applying A.  Any relaxation below 2 converges (Lions and Mercier 1979; Eckstein and
-Bertsekas 1992).  With a driven body v answers to its displacement d by d times a field that is the
-same in every step, so that the equation of the body is a division.  Every BETWEEN_BALANCES
-iterations `rebalance` solves the equation of the body with the tractions P(y).
+until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v = s (v - t), so
+that A is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
+1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a driven body is d
+times a constant field, so that the equation of the body is a division.  After every
+BETWEEN_BALANCES iterations `rebalance` solves the equation of the body for the tractions P(y).
 
-Points that stick want a small penalty, points that slip a large one.  Let D be the mean derivative
-of the projection over the points and the two directions: 1 where all stick, and |q| / (2 |y|) for
-a point that slips.  The best penalty is about (1 - D) / D times the one of a contact that sticks
-and slips in equal shares, so each step picks the nearest of PENALTIES.
-"""
+A small penalty is best for points that stick, and a large penalty for points that slip.  Let D be
+the derivative of the projection, averaged over the points and both directions.  It is 1 for a point
+that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about (1 - D) / D times
+that of a contact with D = 1/2.  Each step uses the nearest of PENALTIES."""
 
 from __future__ import annotations
 
@@ -32,32 +31,33 @@ from microslip.contacts.system import System, add, forward_force
 from microslip.foundation.compiled import kernel
 
 MOST_ITERATIONS = 4000
+"""Largest number of iterations of a step."""
 RELAXATION = 1.7
-"""Within 1.5 to 1.8, the usual range of over-relaxation (Eckstein and Bertsekas 1992)."""
+"""Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Iterations of a driven step between two calls of `rebalance`: more than the means that
-benchmarks/splitting.py prints, so that few steps get there."""
+"""Number of iterations of a driven step between calls of `rebalance`.  It is above the means
+printed by benchmarks/splitting.py, so that few steps need a call."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
-"""Search for the balanced displacement: first trial and largest one, in u_lim (it grows fourfold),
+"""Search for the balanced displacement: first and largest trial in u_lim, each four times the last,
 and number of bisections."""
 BALANCED_RINGS = 12
-"""Rings at which the best penalty is the self-influence of a ring, where half of the points stick;
-calibrated by benchmarks/splitting.py."""
+"""Number of rings for which the best penalty is the self-influence of a ring if half of the points
+stick; calibrated by benchmarks/splitting.py."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Penalties that a step picks from, over `best_penalty`: 1/sqrt(8) to sqrt(8)."""
+"""Possible penalties of a step over `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
 
 
 class Resolvent(NamedTuple):
-    """The solver of a contact whose shifted operator can be inverted.
+    """Step solver of a contact with resolvents.
 
     Operator 1 + l of the contact is (A + PENALTIES[l] penalty)^-1.
 
     Attributes
     ----------
     penalty : np.ndarray, shape (points,)
-        s where half of the points stick, displacement over traction.
+        Penalty s, displacement over traction, if half of the points stick.
     factors : np.ndarray, shape (levels,)
-        PENALTIES.
+        Copy of PENALTIES.
     area : float
         Sum of the weights.
     count : float
@@ -67,7 +67,7 @@ class Resolvent(NamedTuple):
     penalty: np.ndarray
     factors: np.ndarray
     area: float
-    count: float  # type: ignore[assignment]  # hides a method of tuples that nobody needs
+    count: float  # type: ignore[assignment]  # replaces a method of tuples
 
     def own(self) -> Resolvent:
         """Return the object itself, which has no scratch arrays."""
@@ -75,23 +75,29 @@ class Resolvent(NamedTuple):
 
     @staticmethod
     def joined(each: Sequence[Resolvent], extents: np.ndarray, weight: np.ndarray) -> Resolvent:
-        """The solver of several contacts on one body, see models/side_by_side.py."""
+        """Join the solvers of several contacts on one body (see models/side_by_side.py)."""
         penalties = [one.penalty * extent for one, extent in zip(each, extents, strict=True)]
         return resolvent(np.concatenate(penalties), weight)
 
 
 def resolvent(penalty: np.ndarray, weight: np.ndarray) -> Resolvent:
-    """The Resolvent of points with these penalties and areas."""
+    """Create the Resolvent of points with penalties and areas (points,)."""
     return Resolvent(penalty, PENALTIES, float(weight.sum()), float(np.count_nonzero(weight)))
 
 
 def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
-    """Penalty of each ring where half of the points stick, from the self-influence `scale` of the
-    rings of a contact.
+    """Best penalty of each ring if half of the points stick.
 
-    The splitting converges fastest between the least and the largest eigenvalue of A, at their
-    geometric mean: these are those of a narrow ring and of the contact as a whole, whose ratio is
-    proportional to the number of rings.
+    The splitting converges fastest if the penalty is the geometric mean of the smallest and the
+    largest eigenvalue of A.  These belong to a narrow ring and to the whole contact, and their
+    ratio is proportional to the number of rings.
+
+    Parameters
+    ----------
+    scale : np.ndarray
+        Self-influence of each ring.
+    rings : int
+        Number of rings.
     """
     return scale * np.sqrt(rings / BALANCED_RINGS)
 
@@ -116,7 +122,7 @@ def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
 
 @kernel
 def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.ndarray) -> float:
-    """Fill q = P(y) and return the sum over the points of the mean derivative of P."""
+    """Fill q = P(y), and return D (see the module) times the number of points."""
     for i in range(len(bound)):
         f = shrink(y[0, i], y[1, i], bound[i])
         q[0, i], q[1, i], factors[i] = f * y[0, i], f * y[1, i], f
@@ -128,7 +134,7 @@ def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.nda
 
 @kernel(inline="always")
 def level_of(solver: Resolvent, stuck: float) -> int:
-    """Number of the penalty nearest to (1 - D) / D, from D times the number of points."""
+    """Index of the penalty nearest to (1 - D) / D; stuck: D times the number of points."""
     level, ratio = 0, 0.5
     while level < len(solver.factors) - 1 and solver.count - stuck > ratio * stuck:
         level, ratio = level + 1, 2.0 * ratio
@@ -137,7 +143,7 @@ def level_of(solver: Resolvent, stuck: float) -> int:
 
 @kernel
 def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
-    """Tractions v that answer to d = 1, and their force, for each penalty."""
+    """Fill the tractions v for d = 1, and their forward force, for each penalty."""
     unit = fields.scratch[0]
     for i in range(unit.shape[1]):
         unit[0, i], unit[1, i] = 1.0, 0.0
@@ -150,8 +156,10 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
 def _imbalance(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, advance: float
 ) -> float:
-    """Residual of the equation of the body, stiffness d + forward force - load, at the displacement
-    d = displacement + advance.  The slip of points that slip grows by the advance."""
+    """Residual stiffness d + forward force - load of the body, at d = displacement + advance.
+
+    The advance is added to the slip of points that slip.
+    """
     force = balance.stiffness * (displacement + advance) - balance.load
     for i in range(len(step.bound)):
         forward = y[0, i] + advance / system.solver.penalty[i]
@@ -164,11 +172,10 @@ def _imbalance(
 def rebalance(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float
 ) -> None:
-    """Shift y, in place, to the displacement at which the body is in balance.
+    """Shift y in place to the displacement at which the forces on the body balance.
 
-    The splitting alone gets there slowly if nearly all points slip and the drive is soft.  y stays
-    as it is if that displacement is beyond LONGEST_ADVANCE.
-    """
+    The splitting alone converges slowly if nearly all points slip and the drive is soft.  y does
+    not change if this displacement is above LONGEST_ADVANCE."""
     imbalance = _imbalance(system, balance, step, y, displacement, 0.0)
     if not abs(imbalance) > step.tolerance:
         return
@@ -191,9 +198,9 @@ def rebalance(
 def _iterate(
     system: System, balance: Balance, step: Step, fields: Fields, most: int
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on, with at most `most` iterations.
+    """Solve a Coulomb step from the initial guess fields.y, with at most `most` iterations.
 
-    fields.y is the y of the penalty `Resolvent.penalty`, whichever one the step is solved with.
+    fields.y is always the y for the penalty `Resolvent.penalty`, even if another one is used.
     """
     guess, q, slip, b, bound = fields.y, fields.q, fields.slip, step.imposed, step.bound
     right, v, y = fields.scratch
@@ -215,7 +222,7 @@ def _iterate(
             displacement = excess / (balance.stiffness + balance.slope[level])
             add(v, displacement, balance.response[level])
         iterations += 1
-        residual = squared_distance(weight, v, q)  # by Schwarz's inequality
+        residual = squared_distance(weight, v, q)  # bounds the force by Schwarz's inequality
         if not residual > accepted or iterations == most:
             break
         for i in range(points):
@@ -243,7 +250,8 @@ def _iterate(
 def split_driven(
     system: System, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step of a driven contact from fields.y on; see step.solve_driven_step."""
+    """Solve a Coulomb step of a driven contact from the initial guess fields.y; see
+    step.solve_driven_step."""
     iterations = 0
     while True:
         count, residual, displacement = _iterate(system, balance, step, fields, BETWEEN_BALANCES)
@@ -256,5 +264,5 @@ def split_driven(
 @step_solver(Resolvent, split_driven, _respond)
 @kernel(inline="always")
 def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple[int, float, float]:
-    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    """Solve a Coulomb step from the initial guess fields.y; see step.solve_step."""
     return _iterate(system, balance, step, fields, MOST_ITERATIONS)

@@ -1,9 +1,8 @@
-"""One Coulomb step: what it asks for, and the solver that the contact has for it.
+"""The Coulomb step, and dispatch to the solver of the contact in compiled code.
 
-A step asks for tractions q, |q| <= g, whose slip b - A q is along q and occurs only where |q| = g.
-A driven body (drive.py) adds one unknown, its displacement d, which adds d to b, and one equation,
-stiffness d + forward force = load.
-"""
+The unknowns of a step are tractions q with |q| <= g, whose slip b - A q is in the direction of q
+and occurs only where |q| = g.  A driven body (drive.py) adds an unknown, its displacement d, which
+is added to b, and an equation, stiffness d + forward force = load."""
 
 from __future__ import annotations
 
@@ -16,20 +15,20 @@ from numba.extending import overload
 from microslip.foundation.compiled import OPTIONS
 
 LEVELS = 4
-"""Number of penalties for which the resolvent is known."""
+"""Number of penalties with a resolvent."""
 
 
 class Step(NamedTuple):
-    """A Coulomb step to be solved.
+    """Data of a Coulomb step.
 
     Attributes
     ----------
     imposed : np.ndarray, field
-        Displacement b, at d = 0.
+        Imposed displacement b, at d = 0.
     bound : np.ndarray, shape (points,)
         Friction bound g.
     tolerance : float
-        Force over mu F_z.
+        Largest residual, a force over mu F_z.
     """
 
     imposed: np.ndarray
@@ -43,11 +42,12 @@ class Balance(NamedTuple):
     Attributes
     ----------
     stiffness, load : float
-        stiffness d + forward force = load.
+        Coefficients of stiffness d + forward force = load.
     response : np.ndarray, shape (levels, *field)
-        Tractions that the resolvent of each penalty gives for d = 1.
+        Response of the resolvent of each penalty to d = 1, tractions.
     slope : np.ndarray, shape (levels,)
-        Their forward force; without a resolvent the stiffness of the contact; empty without a body.
+        Forward force of each response, or the stiffness of a contact without resolvents; empty
+        without a driven body.
     """
 
     stiffness: float
@@ -57,16 +57,16 @@ class Balance(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """The arrays that the step solver changes.
+    """Arrays that a step solver changes.
 
     Attributes
     ----------
     y : np.ndarray, field
-        The unknown of the solver: initial guess, and solution.
+        Unknown of the solver: initial guess on entry, solution on return.
     q : np.ndarray, field
         Tractions, within the bound.
     slip : np.ndarray, field
-        Slip.
+        Slip of the points.
     scratch : tuple of np.ndarray, field
         Three arrays for intermediate results.
     """
@@ -78,16 +78,16 @@ class Fields(NamedTuple):
 
 
 SOLVER = 1
-"""Place of the solver in a system.System."""
+"""Index of the solver in the fields of system.System."""
 
 _SOLVERS: dict[type, tuple[Callable, Callable, Callable]] = {}
-"""Class of a solver -> its kernels (solve, solve_driven, respond)."""
+"""Class of a step solver -> its kernels (solve, solve_driven, respond)."""
 
 
 def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable:
-    """Decorator of the kernel that solves steps by solvers of the class `of`, see `solve_step`.
+    """Decorator that registers the kernel behind `solve_step` for solvers of the class `of`.
 
-    solve_driven, respond: the kernels behind `solve_driven_step` and `response_to_drive`.
+    solve_driven, respond: kernels behind `solve_driven_step` and `response_to_drive`.
     """
 
     def register(function: Callable) -> Callable:
@@ -100,16 +100,16 @@ def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable
 def solve_step(
     system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step in compiled code, by the solver of the system.
+    """Solve a Coulomb step with the solver of the system, in compiled code.
 
-    balance: its `slope` must be empty, which means that there is no body.
+    The `slope` of `balance` must be empty, because there is no driven body.
 
     Returns
     -------
     iterations : int
-        -1 after an interrupt.
+        Number of iterations; -1 after an interrupt.
     residual : float
-        Force over mu F_z.
+        Residual force over mu F_z.
     displacement : float
         Always 0.
     """
@@ -119,8 +119,10 @@ def solve_step(
 def solve_driven_step(
     system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
-    """Solve a Coulomb step of a driven contact, like `solve_step`; the third value is the
-    displacement d of the body."""
+    """Solve a Coulomb step of a driven contact, in compiled code.
+
+    Returns the values of `solve_step`; the third one is the displacement d of the body.
+    """
     raise NotImplementedError("solve_driven_step is for compiled code")
 
 
@@ -131,21 +133,21 @@ def response_to_drive(
     raise NotImplementedError("response_to_drive is for compiled code")
 
 
-# Numba compares the signature with that of the lambda: it may have no hints
+# without type hints, because Numba compares the signature with that of the lambda
 @overload(solve_step, inline="always")
 def _solve_step(system, balance, step, fields):  # type: ignore[no-untyped-def]
     solve, _, _ = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, balance, step, fields: solve(system, balance, step, fields)
 
 
-# Numba compares the signature with that of the lambda: it may have no hints
+# without type hints, because Numba compares the signature with that of the lambda
 @overload(solve_driven_step, inline="always")
 def _solve_driven_step(system, balance, step, fields):  # type: ignore[no-untyped-def]
     _, solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, balance, step, fields: solve(system, balance, step, fields)
 
 
-# Numba compares the signature with that of the lambda: it may have no hints
+# without type hints, because Numba compares the signature with that of the lambda
 @overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
 def _response_to_drive(system, fields, response, slope):  # type: ignore[no-untyped-def]
     _, _, respond = _SOLVERS[system.types[SOLVER].instance_class]

@@ -1,7 +1,7 @@
-"""A contact as compiled code sees it: points, elastic operators, and sums over the points.
+"""Contacts in compiled code: points, elastic operators, and sums over the points.
 
-A field has the shape (2, points): forward and lateral component at every point, contact after
-contact.  Points may be added that have no area and a friction bound of zero.
+A field has the shape (2, points), with the forward and lateral component at every point of one
+contact after the other.  Additional points with area 0 and friction bound 0 are allowed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from microslip.contacts.operators import multiply
 from microslip.foundation.compiled import kernel
 
 COMPLIANCE = 0
-"""Number of A among the operators."""
+"""Number of the operator A."""
 
 
 class System(NamedTuple):
@@ -24,28 +24,27 @@ class System(NamedTuple):
     Attributes
     ----------
     operators : NamedTuple
-        A, from tractions to displacements, and what the solver needs besides; see operators.py.
+        A, from tractions to displacements, and the resolvents of the solver; see operators.py.
     solver : Resolvent or Descent
-        How a Coulomb step is solved: splitting.Resolvent or descent.Descent.
+        Solver of Coulomb steps: splitting.Resolvent or descent.Descent.
     scale : np.ndarray, shape (points,)
-        Displacement of a point under a unit traction on itself.
+        Displacement of each point under a unit traction on itself.
     weight : np.ndarray, shape (points,)
-        Area of a point.
+        Area of each point.
     positions : np.ndarray, shape (2, points)
         Forward and lateral position of the points, over the contact radius.
     first : np.ndarray of int, shape (contacts + 1,)
-        First point of each contact, and the number of points.
+        Index of the first point of each contact, and the number of all points.
     mirror : np.ndarray of int, shape (points,)
-        The point across the mirror lateral -> -lateral of each point.
+        Index of the mirror image of each point, under lateral -> -lateral.
     resultants : np.ndarray, shape (3,)
-        1 for each of forward force, lateral force and torque that the points can have, 0 for those
-        that symmetry cancels.
+        1 for each of forward force, lateral force and torque, or 0 if symmetry cancels it.
     stiffness : float
-        Force over mu F_z per uniform displacement u_lim without slip, at least.
+        Force over mu F_z for a uniform displacement u_lim without slip, or an upper bound on it.
     """
 
-    operators: Any  # of a class that operators.operator knows
-    solver: Any  # of a class that step.step_solver knows
+    operators: Any  # of a class that is registered with operators.operator
+    solver: Any  # of a class that is registered with step.step_solver
     scale: np.ndarray
     weight: np.ndarray
     positions: np.ndarray
@@ -57,9 +56,9 @@ class System(NamedTuple):
 
 @kernel(inline="always")
 def add_displacement(system: System, factor: float, motion: np.ndarray, out: np.ndarray) -> None:
-    """out += factor times the rigid displacement of the points.
+    """Add a factor times the rigid displacement of the points to the field `out`.
 
-    motion: forward, lateral, angle of each contact, (contacts, 3); out: a field.
+    motion: forward, lateral and angular displacement of each contact, (contacts, 3).
     """
     positions = system.positions
     for contact in range(len(motion)):
@@ -79,7 +78,7 @@ def move_forward(factor: float, out: np.ndarray) -> None:
 
 @kernel(inline="always")
 def sum_forces(system: System, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill out, (3,), with forward force, lateral force and torque of tractions."""
+    """Fill out (3,) with forward force, lateral force and torque of tractions."""
     positions, resultants = system.positions, system.resultants
     ahead, aside, torque = 0.0, 0.0, 0.0
     for i in range(q.shape[1]):
@@ -109,7 +108,7 @@ def mirrored(system: System, state: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def force_norm(system: System, change: np.ndarray, scratch: np.ndarray) -> float:
-    """Bound on the force that a change of tractions carries: |dF|^2 <= stiffness <dq, A dq>."""
+    """Upper bound on the force of a change of tractions: |dF|^2 <= stiffness <dq, A dq>."""
     multiply(system.operators, COMPLIANCE, change, scratch)
     energy = 0.0
     for c in range(2):
@@ -120,7 +119,7 @@ def force_norm(system: System, change: np.ndarray, scratch: np.ndarray) -> float
 
 @kernel(inline="always")
 def project(q: np.ndarray, bound: np.ndarray) -> None:
-    """Shrink tractions onto the bound, in place."""
+    """Project tractions on the friction bound, in place."""
     for i in range(q.shape[1]):
         f = shrink(q[0, i], q[1, i], bound[i])
         q[0, i], q[1, i] = f * q[0, i], f * q[1, i]
@@ -136,7 +135,7 @@ def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
 
 @kernel(inline="always")
 def copy(out: np.ndarray, values: np.ndarray) -> None:
-    """out[...] = values for fields, which compiles faster than the assignment."""
+    """Copy a field; this compiles faster than out[...] = values."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] = values[c, i]

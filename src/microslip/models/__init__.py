@@ -1,1 +1,1 @@
-"""Discretised contacts under Coulomb's law: one contract, several resolutions of the contact."""
+"""Discretised contacts under Coulomb's law, which share one interface (contact.py)."""

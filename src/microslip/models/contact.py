@@ -1,8 +1,8 @@
-"""The one contract of the models that march: what a contact is, and what a march returns."""
+"""Interface of the models: a discretised contact, and the result of a march."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -11,10 +11,10 @@ from microslip.foundation.errors import SolverError
 from microslip.models.path import Path
 
 FORWARD, LATERAL, TORQUE = range(3)
-"""Columns of the forces."""
+"""Columns of the forces of a march."""
 
 MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Signs of forward and lateral tractions in the mirror image, shape (2, 1, 1)."""
+"""Signs of forward and lateral tractions under the mirror lateral -> -lateral, shape (2, 1, 1)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class March:
     Attributes
     ----------
     state : np.ndarray, shape (2, n_angles, n_radii) or (2, n, n)
-        Forward and lateral tractions at the end.
+        Forward and lateral tractions at the end of the path.
     forces : np.ndarray, shape (steps + 1, 3)
         Forward force, lateral force, torque at each phase, over mu F_z and mu F_z a.
     residual : float
@@ -32,8 +32,11 @@ class March:
     iterations, solves : int
         Step-solver iterations and stages.
     fields : np.ndarray or None, shape (1 + steps stages, shape of state)
-        Unknown of the step solver at the start and after every stage: the initial guess of a march
-        of the same path from a start near by.
+        Unknown of the step solver at the start and after every stage.  It is the initial guess of a
+        march along the same path from a similar state.
+    body : np.ndarray, shape (steps + 1, 2)
+        Displacement x of a driven body ahead of the path, and its derivative x' by the phase; empty
+        for models without drives.
     """
 
     state: np.ndarray
@@ -42,10 +45,11 @@ class March:
     iterations: int
     solves: int
     fields: np.ndarray | None = None
+    body: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 class Guess(Protocol):
-    """Source of the initial guesses of a march: a March, or an object with the same `fields`."""
+    """Source of initial guesses for a march: a March, or another object with `fields`."""
 
     @property
     def fields(self) -> np.ndarray | None:
@@ -53,40 +57,41 @@ class Guess(Protocol):
 
 
 class StepFailure(SolverError):
-    """A march cannot go on: tractions are not finite, or a step stays unsolved.  The message is the
-    reason that a result gives."""
+    """Error of a march whose tractions are not finite, or whose step cannot be solved.
+
+    The message becomes the reason in the result.
+    """
 
 
 class Contact(Protocol):
-    """A discretised contact under given pressure.
+    """A discretised contact under a pressure.
 
-    A contact whose normal load may change also has at_indentation, bounds and bounds_along;
-    one of rings may tell its edges, for rings to be gathered at one of them: see
-    RadialContact.
+    A contact whose normal load can change also has `at_indentation`, `bounds` and `bounds_along`
+    (see RadialContact).
 
     Attributes
     ----------
     angles : int
-        Angular points of a ring; 1 for contacts without them.
+        Number of angular points of a ring; 1 for contacts without them.
     bound, weight : np.ndarray
-        Friction bound and area of each point, broadcast to state[0].
+        Friction bound and area of each point; they broadcast to state[0].
     compliance : np.ndarray
-        Displacement of a point under unit traction on itself, broadcast likewise.
+        Displacement of each point under a unit traction on itself; broadcasts to state[0].
     forward_position, lateral_position : np.ndarray
-        Where the points are (units a), same shape.
+        Coordinates of the points over a, with the shape of state[0].
     compiled : bool
-        Whether compiled code searches for the periodic state: then it has a `system`.
+        Whether compiled code searches for the periodic state.  The contact then has a `system`.
     stiffness : float
-        Force over mu F_z per uniform displacement u_lim without slip, at least.
+        Force over mu F_z for a uniform displacement u_lim without slip, or an upper bound on it.
     sticks : bool
-        Whether points may stick, so that something is left of it in the static limit.
+        Whether points can stick, so that the static limit of friction is not 0.
     grading : float or None
-        Grading of the steps towards the turning points; None: that of the problem.
+        Grading of the steps towards the turning points; None for that of the problem.
     edges : np.ndarray or None, shape (cells + 1,)
         Radii between the rings; None for contacts without rings.
     radius : float
-        Largest contact radius over the reference radius, where the normal load changes.  `bound` is
-        then that at the start of a period.  Contacts under constant load need no `radius`: it is 1.
+        Largest contact radius over the reference radius, if the normal load changes.  `bound` is
+        then the friction bound at the start of a period.
     """
 
     angles: int
@@ -102,10 +107,11 @@ class Contact(Protocol):
     edges: np.ndarray | None = None
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q: elastic displacement of each point, same shape as the state."""
+        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Tractions of a coarser contact at the points of this one; None if there is no way."""
+        """Interpolate tractions of a coarser contact to the points of this one; None if
+        impossible."""
         return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
@@ -118,9 +124,18 @@ class Contact(Protocol):
         tolerance: float,
         previous: Guess | None = None,
     ) -> March:
-        """March along a path from a state; every stage is solved to `tolerance` (a force).
+        """March along a path.
 
-        previous: a March of the same path from a start near by, whose tractions are first guesses.
+        Parameters
+        ----------
+        path : Path
+            The motion, cut into steps.
+        state : np.ndarray
+            Tractions at the start.
+        tolerance : float
+            Largest residual of every stage, a force over mu F_z.
+        previous : Guess or None
+            March along the same path from a similar state, for initial guesses.
         """
 
 
@@ -130,29 +145,29 @@ class DirectContact(Contact, Protocol):
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
         """Tractions of the periodic state at the start of the path.
 
-        mirror: whether the path is half a period, whose mirror image is the other half.
+        mirror: whether the path is half a period, and the other half is its mirror image.
         """
 
 
 class GrowingContact(Contact, Protocol):
-    """A contact whose normal load may change."""
+    """A contact whose normal load can change."""
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Friction bounds at each depth, one a row."""
+        """Friction bounds at depths (n,), one row for each."""
 
     def bounds_along(self, path: Path) -> np.ndarray:
-        """Friction bounds at the start and at every stage of a path, one a row."""
+        """Friction bounds at the start and at every stage of a path, one row for each."""
 
 
 def energy_norm(contact: Contact, change: np.ndarray) -> float:
-    """Bound on the force (over mu F_z) that a change of tractions carries, from its energy:
+    """Upper bound on the force (over mu F_z) of a change of tractions, from its elastic energy:
     |dF| <= sqrt(stiffness <dq, A dq>)."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
     return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Tractions on the bound along the field (forward, lateral); zero field: no traction."""
+    """Tractions on the friction bound in the direction of a field; 0 where the field is 0."""
     size = np.hypot(forward, lateral)
     with np.errstate(invalid="ignore", divide="ignore"):
         unit = np.where(size > 0, np.stack([forward, lateral]) / size, 0.0)
@@ -160,7 +175,7 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
-    """Every point on its bound, forward: the state of a contact that only ever slid forward."""
+    """Forward tractions on the friction bound: the state after sliding forward only."""
     out = np.zeros((2, *contact.forward_position.shape))
     out[FORWARD] = contact.bound
     return out

@@ -1,14 +1,15 @@
-"""The path in time: phases, the integrator's stages, and the rigid displacement at each of them.
+"""Paths in time: phases, stages of the integrator, and the rigid displacement at each of them.
 
-With z = A q - w (A q: elastic displacement, w: rigid displacement) the contact obeys
-dz = -(slip), slip and traction bound by Coulomb's law: a differential inclusion, rate-independent.
-Stiffly accurate diagonally implicit Runge-Kutta methods suit it: every stage is one Coulomb step,
+With the elastic displacement A q, the rigid displacement w and z = A q - w, the contact obeys dz =
+-(slip), where Coulomb's law connects slip and traction.  This is a rate-independent differential
+inclusion.  It is integrated by stiffly accurate diagonally implicit Runge-Kutta methods, in which
+every stage is one Coulomb step,
 
     A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
 
-with r_i = gamma h (slip rate), and the last stage is the end of the step, so that tractions there
-never leave the friction bound.  Backward Euler is the one with a single stage.  Theta methods solve
-theirs before the end of the step and extrapolate to it, bound or no bound.
+with r_i = gamma h (slip rate).  The last stage is the end of the step, so that tractions at the end
+of a step are within the friction bound.  Backward Euler has a single stage.  A theta method has its
+stage before the end of the step and extrapolates to the end, where tractions can exceed the bound.
 """
 
 from __future__ import annotations
@@ -37,12 +38,12 @@ class Integrator:
     order : int
         Order of convergence.
     times : tuple of float
-        Stage times c, over the step.
+        Stage times c over the length of the step.
     carried : tuple of tuple of float
-        Carried slips a_ij / gamma (j < i), a row a stage.
+        Carried slips a_ij / gamma, (stages, stages), zero on and above the diagonal.
     end : float
-        Where in the step the last stage sits; below 1 (a single stage then) the rest of the step is
-        extrapolated, and tractions at its end may leave the bound.
+        Time of the last stage over the length of the step.  Below 1, for a single stage, the state
+        at the end is extrapolated, and its tractions can exceed the friction bound.
     """
 
     name: str
@@ -51,45 +52,46 @@ class Integrator:
     carried: tuple[tuple[float, ...], ...]
     end: float = 1.0
 
-    def carry_matrix(self) -> np.ndarray:
-        """Carried slips as an array of shape (stages, stages), zero on and above the diagonal."""
-        out = np.zeros((len(self.times), len(self.times)))
-        for i, row in enumerate(self.carried):
-            out[i, : len(row)] = row
-        return out
 
-
-EULER = Integrator("euler", 1, (1.0,), ((),))
-SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,)))
-"""Two stages, L-stable, second order; the default: at equal work far ahead of backward Euler."""
-
-INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
+EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
+SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
+"""The default: two stages, L-stable, second order; far more accurate than backward Euler for the
+same work."""
 
 
 def theta_method(theta: float) -> Integrator:
-    """One stage at the share `theta` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
+    """The integrator with one stage at the share `theta` of the step.
 
-    Second order at 0.5 alone.  Raises ValueError for another theta.
-    """
+    theta is from 0.5 (midpoint rule, second order) to 1 (backward Euler, first order as all
+    others). Raises ValueError for another theta."""
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
-    return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((),), theta)
+    return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((0.0,),), theta)
 
 
 LONG_STROKE = 16.0
-"""Stroke in u_lim beyond which the number of steps no longer grows; on a line they gather at the
-turning points instead."""
+"""Stroke in u_lim above which the number of steps is constant.  On a line, the steps are then
+graded towards the turning points."""
 STRONGEST_GRADING = 0.8
+"""Largest grading of the steps."""
 GRADED_DRIFT = 0.02
+"""Drift in a radian, in u_lim, at which the grading is half of the largest."""
 GRADED_STROKE = 2.0
+"""Stroke in u_lim at which the grading is half of the largest."""
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """How much shorter steps are at the turning points than in the mean, 0 to 0.8 of it.
+    """Grading g of the steps, 0 to 0.8: steps at the turning points are 1 - g of the mean step.
 
-    drift: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
-    u_lim.  Where both are small, the forward slip of a whole half period happens next to the
-    turning points; where the stroke is long, the contact slides fully and forgets them soon.
+    If drift and stroke are small, most forward slip of a half period occurs near the turning
+    points. If the stroke is long, the contact slides fully soon after them.
+
+    Parameters
+    ----------
+    drift : float
+        Mean forward displacement in a radian of phase, in u_lim.
+    stroke : float
+        Amplitude of the oscillation, in u_lim.
     """
     slow = 1.0 / (1.0 + drift / GRADED_DRIFT)
     short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
@@ -99,11 +101,11 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 def turning_point_width(drift: float, stroke: float) -> float:
     """Half-width, in phase, of the zone of equal steps at a turning point.
 
-    Further away, steps are proportional to the distance from the turning point.  Infinite: only the
-    grading applies.  The slip reverses within the phase max(1, drift) / stroke, where the velocity
-    of the oscillation is u_lim in a radian, or the drift.  The term LONG_STROKE**2 / stroke lets
-    the zone shrink gradually from LONG_STROKE on, where the longest step is twice the shortest.
-    """
+    Outside the zone, steps are proportional to the distance from the turning point.  The width is
+    infinite for short strokes, to which the grading alone applies.  The slip reverses within the
+    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim in a
+    radian or below the drift.  The term LONG_STROKE**2 / stroke shrinks the zone gradually from
+    LONG_STROKE on, where the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
@@ -116,18 +118,18 @@ class Path:
     Attributes
     ----------
     phase : np.ndarray, shape (steps + 1,)
-        omega t.
+        Phase omega t at the ends of the steps.
     positions : np.ndarray, shape (steps + 1, 3)
         Displacement at every phase: forward, lateral, angle.
     stages : np.ndarray, shape (steps, stages, 3)
         Displacement at every stage: forward, lateral, angle.
     carry : np.ndarray, shape (stages, stages)
-        See `Integrator.carry_matrix`.
+        Carried slips, see Integrator.
     end : float
-        See `Integrator`.
+        Time of the last stage over the length of the step, see Integrator.
     depth : np.ndarray or None, shape (1 + steps * stages,)
-        Indentation over the reference one at the start and at every stage, None where it does not
-        change.
+        Indentation depth over the reference depth at the start and at every stage; None if it is
+        constant.
     """
 
     phase: np.ndarray
@@ -163,20 +165,20 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class BodyPath(Path):
-    """A Path of a body, and what its contacts do besides.
+    """A Path of a body on several contacts, with the path of each contact relative to the body.
 
     Attributes
     ----------
     each : tuple of path.Path
-        Path of every contact relative to the path of the body, cut into the same steps.  Only these
-        paths have an indentation.
+        Path of each contact relative to that of the body, cut into the same steps.  Only these
+        paths have a `depth`.
     """
 
     each: tuple[Path, ...] = ()
 
     @cached_property
     def motion(self) -> np.ndarray:
-        """Displacement of every contact at the start and at every stage, as Path.motion."""
+        """Displacement of each contact at the start and at every stage, as in Path.motion."""
         of_body = np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
         return of_body + np.concatenate([one.motion for one in self.each], axis=1)
 
@@ -187,48 +189,47 @@ def make_path(
     integrator: Integrator = SDIRK2,
     depth: Callable | None = None,
 ) -> Path:
-    """Path through the given phases.
+    """Create the path of a motion, cut into steps at phases.
 
     Parameters
     ----------
     displacement : callable
         displacement(phase) -> (forward, lateral, angle).
     phase : array_like, shape (steps + 1,)
-        Increasing.
+        Increasing phases.
     integrator : Integrator
-        Where the stages sit.
+        Method that determines the stages.
     depth : callable or None
-        depth(phase) -> indentation over the reference one; None: it does not change.
+        depth(phase) -> indentation depth over the reference depth; None if it is constant.
     """
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
     stages = np.stack(displacement(times), axis=-1)
     positions = np.stack(displacement(phase), axis=-1)
-    # on the chord of the step, so that what is extrapolated agrees with the end of it
+    # on the chord of the step, so that the extrapolation ends at the position of the next phase
     stages[:, -1] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
     if integrator.end == 1.0:
         stages[:, -1] = positions[1:]
     depths = None
     if depth is not None:
         if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # to the last bit: the end is where the next march begins
+            times[:, -1] = phase[1:]  # to the last bit, because the next march starts there
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
-    return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
+    return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
 
 
 def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
-    """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
+    """Phases from the turning point -pi/2 to the next one, graded towards both, (steps + 1,)."""
     return phases_between(HALF_PERIOD, steps, grading)
 
 
 def phases_between(
     turns: Sequence[float], steps: int, grading: float = 0.0, width: float = math.inf
 ) -> np.ndarray:
-    """Phases from the first turning point to the last, `steps` steps between two of them, smaller
-    near each; shape ((len(turns) - 1) steps + 1,).
+    """Phases from the first turning point to the last, ((len(turns) - 1) steps + 1,).
 
-    grading, width: see turning_point_grading and turning_point_width.
-    """
+    There are `steps` steps between neighbouring turning points, graded towards them; for grading
+    and width see turning_point_grading and turning_point_width."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:

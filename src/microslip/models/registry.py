@@ -1,4 +1,4 @@
-"""The model hierarchy: which model resolves which motion, and how well.
+"""Registry of models: which motions each model resolves, and whether it is exact.
 
 | model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
 |-----------|--------------------|--------------------|------------------------------------|
@@ -10,28 +10,26 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
-In mdr, radial and polar the normal load may change; for motion along one line at nu = 0 mdr is
-exact then, too.
+In mdr, radial and polar the normal load can change.  For motion along one line at nu = 0, mdr is
+exact.
 
-"Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
-"approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
-and no refinement brings it back.
+An exact model converges to the solution of the contact problem as cells and steps are refined.  An
+approximate model neglects elasticity, partial slip or the interaction of points, whatever its
+resolution.
 
-Every model that marches keeps the contract of `models.contact.Contact`.  A new one is a file
-beside these and a row in `MODELS`.  A model is imported when its first contact is built, since
-compiled code takes a while to load and closed forms do without it.
-"""
+Every model has the interface `models.contact.Contact`.  A new model is a file beside these and a
+row in `MODELS`.  A model is imported when its first contact is built, because compiled code takes a
+while to load and closed forms do not need it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from microslip.models.contact import Contact
     from microslip.models.rings.mesh import Focus
-    from microslip.models.system_contact import SystemContact
     from microslip.motions.problem import Problem
 
 
@@ -44,33 +42,27 @@ class Model:
     build : callable
         build(problem, cells, angles, focus) -> Contact.
     refuses : callable
-        refuses(problem) -> why it does not apply, or "".
+        refuses(problem) -> reason why the model does not apply, or "".
     exact : callable
-        exact(problem) -> whether refinement converges to the truth.
+        exact(problem) -> whether the model converges to the solution of the contact problem.
     axes : callable
-        axes(problem) -> what of its space can be refined: "cells", "angles".
-    side_by_side : callable or None
-        side_by_side(contacts, shares, extents) -> Contact of a body on several of its contacts,
-        each in its own units; None where its contact cannot be pulled, see pull.PullsContact.
+        axes(problem) -> the axes of its mesh that can be refined: "cells", "angles".
+    drivable : bool
+        Whether a force or a spring can drive its contact, and a body can rest on several of them.
     """
 
     build: Callable
     refuses: Callable
     exact: Callable = lambda problem: True
     axes: Callable = lambda problem: ("cells",)
-    side_by_side: Callable | None = None
-
-    @property
-    def pulled(self) -> bool:
-        """Whether its contact may be pulled."""
-        return self.side_by_side is not None
+    drivable: bool = False
 
 
 def _never(problem: Problem) -> bool:
     return False
 
 
-LOAD_CHANGES = "it knows a constant normal load alone"
+LOAD_CHANGES = "it allows a constant normal load only"
 
 
 def _refuse_pulsation(problem: Problem) -> str:
@@ -80,11 +72,11 @@ def _refuse_pulsation(problem: Problem) -> str:
 def _refuse_other_loads(problem: Problem) -> str:
     if not problem.motion.loads or problem.pressure.is_indenter:
         return ""
-    return f"the load of axisymmetric indenters may change, not that of {problem.pressure.name}"
+    return f"the load can change for axisymmetric indenters only, not for {problem.pressure.name}"
 
 
 def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
-    """A check that returns the first refusal that is not empty, or an empty text."""
+    """Combine checks to one that returns the first reason that is not empty, or ""."""
     return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 
@@ -97,12 +89,12 @@ def _refuse_rings(problem: Problem) -> str:
 
 
 def _refuse_rotation(problem: Problem) -> str:
-    return "it has no extension that could turn" if problem.motion.rotates else ""
+    return "it has no extension that could rotate" if problem.motion.rotates else ""
 
 
 def _refuse_springs(problem: Problem) -> str:
     if not problem.pressure.is_indenter:
-        return f"it is known for axisymmetric indenters only, not for {problem.pressure.name}"
+        return f"it exists for axisymmetric indenters only, not for {problem.pressure.name}"
     return _refuse_rotation(problem)
 
 
@@ -114,7 +106,7 @@ def _refuse_angles(problem: Problem) -> str:
 
 def _refuse_rigid(problem: Problem) -> str:
     if problem.motion.rotates and not problem.motion.half_disc:
-        return "half of the contact does not tell the other half"
+        return "it needs a symmetry between the two halves of the contact"
     return _refuse_angles(problem) if problem.motion.rotates else ""
 
 
@@ -163,18 +155,10 @@ def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float |
     from microslip.models.squares import half
     from microslip.models.squares.contact import CartesianContact
 
-    symmetry = ""  # of the tractions, as far as the pressure has it, too
+    symmetry = ""  # of the tractions, if the pressure has it as well
     if problem.motion.half_disc:
         symmetry = half.MIRROR if problem.motion.rotates else half.TURN
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
-
-
-def _side_by_side(
-    contacts: Sequence[SystemContact], shares: Sequence[float], extents: Sequence[float]
-) -> Contact:
-    from microslip.models.side_by_side import SideBySide
-
-    return SideBySide(contacts, shares, extents)
 
 
 MODELS = {
@@ -184,31 +168,16 @@ MODELS = {
         exact=lambda problem: not problem.motion.periodic,
         axes=lambda problem: ("cells", "angles") if problem.motion.rotates else (),
     ),
-    "slider": Model(
-        _slider,
-        _NO_ROTATION,
-        exact=_never,
-        axes=lambda problem: (),
-        side_by_side=_side_by_side,
-    ),
+    "slider": Model(_slider, _NO_ROTATION, exact=_never, axes=lambda problem: (), drivable=True),
     "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
-    "mdr": Model(
-        _mdr,
-        _any_of(_refuse_other_loads, _refuse_springs),
-        exact=_never,
-        side_by_side=_side_by_side,
-    ),
-    "radial": Model(
-        _radial,
-        _any_of(_refuse_other_loads, _refuse_rings),
-        side_by_side=_side_by_side,
-    ),
+    "mdr": Model(_mdr, _any_of(_refuse_other_loads, _refuse_springs), exact=_never, drivable=True),
+    "radial": Model(_radial, _any_of(_refuse_other_loads, _refuse_rings), drivable=True),
     "polar": Model(
         _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda problem: ("cells", "angles"),
-        side_by_side=_side_by_side,
+        drivable=True,
     ),
-    "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_side_by_side),
+    "cartesian": Model(_cartesian, _refuse_pulsation, drivable=True),
 }
 """Models by name."""

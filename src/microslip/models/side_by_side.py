@@ -1,13 +1,13 @@
-"""Several contacts on one body, far apart, so that they share its displacement alone.
+"""Several contacts that carry one body and share its displacement; they are far apart otherwise.
 
-They are in the units of the body: u_lim of the contact that carries the mean load, and mu times the
-load of all.  A contact whose own u_lim is larger by `extent`, and that carries a `share` of the
-load, has
+Units are those of the body: u_lim of a contact under the mean load, and mu times the load of all
+contacts.  A contact whose u_lim is `extent` times larger, and which carries a `share` of the load,
+has
 
-    influence extent A,   weights share w,   stiffness k share / extent,
+    influence extent A,   weights share w,   stiffness k share / extent.
 
-tractions and bounds being what they are in its own units.  A rotation by an angle in the units of a
-contact moves its points by extent times as much.
+Its tractions and bounds are the same numbers as in its own units.  An angle in its own units moves
+its points by `extent` times as much in units of the body.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ from microslip.models.system_contact import SystemContact
 
 
 class SideBySide(SystemContact):
-    """Contacts of equal shape on one body; states have those of each side by side along axis 2.
+    """Contacts of equal shape on one body; their states are joined along axis 2.
 
     Parameters
     ----------
     contacts : sequence of SystemContact
-        Each in its own units.
+        The contacts, each in its own units.
     shares, extents : sequence of float
-        Fraction of the load of the body, sum 1; u_lim of each over that of the body.
+        Fraction of the load of the body that each contact carries (sum 1), and u_lim of each
+        contact over that of the body.
     """
 
     def __init__(
@@ -62,17 +63,17 @@ class SideBySide(SystemContact):
         self.resultants = first.resultants
 
     def solver(self, weight: np.ndarray) -> Any:
-        """The solver of a step, of points with these areas."""
+        """Solver of a Coulomb step for points with the areas `weight`."""
         each = [one.system().solver for one in self._contacts]
         return each[0].joined(each, self._extents, weight)
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Bounds of all contacts, (k, cells of all), where each is at its depths, one a row."""
+        """Friction bounds (k, cells of all contacts) at the depths (contacts, k)."""
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
     def field_bounds(self, path: Path) -> np.ndarray:
         """Friction bounds along a path, see SystemContact.field_bounds."""
-        assert isinstance(path, BodyPath)  # as that of a body is
+        assert isinstance(path, BodyPath)  # the path of several contacts
         each = zip(self._contacts, path.each, strict=True)
         return np.concatenate([one.field_bounds(own) for one, own in each], axis=-1)

@@ -1,4 +1,4 @@
-"""Contacts that march in compiled code (microslip.contacts)."""
+"""Base class of contacts that march in compiled code (microslip.contacts)."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from microslip.contacts.drive import Drive
-from microslip.contacts.march import Loading, Trace, march
+from microslip.contacts.march import Loading, march
 from microslip.contacts.operators import multiply
 from microslip.contacts.splitting import best_penalty, resolvent
 from microslip.contacts.system import COMPLIANCE, System
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import MIRROR, Guess, March
+from microslip.models.contact import MIRROR, Contact, Guess, March
+from microslip.models.driven_body import Body
 from microslip.models.path import Path
-from microslip.models.pull import Body, PulledMarch
 
 
 class Layout(NamedTuple):
-    """Positions of the points of a state, (2, rows, columns), in the fields of compiled code.
+    """Conversion between states (2, rows, columns) and the fields (2, points) of compiled code.
 
-    States have the contacts of a body side by side, fields one after the other.
+    In a state the contacts of a body are joined along the columns; in a field they follow one
+    another.
 
     Attributes
     ----------
     contacts, rows, columns : int
         Number of contacts, and rows and columns of each.
     width : int
-        Columns of each in a field; those added have neither area nor bound.
+        Columns of each contact in a field; the additional points have neither area nor bound.
     """
 
     contacts: int
@@ -40,47 +40,44 @@ class Layout(NamedTuple):
     width: int
 
     def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
-        """Values of shape (..., rows or 1, columns of all) as (..., points); fill: of points
-        added."""
+        """Convert values (..., rows or 1, columns of all contacts) to fields (..., points).
+
+        fill: value at the additional points.
+        """
         contacts, rows, columns, width = self
-        *shape, given, _ = values.shape
+        *shape, count, _ = values.shape
         out = np.full((*shape, contacts, rows, width), fill, dtype=values.dtype)
-        if contacts > 1:
-            values = np.moveaxis(values.reshape(*shape, given, contacts, columns), -2, -3)
-        else:
-            values = values.reshape(*shape, 1, given, columns)
+        values = np.moveaxis(values.reshape(*shape, count, contacts, columns), -2, -3)
         out[..., :columns] = values
         return out.reshape(*shape, contacts * rows * width)
 
     def unpack(self, field: np.ndarray) -> np.ndarray:
-        """Fields (..., points) as states (..., rows, columns of all)."""
+        """Convert fields (..., points) to states (..., rows, columns of all contacts)."""
         contacts, rows, columns, width = self
         shape = field.shape[:-1]
-        if contacts == 1:
-            return field.reshape(*shape, rows, width)[..., :columns]
         values = field.reshape(*shape, contacts, rows, width)[..., :columns]
         return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
 
     def images(self, mirror: np.ndarray) -> np.ndarray:
-        """Points of a field in a mirror, from those of a state, flat indices both."""
+        """Indices of the mirror images of the points of a field, from those of a state (flat)."""
         place = self.pack(np.arange(mirror.size).reshape(self.rows, -1), -1)
         point = np.argsort(place, kind="stable")[np.count_nonzero(place < 0) :]
         return np.where(place < 0, np.arange(place.size), point[mirror[place]])
 
 
-class SystemContact:
-    """A contact that is a system.System for compiled code (see models.contact.Contact).
+class SystemContact(Contact):
+    """A contact with a System for compiled code (see models.contact.Contact).
 
     Attributes
     ----------
     compiled : bool
-        True: the search for the periodic state runs in compiled code, too.
+        True, because compiled code searches for the periodic state.
     layout : Layout
-        Where points of a state are in a field.
+        Conversion between states and fields.
     mirror : np.ndarray of int
-        The point of a state across the mirror lateral -> -lateral of each point, flat indices.
+        Flat index of the mirror image of each point of a state, under lateral -> -lateral.
     operators : NamedTuple
-        A and the resolvents, see contacts/operators.py.
+        The operator A and the resolvents, see contacts/operators.py.
     resultants : np.ndarray, shape (3,)
         See system.System.
     """
@@ -88,26 +85,15 @@ class SystemContact:
     compiled = True
     sticks = True
     radius = 1.0
-    grading: float | None = None
-    edges: np.ndarray | None = None
     layout: Layout
     mirror: np.ndarray
-
-    angles: int
-    bound: np.ndarray
-    weight: np.ndarray
-    compliance: np.ndarray
-    forward_position: np.ndarray
-    lateral_position: np.ndarray
-    stiffness: float
+    operators: Any
+    resultants: np.ndarray
     bounds: Callable[..., np.ndarray]
     bounds_along: Callable[[Path], np.ndarray]
 
-    operators: Any
-    resultants: np.ndarray
-
     def system(self) -> System:
-        """The System, with scratch of its own: for one thread at a time."""
+        """Return the System with new scratch arrays, for use by one thread."""
         system = self._prepared
         return system._replace(operators=system.operators.own(), solver=system.solver.own())
 
@@ -129,19 +115,19 @@ class SystemContact:
         )
 
     def unprepared(self) -> Self:
-        """A copy whose attributes may be changed."""
+        """Return a copy without cached properties, whose attributes can be changed."""
         out = copy(self)
         for name in ("_prepared", "_constant_bound"):
             vars(out).pop(name, None)
         return out
 
     def solver(self, weight: np.ndarray) -> Any:
-        """The solver of a step, of points with these areas: that of rings with resolvents."""
+        """Solver of a Coulomb step for points with the areas `weight`, by resolvents of rings."""
         penalty = best_penalty(self.compliance, self.layout.columns)
         return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
 
     def field_bounds(self, path: Path) -> np.ndarray:
-        """Friction bounds along a path as march.Loading has them."""
+        """Friction bounds along a path, see march.Loading.bound."""
         if path.depth is None:
             return self._constant_bound
         return self.layout.pack(self.bounds_along(path)[:, None])
@@ -151,23 +137,19 @@ class SystemContact:
         return self.layout.pack(np.atleast_2d(self.bound))[None]
 
     def loading(self, path: Path) -> Loading:
-        """The motion and the friction bounds that a path imposes on the contact."""
+        """Motion and friction bounds that a path imposes on the contact."""
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
-    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Tractions of a coarser contact at the points of this one; None if there is no way."""
-        return None
-
     def affordable(self, work: float) -> float:
-        """Marches until a budget has to be looked at: without one, as many as you like."""
+        """Number of marches, of `work` each, until the budget must be checked; infinite here."""
         return np.inf
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Count the marches of compiled code, where there is a budget."""
+        """Subtract marches of compiled code from the budget; does nothing here."""
         return
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes of a state."""
+        """Elastic displacement A q of each point under tractions q, with the shape of the state."""
         system, field = self.system(), self.layout.pack(np.asarray(state, dtype=float))
         image = np.empty_like(field)
         _displace(system, field, image)
@@ -178,34 +160,22 @@ class SystemContact:
         return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 
     def march(
-        self, path: Path, state: np.ndarray, tolerance: float, previous: Guess | None = None
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        previous: Guess | None = None,
+        *,
+        body: Body | None = None,
+        start: np.ndarray | None = None,
     ) -> March:
-        """March along a path; see models.contact.Contact."""
-        trace = self._trace(path, None, state, tolerance, previous)
-        return March(**self._record(trace))
+        """March along a path; see models.contact.Contact.
 
-    def pulled_march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March of a driven body that is at `start` (x, x') at first; see models.pull."""
-        trace = self._trace(path, body.along(path, start), state, tolerance, previous)
-        return PulledMarch(**self._record(trace), body=trace.body)
-
-    def _trace(
-        self,
-        path: Path,
-        drive: Drive | None,
-        state: np.ndarray,
-        tolerance: float,
-        previous: Guess | None,
-    ) -> Trace:
-        loading, pack = self.loading(path), self.layout.pack
+        body: driven body that the contact carries; None if the contact follows the path.  start: x
+        and x' of the body at the start of the path, shape (2,); None for zeros.
+        """
+        drive = None if body is None else body.along(path, np.zeros(2) if start is None else start)
+        loading, pack, unpack = self.loading(path), self.layout.pack, self.layout.unpack
         guess = None if previous is None else previous.fields
         if guess is None or guess.shape != (len(loading.motion), *state.shape):
             guess = np.empty((0, *state.shape))
@@ -213,20 +183,17 @@ class SystemContact:
         while True:
             trace = march(self.system(), loading, drive, state, guess, float(tolerance))
             if not trace.broken:
-                return trace
+                break
             signal.raise_signal(signal.SIGINT)
-
-    def _record(self, trace: Trace) -> dict:
-        """Arguments of a March."""
-        unpack = self.layout.unpack
-        return {
-            "state": unpack(trace.state),
-            "forces": trace.forces,
-            "residual": trace.residual,
-            "iterations": trace.iterations,
-            "solves": len(trace.fields) - 1,
-            "fields": unpack(trace.fields),
-        }
+        return March(
+            unpack(trace.state),
+            trace.forces,
+            trace.residual,
+            trace.iterations,
+            len(trace.fields) - 1,
+            unpack(trace.fields),
+            trace.body,
+        )
 
 
 @kernel

@@ -1,7 +1,7 @@
-"""The contact while its normal load changes: what each part of it carries.
+"""Load on each part of the contact of an axisymmetric indenter, as functions of the depth.
 
-Depth is the indentation over that of the reference state (radius a, load F_z); everything else is
-in the working units of a pressure.Pressure, that of an axisymmetric indenter.
+The depth is the indentation over that of the reference state, which has the radius a and the load
+F_z.  Everything else is in working units (see pressures/pressure.py).
 """
 
 from __future__ import annotations
@@ -15,34 +15,35 @@ from microslip.pressures.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Load within each radius in `edges` (n + 1,) at each depth (k,), shape (k, n + 1)."""
+    """Load within each radius of `edges` (n + 1,) at each depth (k,), shape (k, n + 1)."""
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
 def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Load of the springs of dimensionality reduction within |x| < edges, as load_on_rings.
+    """Load of the springs of dimensionality reduction within |x| < edges, shape (k, n + 1).
 
-    The spring at x carries G* (d - h(x)) per length, h(x) the depth at which the contact radius
-    is x; the integral of x h' is the load of a contact of that radius.
+    The spring at x carries G* (d - h(x)) per length at the depth d, where h(x) is the depth for the
+    contact radius x.  The integral of x h' is the load of a contact of this radius.
     """
     inside = np.minimum(edges, pressure.radius(depth)[:, None])
-    left = depth[:, None] - pressure.depth(inside)
-    return pressure.stiffness * inside * left + pressure.load(inside, inside)
+    compression = depth[:, None] - pressure.depth(inside)
+    return pressure.stiffness * inside * compression + pressure.load(inside, inside)
 
 
 class Growth(NamedTuple):
-    """How a row of rings or springs that fills the reference contact fills one of another size.
+    """Scaling of rings or springs from the reference contact to a contact of another size.
 
     Attributes
     ----------
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     edges : np.ndarray, shape (n + 1,)
-        From 0 to 1.
+        Edges of the rings or springs in the reference contact, 0 to 1.
     load_within : callable
-        load_within(pressure, edges, depth) -> load within each edge, (k, n + 1).
+        load_within(pressure, edges, depth) -> load within each edge, (k, n + 1); one of the
+        functions of this module.
     influence_power, weight_power : int
-        Powers of the contact radius by which influence and weights grow.
+        Powers of the contact radius to which influence and weights are proportional.
     """
 
     pressure: Pressure

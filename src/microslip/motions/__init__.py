@@ -1,1 +1,1 @@
-"""Prescribed kinematics: a motion is one file."""
+"""Prescribed motions of the contact, one in each file, and the problem that they belong to."""

@@ -1,7 +1,7 @@
-"""Several contacts on one body: "load=1,phase=0,amplitude=1;load=1,phase=180,amplitude=1".
+"""Contacts that carry one body, and their text "load=1,phase=0,amplitude=1;load=1,phase=180".
 
-Each has its part of the normal load, its phase of the oscillation and its share of the amplitude;
-all of them go forward with the one body that they carry.
+Each contact has its own load, phase and amplitude of the oscillation.  All contacts move forward
+with the body.
 """
 
 from __future__ import annotations
@@ -14,31 +14,32 @@ from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 
 EXAMPLE = "phase=0;phase=180"
-MEANT = "loads and amplitudes are shares without a unit, phases are in degrees"
+UNITS = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
+"""Largest number of contacts of a body."""
 LIGHTEST, HEAVIEST = 1e-3, 1e3
-"""Allowed range of the ratio of two loads; values outside are taken for typing errors."""
+"""Range of the load of a contact in a text; other values are probably typing errors."""
 LARGEST_SHARE = 1e3
-"""Largest allowed amplitude of a contact over that of the motion; larger ones are typing errors."""
+"""Largest amplitude of a contact in a text; larger values are probably typing errors."""
 
 
 @dataclass(frozen=True)
 class BodyContact:
-    """One of the contacts of a body.
+    """One of several contacts that carry a body.
 
     Parameters
     ----------
     load : float
-        Normal load, over the mean load of the contacts, above 0.
+        Normal load over the mean load of the contacts, above 0.
     phase : float
-        Phase lead of its oscillation over that of the body, degrees.
+        Phase lead of its oscillation over the oscillation of the motion, in degrees.
     amplitude : float
-        Its amplitude over that of the body, at least 0.
+        Amplitude of its oscillation over that of the motion, at least 0.
 
     Raises
     ------
     InputError
-        For numbers out of range.
+        If a number is outside its range.
     """
 
     load: float = 1.0
@@ -53,9 +54,9 @@ class BodyContact:
 
 
 def contacts_of(text: str) -> tuple[BodyContact, ...]:
-    """The contacts that a text says; loads count by their ratios alone.
+    """Parse the text of several contacts; loads are divided by their mean.
 
-    Raises InputError about `contacts` for any other text.
+    Raises InputError about `contacts` if the text cannot be parsed.
     """
     if not isinstance(text, str):
         raise InputError("contacts", text, f"allowed is a text such as {EXAMPLE!r}")
@@ -64,7 +65,9 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
         allowed = f"allowed are up to {MOST_CONTACTS} contacts, not {len(records)}"
         raise InputError("contacts", text, allowed)
     loads = [record["load"] for record in records]
-    mean = sum(loads) / len(loads) if len(set(loads)) > 1 else loads[0]  # equal ones are 1 each
+    mean = (
+        sum(loads) / len(loads) if len(set(loads)) > 1 else loads[0]
+    )  # equal loads become exactly 1
     return tuple(
         BodyContact(record["load"] / mean, record["phase"] % 360.0, record["amplitude"])
         for record in records
@@ -72,7 +75,7 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
 
 
 def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
-    """The text of contacts, to 12 digits."""
+    """Text of contacts, with 12 digits; the inverse of `contacts_of`."""
     return ";".join(
         f"load={one.load:.12g},phase={one.phase:.12g},amplitude={one.amplitude:.12g}"
         for one in contacts
@@ -80,15 +83,15 @@ def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
 
 
 def _numbers(number: int, part: str, text: str) -> dict[str, float]:
-    """Numbers of one contact from its text; error messages name the number of the contact."""
+    """Parse the numbers of one contact, a part of `text`; error messages contain its `number`."""
     try:
-        given = spec.numbers_in(part, text, "contacts", EXAMPLE)
-        spec.refuse_unknown(text, "contacts", given, asdict(BodyContact()))
-        numbers = asdict(BodyContact()) | given
+        words = spec.numbers_in(part, text, "contacts", EXAMPLE)
+        spec.refuse_unknown(text, "contacts", words, asdict(BodyContact()))
+        numbers = asdict(BodyContact()) | words
         spec.refuse_outside(text, "contacts", "load", numbers["load"], (LIGHTEST, HEAVIEST))
         limits = (0.0, LARGEST_SHARE)
         spec.refuse_outside(text, "contacts", "amplitude", numbers["amplitude"], limits)
     except InputError as error:
-        problem = f"contact {number}: {error.allowed} ({MEANT})"
+        problem = f"contact {number}: {error.allowed} ({UNITS})"
         raise InputError("contacts", text, problem) from None
     return numbers

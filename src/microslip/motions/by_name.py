@@ -1,8 +1,8 @@
-"""Every motion by its name.
+"""Registry of motions by name.
 
-A motion is a class in a file of the folder `motions`: `AMotion` in "a_motion.py" has the name
-"a-motion" (see motion.py).  No other file of the package has to name it, except for closed forms
-that hold for it alone, in theory/exact.py.
+A motion is a class in a file of the folder `motions`: the class `AMotion` in the file "a_motion.py"
+has the name "a-motion" (see motion.py).  Closed forms of a motion are in theory/exact.py; no other
+file of the package depends on its name.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ _REGISTRY = Registry(
 MOTIONS = _REGISTRY.classes
 """Name -> subclass of Motion."""
 BROKEN = _REGISTRY.broken
-"""File -> its path and the error in it."""
+"""Name of a file that cannot be used -> its path and the error."""
 find = _REGISTRY.find
 
 
 def motion_named(text: str) -> Motion:
-    """The motion of a text such as "elliptic:forward=0.5,phase=90".
+    """Return the motion for a text such as "elliptic:forward=0.5,phase=90".
 
     Raises
     ------
     InputError
-        For a text that is no motion; the message lists the known names.
+        If the text does not name a motion; the message lists the known names.
     """
     return _REGISTRY.parse(text)

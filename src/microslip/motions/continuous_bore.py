@@ -1,4 +1,4 @@
-"""Forward sliding with a steady rotation about the contact normal, the paper's third motion."""
+"""The paper's third motion: forward sliding with a steady rotation about the contact normal."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class ContinuousBore(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Eqs 12 and 13: forward v~ and angle 1 for each unit of turned angle (in u_lim / a)."""
+        """Forward v~ t and angle t, with the angle in u_lim / a as phase t (Eqs 12 and 13)."""
         return velocity * phase, np.zeros_like(phase), phase + 0.0
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
+        """Radius of the instantaneous centre of rotation if it is inside the contact (Eq 14)."""
         return within_rings(velocity) if velocity < 1.0 else None

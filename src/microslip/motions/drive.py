@@ -3,9 +3,9 @@
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
 
-u: forward displacement of the body beyond the oscillation of the motion; f: forward force of the
-contact; all over mu F_z, u_lim and the time 1 / omega.  Here F_z is the load without oscillation.
-"""
+Here u is the forward displacement of the body without the oscillation of the motion, and f is the
+forward force of the contact.  Units are mu F_z, u_lim and the time 1 / omega, where F_z is the
+normal load without oscillation."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Drive:
     Attributes
     ----------
     force : float or None
-        P; None for a spring.
+        Prescribed force P over mu times the mean normal load; None for a spring.
     stiffness, mass, damping : float
-        k over mu F_z / u_lim, m over mu F_z / (u_lim omega^2), c over mu F_z / (u_lim omega).
+        k over mu F_z / u_lim, m over mu F_z / (u_lim omega^2) and c over mu F_z / (u_lim omega).
     """
 
     force: float | None
@@ -38,19 +38,19 @@ class Drive:
 
 @dataclass(frozen=True)
 class Force(Drive):
-    """A prescribed forward force, on a body that may have a mass.
+    """A prescribed forward force on a body with or without mass.
 
     Parameters
     ----------
     force : float
-        Over mu times the mean normal load.
+        Force over mu times the mean normal load.
     mass : float
-        Over mu F_z / (u_lim omega^2).
+        Mass of the body over mu F_z / (u_lim omega^2).
 
     Raises
     ------
     InputError
-        For a force that is no finite number, or a mass below 0.
+        If the force is not a finite number, or the mass is negative.
     """
 
     force: float
@@ -71,16 +71,16 @@ class Spring(Drive):
     Parameters
     ----------
     stiffness : float
-        Stiffness of the spring, over mu F_z / u_lim, above 0.
+        Stiffness of the spring over mu F_z / u_lim.
     mass : float
-        Mass of the body, over mu F_z / (u_lim omega^2).
+        Mass of the body over mu F_z / (u_lim omega^2).
     damping : float
-        Damping of a dashpot parallel to the spring, over mu F_z / (u_lim omega).
+        Damping of a dashpot parallel to the spring over mu F_z / (u_lim omega).
 
     Raises
     ------
     InputError
-        For numbers that are not finite or below 0.
+        If a number is negative or not finite.
     """
 
     stiffness: float

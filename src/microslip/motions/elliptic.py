@@ -1,9 +1,10 @@
-"""Oscillation along two directions at once: lines, ellipses, figures of more cycles (Lissajous).
+"""Oscillation along both directions: lines, ellipses and Lissajous figures.
 
     elliptic:forward=F,lateral=L,phase=P,forward_cycles=M,lateral_cycles=N
 
-moves by forward v~ t + A F sin(M t + P), lateral A L sin(N t): P in degrees, A the amplitude, in
-u_lim.  The defaults are a circle; F = 0 is the transverse motion, L = 0 the longitudinal one.
+The displacement is v~ t + A F sin(M t + P) forward and A L sin(N t) lateral, in u_lim, with the
+amplitude A and the phase P in degrees.  The defaults are a circle.  F = 0 is the transverse motion,
+and L = 0 the longitudinal motion.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from microslip.motions.symmetry import reverses_forward
 from microslip.pressures.pressure import Pressure
 
 MOST_CYCLES = 20
+"""Largest number of cycles in a period."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Elliptic(Motion):
     Parameters
     ----------
     forward, lateral : float
-        Shares of the amplitude, 0 to 1.
+        Amplitudes in each direction over the amplitude of the motion, 0 to 1.
     phase : float
         Phase of the forward oscillation, degrees.
     forward_cycles, lateral_cycles : int
@@ -38,7 +40,8 @@ class Elliptic(Motion):
     Raises
     ------
     InputError
-        For shares outside 0..1, both 0, and cycles that are no whole numbers in their range.
+        If a share is outside 0..1, if both are 0, or if a number of cycles is not a whole number
+        from 1 to 20.
     """
 
     forward: float = 1.0
@@ -70,7 +73,7 @@ class Elliptic(Motion):
 
     @cached_property
     def reach(self) -> float:
-        """Largest distance from the middle, over the amplitude."""
+        """Largest distance from the mean position, over the amplitude."""
         ahead, aside, _ = self.displacement(LOOP, 0.0, 1.0, 0.0)
         return float(np.hypot(ahead, aside).max())
 
@@ -98,11 +101,11 @@ class Elliptic(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t + A F sin(M t + P), lateral A L sin(N t)."""
+        """Forward v~ t + A F sin(M t + P) and lateral A L sin(N t)."""
         ahead = amplitude * self.forward * np.sin(self.forward_cycles * phase + self.lead)
         aside = amplitude * self.lateral * np.sin(self.lateral_cycles * phase)
         return velocity * phase + ahead, aside, np.zeros_like(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation of the same reach."""
+        """Stick radius of a straight oscillation with the same largest distance."""
         return stick_focus(amplitude * self.reach, pressure)

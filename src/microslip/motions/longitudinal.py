@@ -1,4 +1,4 @@
-"""Forward sliding with an oscillation along the same direction."""
+"""Forward sliding with an oscillation in the forward direction."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Longitudinal(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t + x~ sin t."""
+        """Forward displacement v~ t + x~ sin t."""
         forward = velocity * phase + amplitude * np.sin(phase)
         return forward, np.zeros_like(phase), np.zeros_like(phase)
 
@@ -30,12 +30,13 @@ class Longitudinal(Motion):
         return stick_focus(amplitude, pressure)
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases at which the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
+        """Phases at which the velocity v~ + x~ cos t changes its sign, or -pi/2, pi/2 and 3 pi/2 if
+        it never does."""
         back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
         return -back, back, 2.0 * np.pi - back
 
     def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """First loading with Masing's memory, for pressures with a known loading curve."""
+        """Mean friction by Masing's rule, for pressures with a known loading curve."""
         if pressure.loading is None:
             return None
         return float(masing.longitudinal(velocity, amplitude, pressure.loading))

@@ -1,8 +1,8 @@
-"""The base class of motions: displacement as a function of the phase, and its symmetries.
+"""Base class of motions: displacement as a function of the phase, and symmetries.
 
-Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
-across it, with forward x lateral such that a positive angle moves points on the positive lateral
-side forward.  Displacements are in u_lim, angles in u_lim / a, time is the phase omega t.
+*Forward* is the direction of sliding, and *lateral* is perpendicular to it.  A positive angle moves
+points with a positive lateral coordinate forward.  Displacements are in u_lim, angles in u_lim / a,
+and time is the phase omega t.
 """
 
 from __future__ import annotations
@@ -17,50 +17,50 @@ from microslip.foundation import spec
 from microslip.pressures.pressure import Pressure
 
 FOCUS_RANGE = (0.05, 0.9995)
-"""Radii that rings may be graded towards; a smaller stick zone carries next to no load."""
-
+"""Range of radii towards which rings are graded.  A smaller stick zone carries almost no load."""
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
-"""Phases of a period, fine enough to find the extremes of an oscillation."""
+"""Phases of a period at which the extremes of an oscillation are evaluated."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
-"""From one turning point of a sine to the next."""
+"""Phases of a turning point of a sine and of the next one."""
 WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
+"""Phases of three turning points of a sine, a whole period."""
 
 
 @dataclass(frozen=True)
 class Motion:
     """A prescribed motion.
 
-    Each motion is a subclass in a file of its own.  Its fields are the numbers that may follow its
-    name, as in "elliptic:forward=0.5,phase=30", which `str` writes back.  The name is that of the
-    class: ContinuousBore is "continuous-bore".
+    Each motion is a subclass in its own file.  Its fields are the numbers that may follow its name
+    in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this text.  The name follows
+    from that of the class: ContinuousBore has the name "continuous-bore".
 
     Attributes
     ----------
     summary, numbers : str
-        Description in a line, and of the numbers.
+        Description of the motion in one line, and of its numbers.
     velocity_label, amplitude_label : str
         Formulas of the dimensionless groups.
     periodic : bool
-        Whether the motion oscillates with period 2 pi and has an amplitude; otherwise it is steady.
+        Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     rotates : bool
-        Whether the angle varies, so that tractions depend on the angle around the contact.
+        Whether the contact rotates.  Tractions then depend on the polar angle.
     half_period_mirror : bool
-        Whether the motion half a period later is its own image under lateral -> -lateral, angle ->
-        -angle.  Otherwise a march takes a whole period.
+        Whether the second half of a period is the image of the first half under lateral ->
+        -lateral, angle -> -angle.  Otherwise a march takes a whole period.
     straight : bool
-        Whether the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
+        Whether the oscillation alone is along one line, between its ends at -pi/2 and pi/2.
     propels : bool
-        Whether the oscillation alone may propel the contact forward, so that friction may be
+        Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative; see `symmetry.reverses_forward`.
     cycles : int
-        Largest number of cycles in a period.
+        Largest number of cycles of a component in a period.
     half_disc : bool
-        Whether half of a round contact determines the other half: by mirror symmetry across the
-        lateral axis for rotations, else by point symmetry.  A rotation together with a lateral
-        motion has neither.
+        Whether symmetry gives the tractions of one half of a round contact from those of the other
+        half: a mirror across the lateral axis for rotations, else point symmetry.  A rotation
+        together with a lateral motion has neither symmetry.
     loads : bool
-        Whether the normal load oscillates; then `depth`, `deepest` and `mean_load` count.
+        Whether the normal load oscillates, as described by `depth`, `deepest` and `mean_load`.
     """
 
     summary: ClassVar[str] = ""
@@ -70,8 +70,9 @@ class Motion:
     periodic: ClassVar[bool] = True
     loads: ClassVar[bool] = False
     closed_form: ClassVar[Callable | None] = None
-    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0 (velocity 0: its
-    limit), or None where it is not known; None for motions without one."""
+    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None where no
+    closed form is known; velocity 0 is the static limit.  None for motions without a closed
+    form."""
 
     @property
     def rotates(self) -> bool:
@@ -102,7 +103,7 @@ class Motion:
 
     @property
     def name(self) -> str:
-        """Name with the numbers that differ from their defaults."""
+        """Name of the class with the numbers that differ from their defaults."""
         return spec.text_of(self)
 
     def __str__(self) -> str:
@@ -111,24 +112,24 @@ class Motion:
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward, lateral and angular displacement, arrays of the shape of the phase."""
+        """Forward, lateral and angular displacement, each with the shape of `phase`."""
         raise NotImplementedError
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius towards which rings are graded, where the traction has its kink; None: nowhere."""
+        """Radius of the kink of the traction, towards which rings are graded; None without one."""
         return None
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Turning points: phases from the start of a march to its end, half a period or a whole
-        one later."""
+        """Phases of the turning points, from the start of a march to its end half a period or a
+        period later."""
         return HALF_PERIOD if self.half_period_mirror else WHOLE_PERIOD
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation over that of the reference state, >= 0; 0 where contact is lost."""
+        """Indentation depth over that of the reference state, >= 0; 0 without contact."""
         return np.ones_like(phase)
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        """Largest value of `depth`."""
+        """Largest value of `depth` in a period."""
         return 1.0
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
@@ -138,17 +139,18 @@ class Motion:
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement in one radian of phase, in u_lim.
 
-        It is proportional to the velocity, so it is computed at velocity 1: at a small velocity it
-        would drown in the rounding of the oscillation.
+        It is proportional to the velocity, and computed at velocity 1, since the rounding error of
+        the oscillation would exceed it at small velocities.
         """
         ends = np.array([0.0, 2.0 * np.pi])
         fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
         still, _, _ = self.displacement(ends, 0.0, amplitude, poisson)
-        gained = (fast[1] - still[1]) - (fast[0] - still[0])
-        return float(gained) / (2.0 * np.pi) * velocity
+        advance = (fast[1] - still[1]) - (fast[0] - still[0])
+        return float(advance) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
-        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady motions."""
+        """Half the peak-to-peak displacement of the edge of the contact, in u_lim; 0 for steady
+        motions."""
         if not self.periodic:
             return 0.0
         ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
@@ -156,12 +158,14 @@ class Motion:
 
 
 def within_rings(radius: float) -> float:
-    """The radius, kept off the centre and the edge so that no ring degenerates."""
+    """Clip a radius to FOCUS_RANGE, so that no ring degenerates at the centre or the edge."""
     return float(np.clip(radius, *FOCUS_RANGE))
 
 
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
-    """Stick radius after a displacement `reach` (u_lim) along a line and back (Eq 8 for a sphere);
-    None at full slip, or if the stick zone is not a circle."""
+    """Stick radius of an oscillation along a line with the amplitude `reach`, in u_lim.
+
+    For a sphere it is Eq 8.  None at full slip, or if the stick zone is not a circle.
+    """
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

@@ -1,14 +1,13 @@
-"""Oscillation of the normal load or of the indentation, alone or with one in the plane.
+"""Oscillation of the normal load or of the indentation, with or without one in the plane.
 
     normal:load=1,indentation=0,lateral=L,forward=F,angle=B,phase=P,normal_cycles=K,...
 
-With the amplitude A the normal load is 1 + A load sin(K t) of its mean, or the indentation
-1 + A indentation sin(K t) of its mean, whichever is above 0; contact is lost where that falls to 0.
-In the plane the sphere moves forward by v~ t + A F sin(M t + P), sideways by A L sin(N t + P), in
-u_lim, and turns by the bore amplitude A B, angle ~ sin(Q t + P): P in degrees.  Reference of u_lim,
-a and mu F_z is the state without oscillation, and friction is over mu times the mean of the load as
-it is.
-"""
+With the amplitude A, the normal load over its reference is 1 + A load sin(K t).  If `indentation`
+is above 0, the indentation depth over its reference is 1 + A indentation sin(K t) instead.  Contact
+is lost where this is below 0.  In the plane the displacement is v~ t + A F sin(M t + P) forward and
+A L sin(N t + P) lateral, in u_lim; the angle is the bore angle of the amplitude A B times sin(Q t +
+P).  P is in degrees.  The units u_lim, a and mu F_z are those of the state without oscillation.
+Friction is over mu times the actual mean load."""
 
 from __future__ import annotations
 
@@ -32,20 +31,20 @@ class Normal(Motion):
     Parameters
     ----------
     load, indentation : float
-        Share of the amplitude by which the load or the indentation oscillates, over its mean, 0 to
-        1; exactly one of them is above 0.
+        Amplitude of the load or of the indentation over that of the motion, 0 to 1.  `load` must
+        keep its default of 1 if `indentation` is above 0.
     lateral, forward, angle : float
-        Shares of the amplitude, 0 to 1: of u_lim, u_lim and phi_lk(a/2).
+        Amplitudes over that of the motion, 0 to 1, in units of u_lim, u_lim and phi_lk(a/2).
     phase : float
-        Phase of the oscillation in the plane, degrees.
+        Phase of the oscillation in the plane, in degrees.
     normal_cycles, lateral_cycles, forward_cycles, angle_cycles : int
         Cycles in a period, 1 to 20.
 
     Raises
     ------
     InputError
-        For shares outside 0..1, neither or both of load and indentation, and cycles that are no
-        whole numbers in their range.
+        If a share is outside 0..1, if neither load nor indentation oscillates, if both are set, or
+        if a number of cycles is not a whole number from 1 to 20.
     """
 
     load: float = 1.0
@@ -84,22 +83,22 @@ class Normal(Motion):
 
     @property
     def lead(self) -> float:
-        """Phase of the oscillation in the plane, radians."""
+        """Phase of the oscillation in the plane, in radians."""
         return float(np.deg2rad(self.phase % 360.0))
 
     @property
     def by_load(self) -> bool:
-        """Whether the load oscillates, else the indentation."""
+        """Whether the load is prescribed; otherwise the indentation is."""
         return self.indentation == 0.0
 
     @property
     def share(self) -> float:
-        """Share of the amplitude by which the load or the indentation oscillates."""
+        """Amplitude of the load or of the indentation, over that of the motion."""
         return self.load if self.by_load else self.indentation
 
     @property
     def in_plane(self) -> dict[str, int]:
-        """Cycles of the components in the plane that oscillate."""
+        """Component in the plane that oscillates -> its number of cycles."""
         components = {
             "lateral": (self.lateral, self.lateral_cycles),
             "forward": (self.forward, self.forward_cycles),
@@ -149,23 +148,23 @@ class Normal(Motion):
         )
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Half periods from the least load of the first cycle on."""
+        """Phases at distances of pi, from the smallest load of the first cycle on."""
         least = -0.5 * np.pi / self.normal_cycles
         return tuple(least + np.pi * np.arange(2 if self.half_period_mirror else 3))
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation over that of the reference state, >= 0."""
+        """Indentation depth over that of the reference state, >= 0."""
         height = 1.0 + amplitude * self.share * np.sin(self.normal_cycles * phase)
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if self.by_load else height
 
     def _extreme(self, sign: float, amplitude: float, pressure: Pressure) -> float:
-        """Least (sign -1) or largest (1) indentation."""
+        """Smallest (sign = -1) or largest (sign = 1) indentation depth."""
         height = max(1.0 + sign * amplitude * self.share, 0.0)
         return float(pressure.of_load(height)) if self.by_load else height
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        """Largest indentation over that of the reference state."""
+        """Largest indentation depth over that of the reference state."""
         return self._extreme(1.0, amplitude, pressure)
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
@@ -173,13 +172,13 @@ class Normal(Motion):
         return oscillating_load.mean_load(amplitude * self.share, self.by_load, pressure)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Edge of the area that never loses contact, over the largest radius."""
+        """Smallest contact radius in a period over the largest one."""
         least = pressure.radius(self._extreme(-1.0, amplitude, pressure))
         return within_rings(least / pressure.radius(self.deepest(amplitude, pressure)))
 
     def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Friction without an oscillation in the plane, for axisymmetric indenters."""
+        """Mean friction without an oscillation in the plane, for axisymmetric indenters."""
         if self.in_plane or not pressure.is_indenter:
             return None
-        over = velocity / self.normal_cycles
-        return oscillating_load.friction(over, amplitude * self.share, self.by_load, pressure)
+        slow = velocity / self.normal_cycles
+        return oscillating_load.friction(slow, amplitude * self.share, self.by_load, pressure)

@@ -1,14 +1,13 @@
-"""A problem: a motion at one velocity and amplitude, its drive, its pressure, and its contacts.
+"""A problem: a motion at one velocity and amplitude, its drive, pressure and contacts.
 
-A body can rest on several contacts of the same shape.  The units of the body are those of the
-contact that carries the mean load: forces are over mu times the load of all, displacements over its
-u_lim.  A contact of the same shape and material under another load has an indentation larger by
-`extent`, and its u_lim grows in proportion; its radius, and with it its stiffness, grow less.  The
-amplitude and the velocity of the body are lengths, so in a contact's own units they are divided by
-`extent`.
+A body can rest on several contacts of the same shape.  The units of the body are those of a contact
+under the mean load: forces are over mu times the load of all contacts, and displacements over u_lim
+of this contact.  Under another load a contact has an indentation and a u_lim that are `extent`
+times larger.  Its radius and its stiffness change as well, but by less.  Amplitude and velocity of
+the body are lengths, so that they are divided by `extent` in the units of a contact.
 
-All contacts go forward with the body.  At a prescribed velocity no contact acts on another, and
-phases do not count.
+All contacts move forward with the body.  At a prescribed velocity the contacts are independent, and
+their phases have no effect.
 """
 
 from __future__ import annotations
@@ -27,11 +26,10 @@ from microslip.motions.motion import LOOP, Motion
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
-RETURNED = 1e-12
-"""Share of the amplitude below which an oscillation is rounding."""
+SMALLEST_OSCILLATION = 1e-12
+"""Share of the amplitude below which a difference of oscillations is rounding error."""
 ROUNDING = 1e-9
-"""Largest deviation from 1 of the mean load of several contacts, since loads are written with 12
-digits."""
+"""Largest deviation of the mean load of several contacts from 1; their texts have 12 digits."""
 
 
 @dataclass(frozen=True)
@@ -43,30 +41,31 @@ class Problem:
     motion : Motion
         Such as `Transverse()` or `Elliptic(forward=0.5)`.
     velocity : float
-        The paper's dimensionless group; 0: the limit v -> 0.  Under a prescribed force it follows
-        from the force and is left at 0.
+        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force it is
+        part of the result; leave it at 0.
     amplitude : float or None
-        The paper's dimensionless group; None for steady motions.
+        The paper's dimensionless amplitude; None for steady motions.
     poisson : float
         Poisson's ratio, 0 to 0.5.
     pressure : Pressure
         Distribution of the load.
     drive : Force, Spring or None
-        Drive of the forward motion; None: the velocity is prescribed.
+        Drive of the forward motion; None if the velocity is prescribed.
     contacts : tuple of BodyContact
-        Contacts that the body rests on; empty: one.
+        Contacts that carry the body; empty for a single contact.
     backward : bool
-        Whether the motion is seen in the mirror across the forward direction: its friction at a
-        velocity v is that of the motion at -v with the other sign, for a symmetric pressure.
+        Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
+        velocity v is then minus that of the original motion at -v.
     follows : bool
-        Whether the body follows the mean forward oscillation of its contacts, as one without mass
-        under a constant force does; the contacts then oscillate as if there were none.
+        Whether the body follows the mean forward oscillation of its contacts, as a body without
+        mass under a constant force does.  This oscillation is then subtracted from that of each
+        contact.
 
     Raises
     ------
     InputError
-        For arguments of another type, numbers that are not finite, and an amplitude that is missing
-        or that a steady motion does not have.
+        If an argument has another type, if a number is not finite, if the amplitude is missing, or
+        if a steady motion has one.
     """
 
     motion: Motion
@@ -90,7 +89,7 @@ class Problem:
             raise InputError("contacts", self.contacts, "allowed is a tuple of BodyContact")
         load = sum(one.load for one in self.contacts) / max(len(self.contacts), 1)
         if self.contacts and abs(load - 1.0) > ROUNDING:
-            allowed = "allowed are loads over their mean: this mean of them has to be 1"
+            allowed = "allowed are loads over their mean load: the mean of all loads must be 1"
             raise InputError("contacts", load, allowed)
         numbers = {"velocity": self.velocity, "poisson": self.poisson}
         if self.motion.periodic:
@@ -105,7 +104,7 @@ class Problem:
                 raise InputError(name, value, "allowed is a finite number")
 
     def __str__(self) -> str:
-        """The problem in a line, without defaults."""
+        """Text of the problem in one line, without defaults."""
         words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
         if self.amplitude is not None:
             words.append(f"amplitude={self.amplitude:.12g}")
@@ -115,56 +114,57 @@ class Problem:
         words += [f"contacts={contacts_text(self.contacts)}"] if self.contacts else []
         return " ".join(words)
 
-    # Symmetries, which the pressure may break
+    # Symmetries of the motion that the pressure has as well
 
     @property
     def half_period_mirror(self) -> bool:
-        """Whether the solution half a period later is its own image, see Motion."""
+        """Whether the second half of a period is the mirror image of the first half, see Motion."""
         return self.motion.half_period_mirror and self.pressure.mirrored
 
     @property
     def straight(self) -> bool:
-        """Whether the oscillation alone goes to and fro on a line, see Motion."""
+        """Whether the oscillation alone is along one line, see Motion."""
         return self.motion.straight and not self.follows
 
     @property
     def propels(self) -> bool:
-        """Whether the oscillation alone may propel the contact, see Motion."""
+        """Whether the oscillation alone can propel the contact, see Motion."""
         return self.motion.propels and not self.follows
 
     # Kinematics
 
     @property
     def size(self) -> float:
-        """The amplitude; 0 for a steady motion, which has none."""
+        """The amplitude; 0 for a steady motion."""
         return 0.0 if self.amplitude is None else self.amplitude
 
     @property
     def _sign(self) -> float:
         return -1.0 if self.backward else 1.0
 
-    def _moved(
+    def _displacement(
         self, phase: np.ndarray, velocity: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rigid displacement at a velocity."""
         motion, sign = self.motion, self._sign
-        place = (self.size, self.poisson)
-        forward, lateral, angle = motion.displacement(phase, sign * velocity, *place)
+        amplitude = (self.size, self.poisson)
+        forward, lateral, angle = motion.displacement(phase, sign * velocity, *amplitude)
         if self.follows and not self.contacts:
-            forward = forward - motion.displacement(phase, 0.0, *place)[0]
+            forward = forward - motion.displacement(phase, 0.0, *amplitude)[0]
         return sign * forward, lateral, sign * angle
 
     def displacement(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rigid displacement (forward, lateral, angle) at a phase."""
-        return self._moved(phase, self.velocity)
+        return self._displacement(phase, self.velocity)
 
     def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement without the forward motion."""
-        return self._moved(phase, 0.0)
+        """Rigid displacement (forward, lateral, angle) at a phase, for velocity 0."""
+        return self._displacement(phase, 0.0)
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Turning points, see Motion; under a pressure that is not symmetric both halves of a
-        period."""
+        """Phases of the turning points, see Motion; of a whole period if the pressure is not
+        symmetric."""
         velocity = 0.0 if self.follows else self._sign * self.velocity
         first = self.motion.turns(velocity, self.size)
         if self.motion.half_period_mirror and not self.half_period_mirror:
@@ -173,12 +173,12 @@ class Problem:
 
     @property
     def start(self) -> float:
-        """Phase at which a march begins: the first turning point, of the first contact."""
+        """Phase at which a march begins: the first turning point of the first contact."""
         return self.parts[0].turns(self.follows)[0] if self.contacts else self.turns[0]
 
     @property
     def focus(self) -> float | None:
-        """Radius towards which rings are graded, see Motion."""
+        """Radius towards which rings are graded, or None; see Motion."""
         return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
 
     @property
@@ -193,15 +193,18 @@ class Problem:
 
     @property
     def stroke(self) -> float:
-        """Half the way that the edge of the contact oscillates, in u_lim."""
+        """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
         return self.motion.stroke(self.size, self.poisson)
 
     # Normal load
 
     @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Indentation over that of the reference state, a function of the phase; of several
-        contacts one a row.  None: the load is constant."""
+        """Function of the phase that returns the indentation depth over that of the reference
+        state.
+
+        For several contacts it returns one row for each.  None if the load is constant.
+        """
         if not self.motion.loads:
             return None
         if self.contacts:
@@ -210,7 +213,7 @@ class Problem:
 
     @property
     def deepest(self) -> float:
-        """Largest indentation over that of the reference state."""
+        """Largest indentation depth over that of the reference state."""
         return self.motion.deepest(self.size, self.pressure)
 
     @cached_property
@@ -224,7 +227,7 @@ class Problem:
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """Each contact of a body by itself; empty for one contact."""
+        """The contacts of the body as separate problems; empty for a single contact."""
         if not (self.follows and self.contacts):
             return tuple(_part(self, one) for one in self.contacts)
         parts = replace(self, follows=False).parts
@@ -239,19 +242,17 @@ class Problem:
             return tuple(part.share for part in self.parts)
         return tuple(part.share * part.problem.mean_load / self.mean_load for part in self.parts)
 
-    @property
-    def moves_together(self) -> bool:
-        """Whether all contacts oscillate alike along the forward direction."""
-        return _move_together(self.parts, self.size)
-
     @cached_property
     def is_balanced(self) -> bool:
-        """Whether each contact has an opposite that oscillates half a period later, where the
-        oscillation is its own reverse: at rest the two exert no forward force together."""
+        """Whether the contacts form pairs that exert no mean forward force together.
+
+        The oscillation of each contact is then the reverse of that of its partner: the oscillation
+        changes its sign after half a period, and phases in a pair differ by half a period.
+        """
         there = self.motion.displacement(LOOP + np.pi, 0.0, self.size, self.poisson)
         here = self.motion.displacement(LOOP, 0.0, self.size, self.poisson)
         reversed_at = max(float(np.ptp(a + b)) for a, b in zip(here, there, strict=True))
-        if reversed_at > RETURNED * max(self.size, 1.0):
+        if reversed_at > SMALLEST_OSCILLATION * max(self.size, 1.0):
             return False
         count = self.contacts.count
         opposite = [replace(one, phase=(one.phase + 180.0) % 360.0) for one in self.contacts]
@@ -260,18 +261,18 @@ class Problem:
 
 @dataclass(frozen=True)
 class Part:
-    """One contact of a body.
+    """One of several contacts as a problem of its own.
 
     Attributes
     ----------
     problem : Problem
-        The contact alone, in its own units.
+        Problem of the contact alone, in its own units.
     share : float
-        Its fraction of the load of the body, without oscillation.
+        Fraction of the load of the body that the contact carries, without oscillation.
     extent : float
-        Its u_lim over that of the body.
+        u_lim of the contact over that of the body.
     lead : float
-        Phase by which its oscillation leads, radians.
+        Phase lead of its oscillation, in radians.
     """
 
     problem: Problem
@@ -280,27 +281,32 @@ class Part:
     lead: float
 
     def oscillation(self, phase: np.ndarray) -> np.ndarray:
-        """Oscillation at a phase of the body, shape (3, ...), in units of the body; the angle in
-        units that move a place in the contact, over its radius, by so much."""
+        """Forward, lateral and angular oscillation at a phase of the body, shape (3, ...).
+
+        Displacements are over u_lim of the body.  The angle is multiplied by the contact radius of
+        this contact, so that it is over u_lim as well.
+        """
         return self.extent * np.array(self.problem.oscillation(phase + self.lead))
 
     def depth(self, phase: np.ndarray) -> np.ndarray:
-        """Indentation at a phase of the body, if the load oscillates; see Problem."""
-        one = self.problem
-        return one.motion.depth(phase + self.lead, one.size, one.pressure)
+        """Indentation depth at a phase of the body, if the load oscillates; see Problem."""
+        problem = self.problem
+        return problem.motion.depth(phase + self.lead, problem.size, problem.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
-        """Phases of the body at which the contact turns, or its oscillation alone (`still`)."""
+        """Phases of the body at the turning points of the contact; `still`: at velocity 0."""
         problem = replace(self.problem, velocity=0.0) if still else self.problem
         return np.array(problem.turns) - self.lead
 
 
 def _move_together(parts: Sequence[Part], amplitude: float) -> bool:
+    """Whether the forward oscillations of all contacts are equal."""
     ahead = np.array([part.oscillation(LOOP)[0] for part in parts])
-    return float(np.ptp(ahead, axis=0).max()) <= RETURNED * max(amplitude, 1.0)
+    return float(np.ptp(ahead, axis=0).max()) <= SMALLEST_OSCILLATION * max(amplitude, 1.0)
 
 
 def _part(body: Problem, one: BodyContact) -> Part:
+    """The Part of a contact of a body."""
     motion, pressure = body.motion, body.pressure
     extent = radius = 1.0
     if one.load != 1.0:
@@ -317,7 +323,7 @@ def _part(body: Problem, one: BodyContact) -> Part:
 
 
 def contacts_refusal(problem: Problem) -> str:
-    """The allowed values, where a motion or a pressure excludes several contacts; else ""."""
+    """Text of the allowed contacts if the motion or the pressure excludes these, otherwise ""."""
     motion = problem.motion
     if not motion.periodic:
         return f"allowed is none: {motion.name} does not oscillate"

@@ -1,4 +1,4 @@
-"""Forward sliding with an oscillation across it, the paper's first motion."""
+"""The paper's first motion: forward sliding with an oscillation in the lateral direction."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Transverse(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
+        """Forward v~ t and lateral y~ sin t (Eqs 1, 2 and 4)."""
         return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:

@@ -1,9 +1,10 @@
-"""Oscillation sideways and in rotation at once.
+"""Oscillation in the lateral direction together with an oscillating rotation.
 
     transverse-bore:lateral=L,angle=B,phase=P
 
-moves by lateral A L sin(t) and turns by the bore amplitude A B, angle ~ sin(t + P): P in degrees, A
-the amplitude.  B = 0 is the transverse motion, L = 0 the bore with its velocity over omega u_lim.
+With the amplitude A, the lateral displacement is A L sin(t), and the angle is the bore angle of the
+amplitude A B times sin(t + P), with P in degrees.  B = 0 is the transverse motion.  L = 0 is the
+bore, except that the velocity is over omega u_lim.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ class TransverseBore(Motion):
     Parameters
     ----------
     lateral, angle : float
-        Shares of the amplitude, 0 to 1: of u_lim, and of phi_lk(a/2).
+        Amplitudes over that of the motion, 0 to 1, in units of u_lim and phi_lk(a/2).
     phase : float
-        Phase of the rotation, degrees.
+        Phase of the rotation, in degrees.
 
     Raises
     ------
     InputError
-        For shares outside 0..1, or both 0.
+        If a share is outside 0..1, or if both are 0.
     """
 
     lateral: float = 1.0
@@ -55,7 +56,7 @@ class TransverseBore(Motion):
 
     @property
     def lead(self) -> float:
-        """Phase of the rotation, radians."""
+        """Phase of the rotation, in radians."""
         return float(np.deg2rad(self.phase % 360.0)) if self.lateral > 0.0 else 0.0
 
     @property
@@ -74,11 +75,11 @@ class TransverseBore(Motion):
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Forward v~ t, lateral A L sin t, angle ~ sin(t + P)."""
-        turned = hertz.bore_angle(amplitude * self.angle, poisson) * np.sin(phase + self.lead)
-        return velocity * phase, amplitude * self.lateral * np.sin(phase), turned
+        angle = hertz.bore_angle(amplitude * self.angle, poisson) * np.sin(phase + self.lead)
+        return velocity * phase, amplitude * self.lateral * np.sin(phase), angle
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of the lateral oscillation alone, or of the rotation if there is none."""
+        """Stick radius of the lateral oscillation alone, or of the rotation alone if L = 0."""
         if self.lateral > 0.0:
             return stick_focus(amplitude * self.lateral, pressure)
         return within_rings(float(paper.bore_stick_radius(amplitude * self.angle)))

@@ -1,4 +1,4 @@
-"""The transverse motion at a lateral speed that is constant but for its sign."""
+"""The transverse motion with a triangular wave in place of the sine."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ class Zigzag(Transverse):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t, lateral to and fro between -y~ and y~, straight in the plane."""
+        """Forward v~ t and lateral y~ times a triangular wave."""
         lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
         return velocity * phase, lateral, np.zeros_like(phase)

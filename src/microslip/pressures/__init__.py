@@ -1,1 +1,1 @@
-"""Normal contact: how the load is spread, and so what friction every point can take."""
+"""Normal contact: distributions of the load, and the friction bound at every point."""

@@ -1,14 +1,14 @@
-"""Axisymmetric indenters: any profile whose contact is a full circle that grows with the load.
+"""Axisymmetric indenters: profiles whose contact is a full circle that grows with the load.
 
-By the method of dimensionality reduction an indenter with the profile f(r) is equivalent to the
-plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr: pressed to the depth D(c) it touches
-up to the radius c.  With h = D / D(1), and the friction bound the sum of flat punches,
+By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
+plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c) the
+contact radius is c.  With h = D / D(1), and the friction bound as a sum of flat punches,
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx
     load beyond r = 2 G* Integral_r^c h'(x) sqrt(x^2 - r^2) dx.
 
-With x = r cosh(eta) these integrals are smooth.
+The substitution x = r cosh(eta) makes these integrals smooth.
 """
 
 from __future__ import annotations
@@ -18,23 +18,24 @@ from functools import cached_property
 
 import numpy as np
 
-from microslip.pressures.cell_loads import round_loads
-from microslip.pressures.pressure import Pressure, of_radii
+from microslip.pressures.pressure import RoundPressure
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_RADIUS = 1e-7
-"""Radii below this one, over the contact radius, are taken for it: some bounds have no finite value
-at the centre."""
+"""Smallest radius over the contact radius; smaller ones are replaced by it, because the bound of
+some indenters is infinite at the centre."""
 SMALLEST_CONTACT = 1e-100
+"""Smallest contact radius, which keeps divisions by it finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
+"""Number of Newton steps after the initial value from a table."""
 _REFINEMENTS = 3
-"""Grids on which the largest bound is searched, each 128 times finer than the one before."""
+"""Number of grids in the search for the largest bound, each 128 times finer than the last."""
 
 
 @dataclass(frozen=True)
-class Indenter(Pressure):
+class Indenter(RoundPressure):
     """Base class of axisymmetric indenters: a subclass gives `depth`, `slope` and `radius`.
 
     Attributes
@@ -46,11 +47,11 @@ class Indenter(Pressure):
     flat = 0.0
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation that makes the contact radius c, 1 at 1."""
+        """Indentation depth for the contact radius c; depth(1) = 1."""
         raise NotImplementedError
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of the depth, 0 below the radius of a flat end."""
+        """Derivative of `depth`; 0 for c below the radius of a flat end."""
         raise NotImplementedError
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
@@ -59,7 +60,7 @@ class Indenter(Pressure):
 
     @cached_property
     def G_star(self) -> float:
-        # x = flat + (1 - flat) s^2 takes the square root out of slopes that begin at a flat end
+        # x = flat + (1 - flat) s^2 removes the square root of the slope at the edge of a flat end
         x = self.flat + (1.0 - self.flat) * _NODES**2
         step = (1.0 - self.flat) * 2.0 * _NODES * _WEIGHTS
         return 0.5 / float(np.sum(step * x * self.slope(x)))
@@ -67,26 +68,27 @@ class Indenter(Pressure):
     def _rule(
         self, r: np.ndarray | float, c: np.ndarray | float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Nodes x with weights dx / sqrt(x^2 - r^2) on a last axis, and that root."""
+        """Quadrature from r to c on a new last axis: nodes x, weights dx / sqrt(x^2 - r^2), radii
+        r, and roots sqrt(x^2 - r^2)."""
         radii, contact = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
         contact = np.maximum(contact, SMALLEST_CONTACT)[..., None]
         radii = np.clip(radii[..., None], SMALLEST_RADIUS * contact, contact)
         first = np.arccosh(np.maximum(np.minimum(self.flat, contact) / radii, 1.0))
         length = np.arccosh(np.maximum(contact / radii, 1.0)) - first
-        # clustered at both ends: at a flat end the slope begins like a root, at the edge of a
-        # contact that is nearly flat all of it rises
+        # nodes are clustered at both ends: the slope starts like a square root at a flat end, and
+        # rises at the edge alone if the indenter is nearly flat
         eta = first + length * np.sin(0.5 * np.pi * _NODES) ** 2
         step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
         return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
 
     def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
-        """Friction bound of a contact of radius c."""
+        """Friction bound at the radius r of a contact of radius c."""
         x, weight, _, _ = self._rule(r, c)
         bound = self.G_star / np.pi * np.sum(weight * self.slope(x), axis=-1)
         return np.where(np.asarray(r, float) >= c, 0.0, bound)[()]
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Load within r of a contact of radius c."""
+        """Load within the radius r of a contact of radius c."""
         return (self._outside(0.0, c) - self._outside(r, c))[()]
 
     def _outside(self, r: np.ndarray | float, c: np.ndarray | float) -> np.ndarray:
@@ -99,14 +101,15 @@ class Indenter(Pressure):
         return self.G_star * np.sum(weight * root * lever * self.slope(x), axis=-1)
 
     def loading(self, displacement: np.ndarray) -> np.ndarray:
-        """Tangential force after a displacement from rest: full slip at the depth 1 without that at
-        the depth 1 - u, the load of a smaller contact (Ciavarella 1998, Jaeger 1998)."""
-        left = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
-        c = self.radius(left)
-        return 1.0 - np.where(left > 0.0, self.load(c, c), 0.0)
+        """Tangential force after a displacement u from rest: 1 minus the load of the contact at the
+        depth 1 - u (Ciavarella 1998, Jaeger 1998)."""
+        depth = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
+        c = self.radius(depth)
+        return 1.0 - np.where(depth > 0.0, self.load(c, c), 0.0)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at a share of the mean load, by a table and Newton's method."""
+        """Depth at which the load is this share of the mean load, from a table and Newton's
+        method."""
         share = np.asarray(share, float)
         largest = 1.0
         while self.load(largest, largest) < share.max(initial=0.0):
@@ -115,14 +118,14 @@ class Indenter(Pressure):
         k = np.clip(np.searchsorted(self.load(grid, grid), share), 1, len(grid) - 1)
         low, high = grid[k - 1], grid[k]
         c = 0.5 * (low + high)
-        for _ in range(_CORRECTIONS):  # the load grows by the stiffness 2 G* c
+        for _ in range(_CORRECTIONS):  # d load / d depth = 2 G* c
             rise = 2.0 * self.G_star * c * self.slope(c)
             c = np.clip(c - (self.load(c, c) - share) / np.maximum(rise, 1e-300), low, high)
         return np.where(share > 0.0, self.depth(c), 0.0)[()]
 
     @cached_property
     def largest(self) -> float:
-        """Largest friction bound: the best point of a grid, refined between its neighbours."""
+        """Largest friction bound, searched on grids that get finer around the largest value."""
         low, high = 0.0, 1.0
         for _ in range(_REFINEMENTS):
             r = np.linspace(low, high, len(_GRID))
@@ -135,16 +138,8 @@ class Indenter(Pressure):
     def torque(self) -> float:
         return float(self._moment_outside(0.0))
 
-    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._outside(np.sin(psi), 1.0))
 
-    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._moment_outside(np.sin(psi)))
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
-        return round_loads(cells, self._ring_loads)
-
-    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
-        return of_radii(self._ring_loads, self._ring_moments, psi)

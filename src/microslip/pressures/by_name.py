@@ -1,7 +1,7 @@
-"""Every pressure by its name.
+"""Registry of pressures by name.
 
-A pressure is a class in a file of the folder `pressures` (see pressure.py); "file:measured.csv" is
-one that a file holds, see from_file.
+A pressure is a class in a file of the folder `pressures` (see pressure.py).  A text such as
+"file:measured.csv" stands for a pressure in a data file (see from_file.py).
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ _REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",), others=(
 PRESSURES = _REGISTRY.classes
 """Name -> subclass of Pressure."""
 BROKEN = _REGISTRY.broken
-"""File -> its path and the error in it."""
+"""Name of a file that cannot be used -> its path and the error."""
 find = _REGISTRY.find
 
 
 def pressure_named(text: str) -> Pressure:
-    """The pressure of a text such as "power:exponent=1" or "file:measured.csv".
+    """Return the pressure for a text such as "power:exponent=1" or "file:measured.csv".
 
     Raises
     ------
     InputError
-        For a text that is no pressure; the message lists the known names.
+        If the text does not name a pressure; the message lists the known names.
     """
     if from_file.is_file(text):
         return from_file.pressure(text)

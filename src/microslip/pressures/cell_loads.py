@@ -1,4 +1,4 @@
-"""Loads of pressures on square cells."""
+"""Load of a pressure on each square cell of a grid over [-1, 1]^2."""
 
 from __future__ import annotations
 
@@ -7,18 +7,22 @@ from collections.abc import Callable
 import numpy as np
 
 RINGS = 4096
+"""Number of thin rings that stand for a round pressure."""
 SMALLEST_LOAD = 1e-13
-"""Loads of cells below this share of the whole are rounding at the contact's edge."""
+"""Share of the total load below which the load of a cell is rounding error and becomes 0."""
 
 
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
-    """Loads of cells, sum 1, from the load of the rectangle from the centre to each corner (odd in
-    both coordinates), (cells + 1, cells + 1)."""
+    """Loads of cells, (cells, cells), sum 1.
+
+    load: load of the rectangle from the centre to each corner of a cell, odd in both coordinates,
+    (cells + 1, cells + 1).
+    """
     return of_loads(np.diff(np.diff(load, axis=0), axis=1))
 
 
 def of_loads(loads: np.ndarray) -> np.ndarray:
-    """Loads of cells, sum 1, from loads with rounding errors; those near 0 become 0."""
+    """Loads of cells scaled to the sum 1, with rounding errors near 0 replaced by 0."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
@@ -26,8 +30,16 @@ def of_loads(loads: np.ndarray) -> np.ndarray:
 def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
     """Loads of cells under a pressure that depends on the radius alone, (cells, cells), sum 1.
 
-    ring_loads(psi): loads of the rings between the radii sin(psi).  The load of each of many thin
-    rings is spread evenly along its circle: exact but for the width of the rings.
+    The load of each of RINGS thin rings is spread evenly along its middle circle.
+
+    Parameters
+    ----------
+    cells : int
+        Number of cells along a side.
+    ring_loads : callable
+        ring_loads(psi) -> loads of the rings between the radii sin(psi).
+    inner : float
+        Radius of the hole in the contact.
     """
     turn = np.linspace(0.0, np.pi / 2, RINGS + 1)
     psi = np.arcsin(np.sqrt(inner**2 + (1.0 - inner**2) * np.sin(turn) ** 2))

@@ -15,26 +15,27 @@ from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
 SMALLEST_RATIO = 0.05
+"""Smallest ratio of the semi-axes."""
 
 
 @dataclass(frozen=True)
 class Ellipse(Pressure):
-    """The pressure of an elliptic Hertz contact of semi-axes a and ratio a.
+    """The pressure of an elliptic Hertz contact with the semi-axes a and ratio times a.
 
-    u_lim is the displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the
-    complete elliptic integral of the eccentricity: 3/4 for a circle.
+    u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi), where K is
+    the complete elliptic integral of the eccentricity; it is 3/4 for a circle.
 
     Parameters
     ----------
     ratio : float
         Ratio of the semi-axes, 0.05 to 1.
     across : int
-        0 if the long axis is the forward one, 1 if it is the lateral one.
+        0 if the long axis is forward, 1 if it is lateral.
 
     Raises
     ------
     InputError
-        For a ratio outside its range, and another `across`.
+        For a ratio outside its range, or `across` other than 0 and 1.
     """
 
     ratio: float = 0.5
@@ -59,9 +60,11 @@ class Ellipse(Pressure):
 
     @cached_property
     def torque(self) -> float:
-        """Mean distance from the centre under Hertz's pressure: on the unit circle it is 3 pi/16,
-        and along the ray at an angle t of the squeezed circle it is stretched by
-        hypot(cos t, ratio sin t)."""
+        """Mean distance from the centre under the pressure.
+
+        It is 3 pi/16 on the unit circle.  The ellipse is that circle with one axis scaled by the
+        ratio, which scales the distance along a ray at the angle t by hypot(cos t, ratio sin t).
+        """
         angle = (np.arange(512) + 0.5) * (np.pi / 1024)
         stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))
         return hertz.TORQUE_FULL_SLIP * float(stretch.mean())
@@ -75,18 +78,20 @@ class Ellipse(Pressure):
         return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Tangential force after a displacement from rest: that of the sphere."""
+        """Tangential force after a displacement from rest, equal to that of the sphere."""
         return hertz.mindlin_force(displacement)
 
 
 def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
-    """Hertz's pressure integrated over each square, (cells, cells); axes: semi-axes, the forward
-    one first."""
+    """Load of Hertz's pressure on each square, (cells, cells).
+
+    axes: forward and lateral semi-axis.
+    """
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0
     x, y = (np.clip(edges / axis, -1.0, 1.0) for axis in axes)
     x, y = x[:, None], y[None, :]
-    # load of the rectangle from the centre to (x, y), odd in both; past the edge of the disc the
-    # bound is zero, and so is the root
+    # load of the rectangle from the centre to (x, y), odd in both coordinates; the root is zero
+    # outside the disc, as the pressure is
     root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
     load = x * y * root - np.arctan2(x * y, root)
     load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)

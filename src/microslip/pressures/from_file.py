@@ -1,12 +1,11 @@
-"""Pressures from files, "file:measured.csv": values on a grid, see grid.
+"""Pressures from data files such as "file:measured.csv": values on a regular grid (see grid.py).
 
-CSV: a line that names the columns forward, lateral and pressure, then one line a point; netCDF: a
-variable `pressure` with the coordinates `forward` and `lateral`.  The points fill a regular
-grid.  ",grid=samples" after the path says that the values hold at the points, with bilinear ones
-between them; without it they are means over cells of the grid's own step around the points, which
-is what sensors give, and what makes the load the sum of values times areas whatever the grid.
-",decimal=comma" and ",encoding=cp1252" say how a CSV is written.
-"""
+A CSV file has a heading with the columns forward, lateral and pressure, and one line for each
+point. A netCDF file has a variable `pressure` with the coordinates `forward` and `lateral`.  By
+default a value is the mean over the cell around its point, as sensors measure it; the load is then
+the sum of values times cell areas.  With ",grid=samples" after the path, values hold at the points
+and are interpolated bilinearly.  ",decimal=comma" and ",encoding=cp1252" describe the format of a
+CSV file."""
 
 from __future__ import annotations
 
@@ -24,43 +23,42 @@ PACKED = {
     b"BZh": "bzip2",
     b"\xfd7zXZ": "xz",
 }
+"""First bytes of compressed files -> their format."""
 NETCDF = (".nc", ".nc4", ".cdf")
-"""Ends of names that only netCDF files have."""
-MOST_KNOWN = 8
+"""File name extensions of netCDF."""
+LARGEST_CACHE = 8
 
-_KNOWN: dict[str, Pressure] = {}
-"""One record for a name: what is prepared for a pressure is found again by it."""
+_CACHE: dict[str, Pressure] = {}
+"""Name -> pressure of the files that were read last; equal content has one record."""
 
 
 def is_file(text: object) -> bool:
-    """Whether a text names a file."""
+    """Whether a text is the name of a file, such as "file:measured.csv"."""
     return named_files.speaks_of_file(text)
 
 
 def pressure(name: str) -> Pressure:
-    """The Pressure in the file that a name speaks of; see named_files.
+    """Read the pressure from the file with this name (see foundation.named_files).
 
-    The name of the record has the digest of the content and not the path, so that results belong to
-    what the file holds.
+    The name of the returned record contains a digest of the content in place of the path.
 
     Raises
     ------
     InputError
-        For a file that is not there, is not as described above, or is not the one that the digest
-        is of.
+        If the file does not exist, has another format, or does not match the digest in the name.
     """
     file, content = named_files.read(name)
     if file.grid not in READINGS:
         raise InputError("pressure", name, f"allowed for grid is one of {', '.join(READINGS)}")
-    if file.name not in _KNOWN:
+    if file.name not in _CACHE:
         try:
-            _KNOWN[file.name] = _of_content(file, content)
+            _CACHE[file.name] = _of_content(file, content)
         except ValueError as error:
             problem = str(error).replace("decimal = ','", "decimal=comma after the path")
             raise InputError("pressure", name, f"{file.path}: {problem}") from None
-        if len(_KNOWN) > MOST_KNOWN:
-            del _KNOWN[next(iter(_KNOWN))]
-    return _KNOWN[file.name]
+        if len(_CACHE) > LARGEST_CACHE:
+            del _CACHE[next(iter(_CACHE))]
+    return _CACHE[file.name]
 
 
 def _of_content(file: named_files.NamedFile, content: bytes) -> Measured:

@@ -1,4 +1,4 @@
-"""Numbers on a regular grid as a pressure: measured by a sensor, or computed by another program."""
+"""Pressures given by values on a regular grid, from a sensor or from another program."""
 
 from __future__ import annotations
 
@@ -12,50 +12,48 @@ from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Meanings of the values on a grid.  "cells": means over cells of one step, centred on the points.
-"samples": values at the points, interpolated bilinearly.  Outside the pressure is 0."""
+"""Meaning of the values on a grid.  "cells": means over cells of one step around the points.
+"samples": values at the points, interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
-"""Parts along a side at which the largest displacement under full slip and the torque are found."""
+"""Number of squares along a side from which u_lim and the torque are computed."""
 FINEST = 1024
-"""The most of them, which grids of more points than FINE are given."""
+"""Largest number of these squares, for grids of more than FINE points."""
 REGULAR = 1e-3
-"""Coordinates may be off the regular grid by this share of its step."""
+"""Largest distance of a coordinate from the regular grid, over the step of the grid."""
 
 
 def read_grids(
     forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
 ) -> dict[str, Grid]:
-    """The Grid of values on a regular grid, and others that the same numbers may stand for.
+    """The Grid of values on a regular grid, and alternative grids from the same numbers.
 
-    a is half the longer side of the rectangle that holds all pressure, and its centre is the one
-    that rotations turn about.
+    The unit of length a is half the longer side of the smallest rectangle that contains all
+    pressure.  Rotations are about the centre of this rectangle.
 
     Parameters
     ----------
     forward, lateral : array, shapes (n,) and (m,)
-        Coordinates, increasing, in one unit of length.
+        Increasing coordinates, both in the same unit of length.
     values : array, shape (n, m)
-        Pressure, in any unit, 0 outside the contact.
+        Pressure in any unit, 0 outside the contact.
     reading : str
         One of READINGS.
 
     Returns
     -------
     dict of str to Grid
-        By what they differ in: "" for the grid itself, then the same numbers read in the other way,
-        and the grid at half its resolution.
+        Label -> grid: "" for the grid itself, then the same values with the other meaning of
+        READINGS, then the grid at half its resolution.
 
     Raises
     ------
     InputError
-        For coordinates that are not regular, values below 0 or not finite, a load that is 0.
+        If coordinates are not evenly spaced, if a value is negative or not finite, or if all are 0.
     """
     values = np.asarray(values, float)
-    _refuse(values)
-    points = [
-        _even(label, np.asarray(axis, float))
-        for label, axis in zip(AXES, (forward, lateral), strict=True)
-    ]
+    axes = [np.asarray(axis, float) for axis in (forward, lateral)]
+    points = [_even(label, axis) for label, axis in zip(AXES, axes, strict=True)]
+    _refuse(axes[0], axes[1], values)
     values = values / values.max()
     points = _in_steps(points)
     grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
@@ -66,51 +64,50 @@ def read_grids(
     }
 
 
-def _refuse(values: np.ndarray) -> None:
-    allowed = np.isfinite(values) & (values >= 0.0)
-    if not allowed.all():
-        bad = float(values[~allowed][0])
-        raise InputError("pressure", bad, "not allowed; allowed: finite numbers, 0 or above")
+def _refuse(forward: np.ndarray, lateral: np.ndarray, values: np.ndarray) -> None:
+    """Raise InputError if a value is negative or not finite, or if all values are 0."""
+    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
+    if len(bad):
+        i, j = bad[0]
+        place = f"at forward {forward[i]:g}, lateral {lateral[j]:g}"
+        allowed = f"{place}; allowed: finite numbers, 0 or above"
+        raise InputError("pressure", float(values[i, j]), allowed)
     if not values.any():
         raise InputError("pressure", 0.0, "it is 0 everywhere; allowed: a load above 0")
 
 
-def irregular_at(axis: np.ndarray) -> int | None:
-    """Index of the first coordinate, of increasing ones, that no even grid has there; None: they
-    are even but for rounding."""
-    if len(axis) < 2 or not axis[-1] > axis[0]:
-        return 0
-    even = np.linspace(axis[0], axis[-1], len(axis))
-    if np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
-        return None
-    steps = np.diff(axis)
-    usual = np.sort(steps)[(len(steps) - 1) // 2]
-    return 1 + int(np.abs(steps - usual).argmax())
-
-
 def _even(label: str, axis: np.ndarray) -> np.ndarray:
-    """The evenly spaced coordinates that those of an axis are, but for rounding."""
-    index = 0 if not np.isfinite(axis).all() else irregular_at(axis)
-    if index is not None:
-        raise InputError(
-            label,
-            ", ".join(f"{place:g}" for place in axis[max(index - 1, 0) : index + 1]),
-            "not evenly spaced; allowed: two coordinates or more, at equal distances",
-        )
-    return np.linspace(axis[0], axis[-1], len(axis))
+    """Evenly spaced coordinates (n,) that replace those of an axis, up to the tolerance REGULAR.
+
+    Raises InputError for uneven coordinates; the message shows the two with the oddest distance.
+    """
+    worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
+    if len(axis) > 1 and np.isfinite(axis).all():
+        even, steps = np.linspace(axis[0], axis[-1], len(axis)), np.diff(axis)
+        if even[1] > even[0] and np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
+            return even
+        usual = np.sort(steps)[(len(steps) - 1) // 2]
+        worst = int(np.abs(steps - usual).argmax())
+    raise InputError(
+        label,
+        ", ".join(f"{place:g}" for place in axis[worst : worst + 2]),
+        "not evenly spaced; allowed: two coordinates or more, at equal distances",
+    )
 
 
 def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Coordinates from 0 in units of the longer step: the unit of length does not matter, and
-    products of steps as small or large as numbers can be are no numbers.
+    """Coordinates from 0 on, in units of the longer step, so that areas neither overflow nor
+    underflow.
 
-    Raises InputError for steps that are too different.
+    Raises InputError if one step is more than 1e12 times the other.
     """
     steps = [places[1] - places[0] for places in points]
     longest = max(steps)
     if not (np.isfinite(longest) and min(steps) > 1e-12 * longest):
         raise InputError(
-            "forward and lateral", tuple(map(float, steps)), "steps of one unit are allowed"
+            "forward and lateral",
+            tuple(map(float, steps)),
+            "allowed are steps in one unit of length",
         )
     return [
         np.arange(len(places)) * (step / longest)
@@ -120,9 +117,9 @@ def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 @dataclass(frozen=True, eq=False)
 class _Axis:
-    """Points along one side of the smallest rectangle that holds all of the pressure.
+    """One side of the smallest rectangle that contains all pressure, and the grid points on it.
 
-    points: even coordinates, (n,); low, high: ends of the rectangle; step: between points.
+    points: evenly spaced coordinates, (n,); low, high: ends of the side; step: distance of points.
     """
 
     points: np.ndarray
@@ -132,32 +129,32 @@ class _Axis:
     reading: str
 
     def integrals(self, edges: np.ndarray) -> np.ndarray:
-        """Integral of what each point stands for over each interval, (intervals, n)."""
+        """Integral of the shape function of each point over each interval, (intervals, n)."""
         t = (edges[:, None] - self.points) / self.step
         if self.reading == "cells":
             return self.step * np.diff(np.clip(t, -0.5, 0.5), axis=0)
         rise, fall = np.full(len(self.points), -1.0), np.full(len(self.points), 1.0)
-        rise[0] = fall[-1] = 0.0  # beyond the outermost points there is nothing
+        rise[0] = fall[-1] = 0.0  # the pressure ends at the outermost points
         t = np.clip(t, rise, fall)
         return self.step * np.diff(t - 0.5 * t * np.abs(t), axis=0)
 
     @property
     def steps(self) -> int:
-        """How many of them the side is long."""
+        """Length of the side in steps."""
         return len(self.points) - (self.reading == "samples")
 
     def edges(self, parts: int) -> np.ndarray:
-        """Coordinates that cut each step into that many parts."""
+        """Coordinates that divide each step into this number of parts."""
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
     def coarsened(self) -> tuple[_Axis, np.ndarray]:
-        """A coarser axis with half as many steps, and the matrix of means onto it."""
+        """An axis with half as many steps, and the matrix that averages values onto it."""
         steps = -(-self.steps // 2)
         points = edges = np.linspace(self.low, self.high, steps + 1)
         middles = 0.5 * (edges[1:] + edges[:-1])
         if self.reading == "cells":
             points = middles
-        else:  # what lies nearest to each point
+        else:  # average over the part nearest to each point
             edges = np.array([self.low, *middles, self.high])
         coarse = replace(self, points=points, step=(self.high - self.low) / steps)
         return coarse, self.integrals(edges) / np.diff(edges)[:, None]
@@ -165,10 +162,7 @@ class _Axis:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Values on a grid over the smallest rectangle that holds all of the pressure.
-
-    forward, lateral: _Axis; values: (n, m).
-    """
+    """Values (n, m) on a grid over the smallest rectangle that contains all pressure."""
 
     forward: _Axis
     lateral: _Axis
@@ -180,17 +174,17 @@ class Grid:
         return self.forward.reading
 
     def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """Load of each rectangle between edges along and across, (n,) and (m,)."""
+        """Load of each rectangle between forward edges (n + 1,) and lateral edges (m + 1,)."""
         return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
 
     @property
     def middles(self) -> list[float]:
-        """Coordinates of the centre."""
+        """Forward and lateral coordinate of the centre of the rectangle."""
         return [0.5 * (side.low + side.high) for side in (self.forward, self.lateral)]
 
     @property
     def half(self) -> float:
-        """Half the longer side: the unit of length, a."""
+        """Half the longer side of the rectangle, which is the unit of length a."""
         return 0.5 * max(side.high - side.low for side in (self.forward, self.lateral))
 
     def cell_loads(self, cells: int) -> np.ndarray:
@@ -200,7 +194,7 @@ class Grid:
         return of_loads(self.loads(along, across))
 
     def reduced_modulus(self) -> float:
-        """G* in working units: the largest displacement under full slip for G* = 1."""
+        """G* in working units, which is the largest displacement under full slip for G* = 1."""
         fine = min(max(FINE, *self.values.shape), FINEST)
         return _largest_displacement(self.cell_loads(fine))
 
@@ -210,10 +204,7 @@ class Grid:
         return float(self.values.max()) * self.half**2 / float(self.loads(*edges).sum())
 
     def mean_distance(self) -> float:
-        """Mean distance from the centre under the load, over a.
-
-        It is exact for cells, since the parts that distances are averaged over do not cut them.
-        """
+        """Mean distance from the centre, weighted with the pressure, over a; exact for "cells"."""
         edges = [side.edges(-(-FINE // side.steps)) for side in (self.forward, self.lateral)]
         loads = self.loads(*edges)
         x, y = ((axis - at) / self.half for axis, at in zip(edges, self.middles, strict=True))
@@ -229,7 +220,7 @@ def _grid(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Gri
         step = places[1] - places[0]
         if reading == "cells":
             low, high = places[first] - 0.5 * step, places[last] + 0.5 * step
-        else:  # towards the point beside it, if there is one, the pressure falls to 0
+        else:  # the pressure falls to 0 towards the next point, if there is one
             first, last = max(first - 1, 0), min(last + 1, len(places) - 1)
             low, high = places[first], places[last]
         axes.append(_Axis(places[first : last + 1], low, high, step, reading))
@@ -248,7 +239,7 @@ def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Integral of the distance from the origin over each rectangle between edges x and y."""
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
-    tiny = 1e-99  # both logarithms are multiplied by 0 where it counts
+    tiny = 1e-99  # where it replaces 0, the logarithm is multiplied by 0
     corner = 2.0 * x * y * r
     corner = corner + x**3 * np.arcsinh(y / np.maximum(np.abs(x), tiny))
     corner = corner + y**3 * np.arcsinh(x / np.maximum(np.abs(y), tiny))
@@ -256,9 +247,9 @@ def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _largest_displacement(loads: np.ndarray) -> float:
-    """Largest displacement under full slip for G* = 1, and so the G* that makes it u_lim.
+    """Largest displacement at the centre of a square under full slip, for G* = 1.
 
-    loads: on squares, (n, n), each spread evenly over its own; displacements at their centres.
+    loads: load of each square, (n, n), spread evenly over the square.
     """
     n = len(loads)
     edges = (np.arange(1 - n, n + 1) - 0.5) * 2.0 / n
@@ -266,7 +257,7 @@ def _largest_displacement(loads: np.ndarray) -> float:
     # Integral of 1/distance over the rectangle from the centre to (u, v)
     to_corner = u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
     kernel = np.diff(np.diff(to_corner, axis=0), axis=1) / (2.0 / n) ** 2
-    padded = (3 * n, 3 * n)  # at least that many, so that nothing wraps around
+    padded = (3 * n, 3 * n)  # at least 3 n - 2, so that nothing wraps around
     spectrum = np.fft.rfft2(loads, padded) * np.fft.rfft2(kernel, padded)
     displacement = np.fft.irfft2(spectrum, padded)[n - 1 : 2 * n - 1, n - 1 : 2 * n - 1]
     return float(displacement[loads > 0.0].max() / np.pi)

@@ -1,4 +1,4 @@
-"""A grid of pressures as CSV: one point a line, under a heading that names the columns."""
+"""Read a grid of pressures from CSV: a heading with the columns, then one line for each point."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 SAME = 1e-9
-"""Coordinates that differ by less than this share of their range are the same one."""
+"""Coordinates are equal if they differ by less than this share of their range."""
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
 
 
@@ -22,13 +22,20 @@ def grid(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
 
-    Columns are parted by commas, semicolons or tabs.  Lines that are empty or begin with # do not
-    count.  decimal, encoding: the decimal mark, and the encoding of the file.
+    Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
+    ignored.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    decimal, encoding : str
+        Decimal mark and encoding of the file.
 
     Raises
     ------
     ValueError
-        For anything else; the message begins with the line.
+        If the content has another format, or if the points do not fill a grid.
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
@@ -52,7 +59,7 @@ def grid(
 
 
 def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
-    """Separator, place of each of COLUMNS, and their units (None: none given)."""
+    """Separator, position of each of COLUMNS, and their units (None without a unit)."""
     for separator in csv_text.SEPARATORS:
         words = csv_text.words(heading, separator)
         matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
@@ -74,29 +81,32 @@ def _number(where: int, name: str, word: str) -> float:
 
 
 def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The grid that the points fill, each once; places: their lines."""
+    """Coordinates and values of the grid that the points fill.
+
+    table: forward, lateral and pressure of each point, (points, 3); places: line of each point.
+    Raises ValueError if a point is missing or occurs twice.
+    """
     if len(table) == 0:
         raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
     (forward, i), (lateral, j) = (_distinct(column) for column in table.T[:2])
-    if len(forward) * len(lateral) > MOST_POINTS:  # and there are fewer: no room for the rest
+    if len(forward) * len(lateral) > MOST_POINTS:  # a grid of this size is never full
         raise ValueError(
             f"{len(table)} points do not fill a grid of {len(forward)} x {len(lateral)}; allowed: "
             "every point of a regular grid once"
         )
-    values, given = np.zeros((2, len(forward), len(lateral)))
-    np.add.at(given, (i, j), 1.0)
-    values[i, j] = table[:, 2]
-    if given.max() > 1.0:
-        twice = np.flatnonzero(given[i, j] > 1.0)
-        first, again = _first_pair(i[twice], j[twice])
+    key = i * len(lateral) + j
+    repeated = np.setdiff1d(np.arange(len(key)), np.unique(key, return_index=True)[1])
+    if len(repeated):
+        first = np.flatnonzero(key == key[repeated[0]])[0]
         raise ValueError(
-            f"line {places[twice[again]]}: the same point as in line {places[twice[first]]}; "
+            f"line {places[repeated[0]]}: the same point as in line {places[first]}; "
             "allowed: every point of a regular grid once"
         )
-    for name, axis, at in (("forward", forward, i), ("lateral", lateral, j)):
-        _refuse_uneven(name, axis, at, places)
-    if given.min() < 1.0:
-        a, b = np.argwhere(given == 0.0)[0]
+    values = np.full((len(forward), len(lateral)), np.nan)
+    values[i, j] = table[:, 2]
+    missing = np.argwhere(np.isnan(values))
+    if len(missing):
+        a, b = missing[0]
         raise ValueError(
             f"line {places[-1]} is the last: {len(table)} points do not fill a grid of "
             f"{len(forward)} x {len(lateral)}, there is none at forward {forward[a]:g}, lateral "
@@ -106,24 +116,7 @@ def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.nd
 
 
 def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coordinates in order, (n,), and which of them each point has."""
+    """Distinct coordinates in increasing order, (n,), and the index of each point among them."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
-
-
-def _first_pair(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
-    """The first two of these points that are the same one."""
-    seen: dict[tuple, int] = {}
-    for number, point in enumerate(zip(i, j, strict=True)):
-        if point in seen:
-            return seen[point], number
-        seen[point] = number
-    raise AssertionError("no two points are the same")
-
-
-def _refuse_uneven(name: str, axis: np.ndarray, at: np.ndarray, places: Sequence[int]) -> None:
-    uneven = grid_units.first_uneven(axis)
-    if uneven is not None:
-        where = places[int(np.flatnonzero(at == uneven)[0])]
-        raise ValueError(f"line {where}: {grid_units.uneven(name, axis, uneven)}")

@@ -1,4 +1,4 @@
-"""A grid of pressures as netCDF: a variable `pressure` over `forward` and `lateral`."""
+"""Read a grid of pressures from netCDF: a variable `pressure` over `forward` and `lateral`."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+"""First bytes of netCDF files."""
 LARGEST_CHUNK = 100_000_000
-"""Bytes of a chunk, which HDF5 reads as a whole; the largest default of netCDF is 16 MB."""
+"""Largest chunk in bytes.  HDF5 reads whole chunks; the default chunks of netCDF have up to 16
+MB."""
 ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 
@@ -28,9 +30,9 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     Raises
     ------
     ValueError
-        For what is not described above, in one line.
+        If the content has another format; the message is one line.
     """
-    import xarray as xr  # only here: it takes a while to load
+    import xarray as xr  # only here, because it takes a while to load
 
     with tempfile.TemporaryDirectory(prefix="microslip-") as folder:
         path = Path(folder, "pressure.nc")
@@ -40,16 +42,16 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
                 return _grid(data)
         except (OSError, RuntimeError, AttributeError, TypeError) as error:
-            said = " ".join(str(error).replace(str(path), "the file").split())[:120]
-            raise ValueError(f"not a netCDF file that can be read: {said}") from None
+            reason = " ".join(str(error).replace(str(path), "the file").split())[:120]
+            raise ValueError(f"not a netCDF file that can be read: {reason}") from None
 
 
 def _refuse_oversized(path: Path) -> None:
-    """Raise ValueError for declared sizes that are too large, before anything is allocated.
+    """Raise ValueError if a dimension or a chunk is too large, before it is read into memory.
 
-    xarray reads the coordinates of all dimensions when it opens a file, and HDF5 whole chunks.
-    """
-    import netCDF4  # only here: it takes a while to load
+    xarray reads the coordinates of all dimensions when it opens a file, and HDF5 reads whole
+    chunks."""
+    import netCDF4  # only here, because it takes a while to load
 
     with netCDF4.Dataset(path) as file:
         for name, dimension in file.dimensions.items():
@@ -60,7 +62,7 @@ def _refuse_oversized(path: Path) -> None:
                 )
         for name, variable in file.variables.items():
             chunk = variable.chunking()  # None in files of netCDF 3
-            size = getattr(variable.dtype, "itemsize", 1)  # texts of any length have none
+            size = getattr(variable.dtype, "itemsize", 1)  # strings of any length have no size
             if isinstance(chunk, list) and math.prod(chunk) * size > LARGEST_CHUNK:
                 raise ValueError(
                     f"{name} is stored in chunks of {' x '.join(map(str, chunk))}; allowed: chunks "
@@ -74,8 +76,8 @@ def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise ValueError(f"there is no variable {missing[0]}; {ALLOWED}")
     for name, dims in zip(COLUMNS, ({"forward"}, {"lateral"}, {"forward", "lateral"}), strict=True):
         if set(data[name].dims) != dims:
-            said = ", ".join(map(str, data[name].dims)) or "none"
-            raise ValueError(f"{name} has the dimensions {said}; {ALLOWED}")
+            dimensions = ", ".join(map(str, data[name].dims)) or "none"
+            raise ValueError(f"{name} has the dimensions {dimensions}; {ALLOWED}")
         if data[name].dtype.kind not in "iuf":
             raise ValueError(f"{name} holds {data[name].dtype}; allowed: numbers")
     if data["pressure"].size > MOST_POINTS:
@@ -89,29 +91,15 @@ def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         for name, factor in zip(COLUMNS, factors, strict=True)
     )
     along, across = np.argsort(forward), np.argsort(lateral)
-    forward, lateral = forward[along], lateral[across]
-    values = values[np.ix_(along, across)]
-    for name, axis in (("forward", forward), ("lateral", lateral)):
-        if not np.isfinite(axis).all():
-            raise ValueError(f"{name} is {axis[~np.isfinite(axis)][0]:g}; allowed: finite numbers")
-        uneven = grid_units.first_uneven(axis)
-        if uneven is not None:
-            raise ValueError(grid_units.uneven(name, axis, uneven))
-    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
-    if len(bad):
-        i, j = bad[0]
-        raise ValueError(
-            f"pressure is {values[i, j]:g} at forward {forward[i]:g}, lateral {lateral[j]:g}; "
-            "allowed: finite numbers, 0 or above"
-        )
-    return forward, lateral, values
+    return forward[along], lateral[across], values[np.ix_(along, across)]
 
 
 def _unit(name: str, attributes: Mapping[str, object]) -> str | None:
-    """The unit among the attributes of a variable, however the attribute is spelt."""
-    given = [value for key, value in attributes.items() if key.lower() in ("unit", "units")]
-    texts = [value for value in given if isinstance(value, str)]
-    if len(given) > 1 or len(texts) < len(given):
-        said = ", ".join(map(str, given))[:80]
-        raise ValueError(f"{name} has the units {said}; allowed: one attribute units, a text")
+    """The unit of a variable, from its attribute "unit" or "units" in any case; None without
+    one."""
+    values = [value for key, value in attributes.items() if key.lower() in ("unit", "units")]
+    texts = [value for value in values if isinstance(value, str)]
+    if len(values) > 1 or len(texts) < len(values):
+        units = ", ".join(map(str, values))[:80]
+        raise ValueError(f"{name} has the units {units}; allowed: one attribute units, a text")
     return texts[0] if texts else None

@@ -1,10 +1,6 @@
-"""Columns, units and even spacing of pressure grids in files."""
+"""Columns of pressure grids in files, and conversion of their units."""
 
 from __future__ import annotations
-
-import numpy as np
-
-from microslip.pressures.grid import irregular_at
 
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
@@ -15,46 +11,46 @@ LONGEST = 24
 
 
 def factors(units: list[str | None]) -> list[float]:
-    """Factors on each of COLUMNS that bring both coordinates to the same unit.
+    """Factors for each of COLUMNS that convert both coordinates to the same unit.
 
-    The unit of the pressure does not matter, but it must exist.
+    The unit of the pressure is checked, but its factor is always 1.
 
     Parameters
     ----------
     units : list of str or None
-        Unit of each column as text; None or "" where none was given.
+        Unit of each column; None or "" for a column without a unit.
 
     Raises
     ------
     ValueError
-        For an unknown unit, one of another kind, or a unit for one coordinate alone.
+        If a unit is unknown or of another kind, or if only one coordinate has a unit.
     """
-    given = [(text or "").strip() for text in units]
-    if bool(given[0]) != bool(given[1]):
-        with_unit = COLUMNS[0] if given[0] else COLUMNS[1]
+    texts = [(text or "").strip() for text in units]
+    if bool(texts[0]) != bool(texts[1]):
+        with_unit = COLUMNS[0] if texts[0] else COLUMNS[1]
         raise ValueError(f"{with_unit} alone has a unit; allowed: one for both coordinates or none")
-    along, across, _ = (_factor(name, text) for name, text in zip(COLUMNS, given, strict=True))
+    along, across, _ = (_factor(name, text) for name, text in zip(COLUMNS, texts, strict=True))
     if (along is None) != (across is None):
         raise ValueError(
-            f"forward [{given[0]}] and lateral [{given[1]}] are not the same kind; allowed: two "
+            f"forward [{texts[0]}] and lateral [{texts[1]}] are not the same kind; allowed: two "
             "lengths, or two numbers"
         )
-    if along is None or across is None or given[0] == given[1]:
+    if along is None or across is None or texts[0] == texts[1]:
         return [1.0, 1.0, 1.0]
     return [1.0, across / along, 1.0]
 
 
 def _factor(name: str, text: str) -> float | None:
-    """Unit in SI units; None for a number without one."""
+    """Factor from a unit to SI units; None for a dimensionless column."""
     if text in ("", "1", "-"):
         return None
-    import pint  # only here: it takes a while to load
+    import pint  # only here, because it takes a while to load
 
     unit, registry = None, pint.get_application_registry()
     if len(text) <= LONGEST:
         try:
             unit = registry.Quantity(1.0, registry.parse_units(text))
-        except Exception:  # pint has many kinds, and its parser those of Python
+        except Exception:  # pint raises errors of many types
             unit = None
     if unit is None or not unit.check(KINDS[name]):
         kind = KINDS[name].strip("[]")
@@ -63,17 +59,3 @@ def _factor(name: str, text: str) -> float | None:
             f"[{EXAMPLES[name]}], or none"
         )
     return float(unit.to_base_units().magnitude)
-
-
-def first_uneven(axis: np.ndarray) -> int | None:
-    """Index of the first coordinate that is not where an even grid has it; None: all are."""
-    return irregular_at(axis)
-
-
-def uneven(name: str, axis: np.ndarray, index: int) -> str:
-    """Error message for a coordinate that is off the even grid."""
-    before = f" after {axis[index - 1]:g}" if index else ""
-    return (
-        f"{name} {axis[index]:g}{before}: not evenly spaced; allowed: two coordinates or more, at "
-        "equal distances"
-    )

@@ -28,17 +28,17 @@ class Hertz(Pressure):
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean friction bound and lever arm of the rings between r = sin(psi)."""
         radii = np.sin(psi)
-        # Integral of sin^2 cos^2 over each ring is the first moment of the bound
+        # the first moment of the bound is the integral of sin^2 cos^2 over each ring
         moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
         load = -np.diff(np.cos(psi) ** 3) / 3
         return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
 
     def bound(self, r: np.ndarray | float, c: float = 1.0) -> np.ndarray:
-        """Friction bound of a contact of radius c."""
+        """Friction bound at the radius r of a contact of radius c."""
         return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation that makes the contact radius c."""
+        """Indentation depth for the contact radius c."""
         return c * c
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
@@ -46,11 +46,11 @@ class Hertz(Pressure):
         return np.sqrt(np.maximum(depth, 0.0))
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at a share of the mean load."""
+        """Depth at which the load is this share of the mean load."""
         return np.cbrt(share) ** 2
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
-        """Load within r of a contact of radius c."""
+        """Load within the radius r of a contact of radius c."""
         return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:

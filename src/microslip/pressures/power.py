@@ -1,4 +1,5 @@
-"""Power-law indenters, f(r) ~ r^n: a cone (1), a sphere (2), ever flatter ends (8, 20)."""
+"""Power-law indenters f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, flatter ends for larger
+n."""
 
 from __future__ import annotations
 
@@ -11,11 +12,12 @@ from microslip.foundation import spec
 from microslip.pressures.axisymmetric_indenter import Indenter
 
 LIMITS = (1.0, 100.0)
+"""Range of the exponent."""
 
 
 @dataclass(frozen=True)
 class Power(Indenter):
-    """The pressure of an indenter r^exponent.
+    """The pressure of an indenter with the profile r^exponent.
 
     Parameters
     ----------
@@ -25,7 +27,7 @@ class Power(Indenter):
     Raises
     ------
     InputError
-        For an exponent outside its range.
+        If the exponent is outside its range.
     """
 
     exponent: float = 2.0
@@ -39,7 +41,7 @@ class Power(Indenter):
         return f"an indenter with the profile r^{self.exponent:g}"
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation that makes the contact radius c."""
+        """Indentation depth for the contact radius c."""
         return np.asarray(c, float) ** self.exponent
 
     def slope(self, c: np.ndarray) -> np.ndarray:
@@ -51,13 +53,16 @@ class Power(Indenter):
         return np.maximum(depth, 0.0) ** (1.0 / self.exponent)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at a share of the mean load."""
+        """Depth at which the load is this share of the mean load."""
         return np.maximum(share, 0.0) ** (self.exponent / (self.exponent + 1.0))
 
     @cached_property
     def largest(self) -> float:
-        """Largest friction bound: up to the exponent n = 2 it is that at the centre,
-        (G*/pi) Integral_0^1 n x^(n - 2) dx = (n + 1) / (2 pi (n - 1))."""
+        """Largest friction bound.
+
+        Up to the exponent n = 2 it is at the centre: (G*/pi) Integral_0^1 n x^(n - 2) dx =
+        (n + 1) / (2 pi (n - 1)).
+        """
         if self.exponent > 2.0:
             return super().largest
         over = 2.0 * np.pi * (self.exponent - 1.0)

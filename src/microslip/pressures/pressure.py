@@ -1,22 +1,21 @@
-"""Pressures: distribution of the load, and with it the friction bound of a point.
+"""Pressures: distribution of the load over the contact, and with it the friction bound at a point.
 
-Working units, dimensionless: a = 1 (outer radius, or half the longer side of what bounds the
-contact), mu F_z = 1 and u_lim = 1.  Here u_lim is the largest displacement that full slip of the
-whole contact causes anywhere, by its mean compliance over the directions,
+Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
+of a round contact, or half the longer side of the rectangle around another contact.  The
+displacement u_lim is the largest displacement of a point under full slip of the whole contact,
+computed with the compliance averaged over directions,
 
-    u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA',
+    u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA'.
 
-which for every indenter pressed to a depth d is mu d E*/G*, the usual 3 mu F_z/(4 G* a) for a
-sphere.  The contact of a round body slides everywhere from u_lim on, pushed in one direction from
-rest, and so does any contact at nu = 0.  Others at nu > 0 do so some percent before or after, by
-direction.
-In these units the stiffness is the number G*, 3/4 for a sphere.
-"""
+For an axisymmetric indenter at the depth d it is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
+sphere. A round contact that moves in one direction from rest slides everywhere from u_lim on, and
+so does any contact at nu = 0.  Other contacts at nu > 0 slide some percent earlier or later,
+depending on the direction.  In working units the reduced shear modulus is the number G*, 3/4 for a
+sphere."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -25,61 +24,62 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.grid import READINGS, Grid, read_grids
 
 
 @dataclass(frozen=True)
 class Pressure:
-    """One distribution of the load over the contact; dimensionless, in the working units above.
+    """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass in a file of its own.  Its fields are the numbers that may follow
-    its name, as in "power:exponent=1", which `str` writes back.
+    Each pressure is a subclass in its own file.  Its fields are the numbers that may follow its
+    name in a text such as "power:exponent=1"; `str` returns this text.
 
     Attributes
     ----------
     summary : str
-        Description in a line.
+        Description in one line.
     G_star : float
         Reduced shear modulus 4G/(2 - nu).
     torque : float
-        Torque at full slip about the centre, in mu F_z a.
+        Torque about the centre at full slip, over mu F_z a.
     largest : float
-        Largest friction bound, or infinity; largest pressure over F_z / a^2.
+        Largest pressure over F_z / a^2, which is the largest friction bound; can be infinite.
     mirrored : bool
-        Whether it is its own image under lateral -> -lateral.
+        Whether the pressure is symmetric under lateral -> -lateral.
     inner : float
-        Radius of the hole in the middle.
+        Radius of the hole in the middle, 0 without one.
     hertzian : bool
-        Whether it is that of an elliptic Hertz contact, whose stick zones are ellipses of the same
-        shape (Vermeulen and Johnson), so that it shares `loading` with the sphere.
+        Whether the contact is an elliptic Hertz contact.  Its stick zones are ellipses of the same
+        shape (Vermeulen and Johnson), so that `loading` is that of the sphere.
     readings : tuple of Pressure
-        Other pressures that the same numbers of a measured grid may stand for: the change of
-        friction under them is what the grid leaves open.
+        Alternative pressures that the values of a grid can mean.  The spread of friction under
+        them is the error due to the grid.
     """
 
     mirrored: ClassVar[bool] = True
     hertzian: ClassVar[bool] = False
 
-    # Of pressures that depend on the radius alone:
+    # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
-    mean lever arm of a traction shaped like it, shape (n,) each, from (n + 1,)."""
+    mean lever arm of a traction with the shape of the bound; shape (n,) each, from (n + 1,)."""
     bound: ClassVar[Any] = None
-    """bound(r): friction bound mu p, of arrays; of an indenter bound(r, c), too."""
+    """bound(r): friction bound mu p at radii r, any shape; for an indenter also bound(r, c)."""
 
-    # Of axisymmetric indenters, which touch a full circle that grows with the load:
+    # For axisymmetric indenters, whose contact is a full circle that grows with the load:
     depth: ClassVar[Any] = None
-    """depth(c): indentation that makes the contact radius c, 1 at 1."""
+    """depth(c): indentation depth for the contact radius c; depth(1) = 1."""
     radius: ClassVar[Any] = None
-    """radius(depth): inverse of `depth`, 0 for no contact."""
+    """radius(depth): inverse of `depth`, 0 without contact."""
     of_load: ClassVar[Any] = None
-    """of_load(share): depth at which the load is that share of the mean one."""
+    """of_load(share): depth at which the load is this share of the mean load."""
     load: ClassVar[Any] = None
-    """load(r, c): load within r; of arrays that broadcast."""
+    """load(r, c): load within the radius r of a contact of radius c; arrays broadcast."""
 
     loading: ClassVar[Any] = None
-    """loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
-    from rest, nu = 0, of any shape; of axisymmetric indenters and elliptic Hertz contacts."""
+    """loading(u): tangential force over mu F_z after a displacement u >= 0 (over u_lim) in one
+    direction from rest, at nu = 0; for axisymmetric indenters and elliptic Hertz contacts."""
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
@@ -88,26 +88,26 @@ class Pressure:
     def from_array(
         forward: np.ndarray, lateral: np.ndarray, pressure: np.ndarray, *, grid: str = "cells"
     ) -> Measured:
-        """The pressure of values on a regular grid.
+        """Create a pressure from values on a regular grid.
 
-        a is half the longer side of the rectangle that holds all pressure.  The grid leaves open
-        how the pressure varies between the points; the effect on friction is part of the error.
+        The unit of length a is half the longer side of the smallest rectangle that contains all
+        pressure.  The error of friction includes the effect of the unknown pressure between points.
 
         Parameters
         ----------
         forward, lateral : array, shapes (n,) and (m,)
-            Coordinates, increasing, in one unit of length.
+            Increasing coordinates, both in the same unit of length.
         pressure : array, shape (n, m)
-            In any unit, 0 outside the contact.
+            Pressure in any unit, 0 outside the contact.
         grid : str
-            "cells": values are means over cells around the points; "samples": values at the points,
-            with bilinear interpolation between them.
+            "cells" if values are means over the cells around the points; "samples" if they are
+            values at the points, which are interpolated bilinearly.
 
         Raises
         ------
         InputError
-            For what is no array of numbers, coordinates that are not regular, values below 0 or not
-            finite, a load that is 0.
+            If an argument is not an array of numbers, if coordinates are not evenly spaced, if a
+            value is negative or not finite, or if all values are 0.
         """
         if grid not in READINGS:
             raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
@@ -135,7 +135,7 @@ class Pressure:
 
     @property
     def name(self) -> str:
-        """Name with the numbers that differ from their defaults."""
+        """Name of the class with the numbers that differ from their defaults."""
         return spec.text_of(self)
 
     def __str__(self) -> str:
@@ -154,34 +154,38 @@ class Pressure:
         raise NotImplementedError
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells squares over [-1, 1]^2, forward axis first, sum 1."""
+        """Load on each of cells x cells squares over [-1, 1]^2, (forward, lateral), sum 1."""
         raise NotImplementedError
 
     @property
     def is_round(self) -> bool:
-        """Whether it depends on the radius alone."""
+        """Whether the pressure depends on the radius alone."""
         return self.ring_means is not None
 
     @property
     def is_indenter(self) -> bool:
-        """Whether it is that of an axisymmetric indenter."""
+        """Whether the pressure is that of an axisymmetric indenter."""
         return self.depth is not None
 
     @property
     def stiffness(self) -> float:
-        """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a; of a contact that
-        does not fill the circle of radius a an upper bound."""
+        """Force over mu F_z for a uniform displacement u_lim without slip, 2 G* a.
+
+        It is an upper bound for a contact that does not fill the circle of radius a.
+        """
         return 2.0 * self.G_star
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load of an indenter at a depth >= 0, any shape."""
+        """Load of an indenter at depths >= 0, any shape."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
     def stick_radius(self, displacement: float) -> float | None:
-        """Stick radius after a displacement (u_lim) in one direction from rest: that of the contact
-        whose indentation is less by this share (Ciavarella, Jaeger); None if it is not known, and
-        0.0 where all slides.  displacement >= 0: a float."""
+        """Stick radius after a displacement >= 0 (over u_lim) in one direction from rest.
+
+        It is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger), and 0.0 at full
+        slip.  None if the pressure is not that of an indenter.
+        """
         if self.depth is None:
             return None
         if displacement >= 1.0:
@@ -189,8 +193,34 @@ class Pressure:
         return float(self.radius(1.0 - displacement))
 
 
+@dataclass(frozen=True)
+class RoundPressure(Pressure):
+    """Base class of pressures that depend on the radius alone, from integrals over rings.
+
+    A subclass gives `ring_loads` and `ring_moments`: integrals of the friction bound, and of the
+    bound times the radius, over the rings between r = sin(psi); shape (n,) from (n + 1,).
+    """
+
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
+        raise NotImplementedError
+
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
+        raise NotImplementedError
+
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        loads, moments, radii = self.ring_loads(psi), self.ring_moments(psi), np.sin(psi)
+        # a ring without load needs a lever arm as well
+        lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
+        return loads / (np.pi * np.diff(radii**2)), lever
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return round_loads(cells, self.ring_loads, self.inner)
+
+
 def _numbers(name: str, values: Any) -> np.ndarray:
-    """The argument of this name as an array of floats."""
+    """Convert an argument to an array of floats; raises InputError that names the argument."""
     try:
         return np.ascontiguousarray(values, float)
     except (TypeError, ValueError):
@@ -199,12 +229,12 @@ def _numbers(name: str, values: Any) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Measured(Pressure):
-    """A pressure known on a grid alone, see `Pressure.from_array`.
+    """A pressure given by values on a grid, see `Pressure.from_array`.
 
     Attributes
     ----------
     text : str
-        Its name, with a digest of the values.
+        Name of the pressure, with a digest of the values.
     grid : grid.Grid
         The values.
     """
@@ -225,7 +255,7 @@ class Measured(Pressure):
         values: np.ndarray,
         reading: str = "cells",
     ) -> Measured:
-        """The pressure of a name; the other arguments are those of `grid.read_grids`."""
+        """Create a pressure with this name; the other arguments are those of `grid.read_grids`."""
         grids = read_grids(forward, lateral, values, reading)
         grid = grids.pop("")
         return cls(name, grid, tuple(cls(f"{name} ({kind})", one) for kind, one in grids.items()))
@@ -256,15 +286,3 @@ class Measured(Pressure):
     def cell_loads(self, cells: int) -> np.ndarray:
         """Load on each square, (cells, cells)."""
         return self.grid.cell_loads(cells)
-
-
-def of_radii(
-    ring_loads: Callable, ring_moments: Callable, psi: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """ring_means from loads and first moments of the bound between the radii r = sin(psi)."""
-    loads, moments = ring_loads(psi), ring_moments(psi)
-    area = np.pi * np.diff(np.sin(psi) ** 2)
-    radii = np.sin(psi)
-    # a ring without load has a lever arm all the same
-    lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
-    return loads / area, lever

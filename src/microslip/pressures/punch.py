@@ -1,4 +1,4 @@
-"""A flat punch with a rounded edge: f(r) = 0 up to the radius of its flat end, then a parabola."""
+"""A flat punch with a rounded edge: f(r) = 0 within the flat end, and a parabola outside."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from microslip.foundation import spec
 from microslip.pressures.axisymmetric_indenter import Indenter
 
 LARGEST_FLAT = 0.99
+"""Largest radius of the flat end, over the contact radius."""
 _HALVINGS = 100
+"""Number of bisections, enough for full precision."""
 
 
 @dataclass(frozen=True)
 class Punch(Indenter):
-    """The pressure of a punch whose flat end reaches up to `flat` contact radii.
+    """The pressure of a punch whose flat end has the radius `flat`, over the contact radius.
 
-    Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
-    above b.
+    Its equivalent plane profile is D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c above the
+    radius b of the flat end (Ciavarella 1999).
 
     Parameters
     ----------
@@ -29,7 +31,7 @@ class Punch(Indenter):
     Raises
     ------
     InputError
-        For a radius outside its range.
+        If the radius is outside its range.
     """
 
     flat: float = 0.8
@@ -43,17 +45,17 @@ class Punch(Indenter):
     def summary(self) -> str:
         return f"a punch with a rounded edge, flat up to {self.flat:g} of its contact radius"
 
-    def _rises(self, c: np.ndarray | float) -> np.ndarray:
-        beyond = np.maximum(np.asarray(c, float), self.flat)
-        return beyond * (_root(beyond, self.flat) - self.flat * _angle(beyond, self.flat))
+    def _profile(self, c: np.ndarray | float) -> np.ndarray:
+        r = np.maximum(np.asarray(c, float), self.flat)
+        return r * (_root(r, self.flat) - self.flat * _angle(r, self.flat))
 
     @cached_property
     def _scale(self) -> float:
-        return 1.0 / float(self._rises(1.0))
+        return 1.0 / float(self._profile(1.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
-        """Indentation that makes the contact radius c."""
-        return self._scale * self._rises(c)
+        """Indentation depth for the contact radius c."""
+        return self._scale * self._profile(c)
 
     def slope(self, c: np.ndarray) -> np.ndarray:
         """Derivative of the depth."""

@@ -1,4 +1,4 @@
-"""A ring-shaped contact: what a torus, or the rim of a cup, touches."""
+"""A ring-shaped contact, such as that of a torus or of the rim of a cup."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 import scipy
 
 from microslip.foundation import spec
-from microslip.pressures.cell_loads import round_loads
-from microslip.pressures.pressure import Pressure, of_radii
+from microslip.pressures.pressure import RoundPressure
 
 LIMITS = (0.05, 0.95)
+"""Range of the radius of the hole, over the outer radius."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 @dataclass(frozen=True)
-class Ring(Pressure):
-    """The pressure sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
+class Ring(RoundPressure):
+    """The pressure proportional to sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
 
-    That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
-    close to; of a wide ring it is an assumption.
+    This is Hertz's pressure of a line contact, bent to a circle.  It is close to the pressure of a
+    slender torus; for a wide ring it is an assumption.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Ring(Pressure):
     Raises
     ------
     InputError
-        For a radius outside its range.
+        If the radius is outside its range.
     """
 
     inner: float = 0.5
@@ -55,8 +55,8 @@ class Ring(Pressure):
 
     @property
     def _top(self) -> float:
-        """Factor of the root: 1 / Integral of sqrt((r - b)(1 - r)) 2 pi r dr, by r = middle - half
-        cos t."""
+        """Factor of the root, for which the load is 1: 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr,
+        with r = middle - half cos t."""
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
 
     def bound(self, r: np.ndarray) -> np.ndarray:
@@ -72,24 +72,16 @@ class Ring(Pressure):
         values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
         return 0.5 * np.diff(at) * (values @ _WEIGHTS)
 
-    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
+    def ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 1)
 
-    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
+    def ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 2)
-
-    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
-        return of_radii(self._ring_loads, self._ring_moments, psi)
-
-    def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
-        return round_loads(cells, self._ring_loads, self.inner)
 
     @property
     def torque(self) -> float:
         whole = np.linspace(np.arcsin(self.inner), np.pi / 2, 65)
-        return float(self._ring_moments(whole).sum())
+        return float(self.ring_moments(whole).sum())
 
     @property
     def largest(self) -> float:
@@ -97,12 +89,12 @@ class Ring(Pressure):
 
     @cached_property
     def G_star(self) -> float:
-        """Largest displacement under full slip for G* = 1, and so the G* that makes it u_lim.
+        """G* in working units, which is the largest displacement under full slip for G* = 1.
 
-        A circle of radius s under unit load per area causes 4 s/(r + s) K(m)/pi at r, 1 - m the
-        square of (r - s)/(r + s).
+        A circle of radius s under unit load per area causes the displacement 4 s/(r + s) K(m)/pi at
+        the radius r, with 1 - m = ((r - s)/(r + s))^2.
         """
-        # These take a third of a second to load, and few ask for a ring.
+        # imported here, because they take a third of a second to load
         from scipy.integrate import quad
         from scipy.optimize import minimize_scalar
 

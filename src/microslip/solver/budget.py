@@ -86,9 +86,6 @@ class _Metered:
     def march(self, *path: Any, **settings: Any) -> March:
         return self._counted(self._contact.march(*path, **settings))
 
-    def pulled_march(self, *path: Any, **settings: Any) -> March:
-        return self._counted(self._contact.pulled_march(*path, **settings))
-
     def affordable(self, work: float) -> float:
         """Number of marches, of `work` each, until the budget has to be checked."""
         budget = self._budget

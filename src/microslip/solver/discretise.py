@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -73,16 +73,13 @@ def contact_of(
     if not problem.contacts:
         return build_contact(problem, model, resolution, focus)
     parts, start = problem.parts, problem.start
-    beside = MODELS[model].side_by_side
-    assert beside is not None  # the drive of other models is refused
-    return beside(
-        [
-            build_contact(part.problem, model, resolution, focus, start + part.lead)
-            for part in parts
-        ],
-        [part.share for part in parts],
-        [part.extent for part in parts],
-    )
+    from microslip.models.side_by_side import SideBySide  # only now: it takes a while to load
+
+    contacts: list[Any] = [
+        build_contact(part.problem, model, resolution, focus, start + part.lead) for part in parts
+    ]
+    shares, extents = [part.share for part in parts], [part.extent for part in parts]
+    return SideBySide(contacts, shares, extents)
 
 
 def _focus(problem: Problem) -> Focus | float | None:

@@ -5,7 +5,7 @@ the far end of the spring, or an approximate velocity under the force.  The numb
 search does not depend on the number of steps, so a run with many steps starts from the result of a
 run with few steps.
 
-The state is an array of one dimension: the tractions, and for bodies with a memory (models/pull.py)
+The state is an array of one dimension: the tractions, and for bodies with a memory (models/driven_body.py)
 the position x of the body ahead of the path and its rate x'.  The mirror image half a period later
 leaves x and x' as they are.
 
@@ -27,7 +27,7 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
 from microslip.models.path import Path
-from microslip.models.pull import Body
+from microslip.models.driven_body import Body
 from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
@@ -251,7 +251,7 @@ class DrivenMap(PeriodMap):
         The contact.
     path : path.Path
         Path relative to which the body moves.
-    body : pull.Body
+    body : driven_body.Body
         The body and its drive.
     drift_rate : period_map.DriftRate or None
         Drift rate of a possibly slow motion at a known velocity.

@@ -13,9 +13,9 @@ from typing import cast
 
 import numpy as np
 
-from microslip.models.contact import StepFailure, forward_slip
+from microslip.models.contact import March, StepFailure, forward_slip
+from microslip.models.driven_body import Body
 from microslip.models.path import EULER, Path, make_path
-from microslip.models.pull import Body, PulledMarch
 from microslip.models.system_contact import SystemContact
 from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
@@ -173,15 +173,13 @@ class _Walk:
         path: Path,
         state: np.ndarray,
         step_tolerance: float,
-        previous: PulledMarch | None = None,
-    ) -> tuple[PulledMarch, float]:
+        previous: March | None = None,
+    ) -> tuple[March, float]:
         """A march along a path, and the displacement of the contact.
 
         Raises StepFailure if the tractions diverge.
         """
-        march = self.contact.pulled_march(
-            path, state, step_tolerance, self.body, np.zeros(2), previous
-        )
+        march = self.contact.march(path, state, step_tolerance, previous, body=self.body)
         if not np.isfinite(march.state).all():
             raise StepFailure("diverged: tractions are not finite")
         self.residual += march.residual

@@ -7,15 +7,19 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 DEPTH = 12
-"""Differences kept; fewest marches over bores and loops (of 5, 8, 12)."""
+"""Number of differences in memory; of 5, 8 and 12 it needs the fewest marches for bores and
+loops."""
 DEPENDENT = 1e-8
-"""A difference whose part orthogonal to newer ones is below this share of it is left out: the
+"""A difference is dropped if its part orthogonal to newer ones is below this share of it; about the
 square root of the rounding error."""
 
 
 @kernel
 def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
-    """Add a pair to pairs, (2, DEPTH + 1, n), dropping the oldest; returns how many there are."""
+    """Add an image and a change to pairs (2, DEPTH + 1, n), and drop the oldest pair if it is full.
+
+    Returns the number of pairs.
+    """
     most, n = pairs.shape[1], pairs.shape[2]
     if count == most:
         for p in range(2):
@@ -30,18 +34,18 @@ def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarra
 
 @kernel
 def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarray) -> None:
-    """Fill out, (n,), with the combination of images whose change is the least.
+    """Fill out (n,) with the combination of images that has the smallest change.
 
-    pairs: images and changes, the newest last; scale: root of the metric of changes, (n,).
-    Least squares by modified Gram-Schmidt, from the newest difference on.
+    The least-squares problem is solved by modified Gram-Schmidt, from the newest difference on.
+    pairs: images and changes, the newest last; scale: square root of the metric of changes, (n,).
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(out)
     basis, triangle = np.empty((count, n)), np.zeros((count, count))
-    projection, source, left = np.zeros(count), np.zeros(count, np.int64), np.empty(n)
+    projection, source, residual = np.zeros(count), np.zeros(count, np.int64), np.empty(n)
     for i in range(n):
         out[i] = images[last, i]
-        left[i] = changes[last, i] * scale[i]
+        residual[i] = changes[last, i] * scale[i]
     size = 0
     for j in range(last - 1, -1, -1):
         column, whole = basis[size], 0.0
@@ -63,9 +67,9 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarra
         length, share = np.sqrt(rest), 0.0
         for i in range(n):
             column[i] /= length
-            share += column[i] * left[i]
+            share += column[i] * residual[i]
         for i in range(n):
-            left[i] -= share * column[i]
+            residual[i] -= share * column[i]
         triangle[size, size], projection[size], source[size] = length, share, j
         size += 1
     for k in range(size - 1, -1, -1):

@@ -1,14 +1,14 @@
-"""The search for the periodic state, compiled: the fixed point of "march one (half) period".
+"""Compiled search for the periodic state, the fixed point of a march over a period or half of it.
 
-The map is accelerated by Anderson's method; the verdict is that of the plain map.  Its residual,
-the distance to the next state, and the error that the residual stands for at the drift rate of the
-motion (`Goal`): close to the static limit a state changes so little in a period that a small
-residual proves nothing.
+Anderson's method accelerates the iteration.  Convergence is judged by three quantities: the
+residual of the plain map, the distance to the next state, and an error computed from the residual
+and the drift rate of the motion (`Goal`).  The last one is needed near the static limit, where a
+state changes so slowly that a small residual is no evidence of convergence.
 
-The state of a driven body has two numbers more, x and x' (contacts/drive.py).  A heavy body hardly
-notices in one period that its forces do not balance, nor does a soft spring that the contact lags
-behind.  So the map extrapolates the change of x and x' by the factors of `Inertia`; its fixed
-point is the same.
+The state of a driven body has two more numbers, x and x' (contacts/drive.py).  Unbalanced forces
+change the state of a heavy body, or of a body on a soft spring, by little in one period.  Therefore
+the map extrapolates the changes of x and x' by the factors of `Inertia`, which does not change its
+fixed point.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from microslip.foundation.compiled import kernel
 from microslip.states.anderson import DEPTH, accelerated, remember
 
 FORCING = 1e-3
-"""Tolerance of the steps of a march over the last change of the state, which is about to change
-anyway."""
+"""Tolerance of the steps of a march over the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""Largest tolerance of a step, from a start that is far and from one that is near."""
+"""Largest tolerance of a step, for a start far from the periodic state and for one near it."""
 NOISE = 1e-2
-"""Largest share of the force gained by the drift that the steps of a march may leave unsolved: what
-a state has lost it regains at the rate of the drift alone."""
+"""Largest residual of a march over the force gained by the drift in this march.  An error of the
+state decays at the rate of the drift only."""
 DRIFTING, MOST_RETURNS = 0.5, 3
-"""Share of the force gained by the drift that a march must change for a state below the static
-limit to count as stuck, and how often in a row the search then goes halfway back: such a state
-drifts and does not slip, so that its changes tell little about the periodic state."""
+"""DRIFTING: a state below the static limit is stuck if its residual exceeds this share of the force
+gained by the drift.  Such a state drifts without slip, so that its change is no measure of the
+distance to the periodic state.  MOST_RETURNS: how often in a row the search then goes halfway back
+to the last state that was not stuck."""
 FORGETFUL = 0.2
-"""Contraction of the plain map since the start below which it needs no acceleration."""
+"""Contraction of the plain map below which it is not accelerated."""
 
 
 class Goal(NamedTuple):
-    """The goal of a search: tolerances and properties of the periodic state.
+    """Tolerances of a search, and properties of the periodic state.
 
     Attributes
     ----------
@@ -49,18 +49,18 @@ class Goal(NamedTuple):
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     near : bool
-        Whether the start is near the periodic state.
+        Whether the initial state is near the periodic state.
     share : np.ndarray, shape (steps,)
         Duration of each step over that of the path.
     static_force : float
-        Mean forward force of the static limit; NaN: unknown.
+        Mean forward force of the static limit; NaN if unknown.
     least : float
-        Mean forward force below which a state is stuck and changes slowly, roughly that of the
-        static limit; NaN: unknown.
+        Mean forward force below which a state is stuck and changes slowly, about that of the static
+        limit; NaN if unknown.
     full : float
-        Largest mean forward force, that of full slip.
+        Largest possible mean forward force, which is that of full slip.
     gain : float
-        Force that a contact without slip gains along the path; infinite: the drift is not slow.
+        Force that a contact without slip gains along the path; infinite unless the drift is slow.
     """
 
     tolerance: float
@@ -75,18 +75,18 @@ class Goal(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """How the change of a driven body in a period is extrapolated and measured.
+    """Extrapolation and norm of the change of a driven body in a period.
 
     Attributes
     ----------
     drive : drive.Drive
-        Its start is not used.
+        Equation of the body; its `start` is not used.
     place, rate : float
-        Factors of the changes of x and x'.
+        Factors that extrapolate the changes of x and x'.
     held, mass : float
-        Weights of their squares in the norm of a state, a stiffness and a mass.
+        Weights of the squared changes of x and x' in the norm of a state, a stiffness and a mass.
     spread : np.ndarray, shape (points,)
-        Tractions of a unit forward force.
+        Forward tractions with a unit force.
     """
 
     drive: Drive
@@ -98,28 +98,28 @@ class Inertia(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """Data that a search carries from one call to the next; the search changes all of it.
+    """Data of a search between calls; each call changes them.
 
     Attributes
     ----------
     state : np.ndarray, field
-        Tractions to march from.
+        Tractions at the start of the next march.
     place : np.ndarray, shape (2,)
-        x and x' to march from.
+        x and x' at the start of the next march.
     guess : np.ndarray
         march.Trace.fields of the last march.
     pairs : np.ndarray, shape (2, DEPTH + 1, state.size + 2)
         See anderson.remember.
     above : np.ndarray, field
-        The last state that was not stuck below the static limit; at first the start.
+        Last state that was not stuck; initially the first state.
     counts : np.ndarray of int, shape (5,)
-        Marches, iterations, pairs, whether the plain map still contracts fast (0 or 1), and how
-        often in a row the search went back.
+        Numbers of marches, iterations and pairs; 1 while the plain map contracts fast, otherwise
+        0; and how often in a row the search went back.
     numbers : np.ndarray, shape (2,)
-        Tolerance of the next march's steps, residual of the last one.
+        Tolerance of the steps of the next march, and residual of the last march.
     best : tuple of np.ndarray
-        State, forces and body of the best march so far, and its numbers: distance, residual,
-        solver residual, whether it converged.
+        State, forces and body of the best march, and four numbers: distance, residual, residual of
+        the steps, and 1 if the state converged.
     """
 
     state: np.ndarray
@@ -133,7 +133,7 @@ class Memory(NamedTuple):
 
 
 def memory_of(state: np.ndarray, place: np.ndarray, stages: int, steps: int, goal: Goal) -> Memory:
-    """The Memory of a search that begins at tractions (a field) and at x and x'."""
+    """Create the Memory of a search from initial tractions (a field), and from x and x'."""
     state = np.array(state, dtype=float, order="C")
     loosest = LOOSEST_NEAR if goal.near else LOOSEST
     inner = max(goal.step_tolerance, min(loosest, NOISE * goal.gain / (stages * steps)))
@@ -162,7 +162,7 @@ def state_norm(
     moved: np.ndarray,
     scratch: np.ndarray,
 ) -> float:
-    """Bound on the force that a change of a state carries; moved: change of x and x'."""
+    """Upper bound on the force of a change of tractions, and of x and x' (`moved`)."""
     norm = force_norm(system, change, scratch)
     if inertia is None:
         return norm
@@ -178,8 +178,8 @@ def state_norm(
 
 @kernel
 def largest_excess(force: float, static_force: float, full: float) -> float:
-    """Largest excess of a mean force over the static limit; static_force: NaN if unknown."""
-    if np.isnan(static_force):  # a state below the limit takes long to regain what it lost
+    """Largest possible distance of a mean force to the static limit; static_force can be NaN."""
+    if np.isnan(static_force):  # the limit can be any force from 0 to full slip
         return max(abs(force), abs(full - force))
     return abs(force - static_force)
 
@@ -193,14 +193,14 @@ def search(
     memory: Memory,
     most: int,
 ) -> tuple[bool, bool]:
-    """Go on with a search for at most so many marches.
+    """Continue a search for at most `most` marches.
 
     Returns
     -------
     done : bool
-        Whether the state converged, or is not finite: memory.best holds the outcome.
+        Whether the search ended, because the state converged or is not finite; see memory.best.
     broken : bool
-        Whether it was interrupted: call again.
+        Whether the search was interrupted and can be continued.
     """
     state, place, guess, pairs, above, counts, numbers, best = memory
     n, steps, bound = state.size, len(goal.share), loading.bound[0]
@@ -226,9 +226,9 @@ def search(
             return False, True
         counts[0] += 1
         counts[1] += trace.iterations
-        fields, known = trace.fields.ravel(), guess.ravel()
-        for i in range(known.size):
-            known[i] = fields[i]
+        fields, copied = trace.fields.ravel(), guess.ravel()
+        for i in range(copied.size):
+            copied[i] = fields[i]
         if goal.mirror:
             mirrored(system, trace.state, image)
         else:
@@ -245,7 +245,7 @@ def search(
             if not (d.mass > 0.0 or d.damping > 0.0):
                 moved[0], moved[1] = 0.0, 0.0
                 if inertia.place > 1.0:
-                    # by the motion of the body, for the force is known to the steps' tolerance
+                    # from the motion of the body, which is more accurate than the force of steps
                     force = trace.forces[0, 0] - inertia.place * d.stiffness * advance
                     force -= trace.forces[last, 0]
                     for i in range(image.shape[1]):
@@ -299,7 +299,7 @@ def search(
             distance = max(distance, excess * gained / goal.gain)
         near_enough = distance <= goal.tolerance
         converged = solved and near_enough
-        if near_enough:  # what is left to show is that the steps are solved
+        if near_enough:  # solve the steps of the next march to the end
             numbers[0] = goal.step_tolerance
         if converged or distance < best[3][0]:
             copy(best[0], state)

@@ -1,10 +1,9 @@
-"""The influence operator on rings x angles, by the angular modes that it keeps apart.
+"""The influence operator on rings times angles, which is block-diagonal in angular modes.
 
-Points sit on half the disc at theta_j = (j + 1/2) pi / M, or on the whole disc.  At nu = 0 forward
-and lateral tractions of a mode act on displacements of their own kind alone, by one matrix of rings
-for both.  At nu > 0 the complex waves e^{i m theta} of forward - i lateral go together in pairs, m
-with 2 - m, see rings/influence.py.
-"""
+Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
+0 forward tractions of a mode cause forward displacements only, and lateral tractions lateral ones,
+by the same matrix of rings.  At nu > 0 the complex waves e^{i m theta} of forward - i lateral are
+coupled in pairs m and 2 - m (see rings/influence.py)."""
 
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Rings
 
 SHARED_MODES = (9, 17, 33)
-"""Modes that kernels are averaged for together, so that runs at 4, 6 and 8 angles share them."""
+"""Numbers of modes for which kernels are averaged, so that runs at 4, 6 and 8 angles share them."""
 
 
 Wave = tuple[int, int]
@@ -30,23 +29,24 @@ Wave = tuple[int, int]
 
 
 class Modes(NamedTuple):
-    """Operators on fields of rings x angles, contact after contact, rows of equal width.
+    """Operators on fields of rings times angles, for one or several contacts.
 
-    At nu = 0 there are two sectors, forward and lateral; at nu > 0 there is one.
+    Rows of a field have equal width.  At nu = 0 there are two sectors, forward and lateral; at
+    nu > 0 there is one.
 
     Attributes
     ----------
     to_modes : np.ndarray, shape (sectors, waves, rows of points)
-        Amplitudes of the waves.
+        Matrix from values at the points to amplitudes of the waves.
     to_points : np.ndarray, shape (sectors, rows of points, waves)
-        Values of the waves.
+        Matrix from amplitudes of the waves to values at the points.
     blocks : np.ndarray, shape (operators, contacts waves, chunks, columns, LANES)
-        Matrices.blocks of each wave; at nu > 0 of each pair of neighbouring waves, which are one
-        row of twice the width.
+        Matrices.blocks of each wave at nu = 0, or of each pair of neighbouring waves at nu > 0,
+        which form one row of twice the width.
     points, waves : np.ndarray of int, shape (sectors contacts, ...)
-        Rows of a field, and of `amplitudes`, that belong to a sector of a contact.
+        Indices of the rows of a field, and of `amplitudes`, that belong to a sector of a contact.
     amplitudes, images : np.ndarray, shape (sectors, contacts waves width)
-        Scratch.
+        Scratch arrays.
     """
 
     to_modes: np.ndarray
@@ -65,7 +65,7 @@ class Modes(NamedTuple):
 
     @staticmethod
     def joined(each: Sequence[Modes], extents: np.ndarray) -> Modes:
-        """The operators of several contacts on one body, see models/side_by_side.py."""
+        """Join the operators of several contacts on one body (see models/side_by_side.py)."""
         parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
         blocks, width = np.concatenate(parts, axis=1), each[0].amplitudes.shape[1]
         to_modes, to_points = each[0].to_modes, each[0].to_points
@@ -75,7 +75,7 @@ class Modes(NamedTuple):
 def modes_of(
     to_modes: np.ndarray, to_points: np.ndarray, blocks: np.ndarray, contacts: int, width: int
 ) -> Modes:
-    """The Modes of so many contacts, with scratch."""
+    """Create Modes for a number of contacts, with scratch arrays."""
     sectors, waves, rows = to_modes.shape
     points = np.arange(2 * contacts * (rows * sectors // 2)).reshape(2, contacts, -1)
     if sectors == 1:
@@ -95,7 +95,7 @@ def modes_of(
 @operator(Modes)
 @kernel
 def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image = operator field."""
+    """image = operator field; see operators.operator."""
     sectors, waves, _ = modes.to_modes.shape
     contacts, amplitudes, images = len(modes.points) // sectors, modes.amplitudes, modes.images
     width = amplitudes.shape[1] // (contacts * waves)
@@ -124,7 +124,7 @@ def combine(
     """target[rows] = matrix source[columns]; source, target: (..., width)."""
     width = source.shape[1]
     for after in range(0, len(rows), 2):
-        one = min(after, len(rows) - 2)  # two rows at a time, the last ones once more
+        one = min(after, len(rows) - 2)  # two rows at a time; the last two can be computed twice
         first, second = matrix[one], matrix[one + 1]
         for chunk in range(-(-width // LANES)):
             at = start(chunk, width)
@@ -145,7 +145,7 @@ def combine(
 
 @kernel
 def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image[0, row] = matrix[row] field[0, row]; as operators.multiply_rows, of one component."""
+    """image[0, row] = matrix[row] field[0, row]; operators.multiply_rows for one component."""
     _, rows, chunks, columns, _ = operators.blocks.shape
     width = field.shape[1] // rows
     for row in range(rows):
@@ -162,20 +162,20 @@ def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: n
 
 
 WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
-"""Points: all, or half of them, whose tractions tell the others by this symmetry."""
+"""Symmetry by which tractions on half of the disc determine the others; none for the whole disc."""
 
 
 def _single_waves(
     theta: np.ndarray, angles: int, symmetry: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """At nu = 0: numbers m of the waves, and their forward and lateral values, (waves, points).
+    """Waves at nu = 0: their numbers m, and their forward and lateral values, (waves, points).
 
-    Forward tractions of a rotation are cosines and lateral ones sines; a translation has both of
-    each, of even numbers.
+    For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
+    translation, both are cosines and sines of even numbers.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
-    cosines[angles] = 0.0  # at the points, but for rounding
+    cosines[angles] = 0.0  # its exact value at the points
     if symmetry == ROTATION:
         return numbers, cosines, sines
     step = 2 if symmetry == TRANSLATION else 1
@@ -185,10 +185,10 @@ def _single_waves(
 
 
 def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
-    """At nu > 0: pairs of waves (m, part), and whether the two act on each other.
+    """Pairs of waves at nu > 0: first those that are coupled, then those that are not.
 
-    Part 0 is e^{i m theta}, part 1 i times that.  The shortest waves of a disc, or of a rotation,
-    act on themselves alone, since the points hold no cosine of them.
+    A wave is (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The shortest waves
+    of a whole disc or of a rotation are not coupled, because their cosine vanishes at the points.
     """
     step = 2 if symmetry == TRANSLATION else 1
     parts = (0,) if symmetry == ROTATION else (0, 1)
@@ -211,7 +211,7 @@ def _coupled_matrices(
     ratio: np.ndarray,
     kappa: float,
 ) -> np.ndarray:
-    """Matrices (pairs, 2, n, 2, n) of coupled pairs and of single waves."""
+    """Matrices (pairs, 2, n, 2, n) of coupled pairs and of pairs without coupling."""
     near, far = influence
     n = near.shape[1]
     out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
@@ -228,8 +228,8 @@ def _coupled_matrices(
     return out
 
 
-def _modes_to_know(angles: int) -> int:
-    """Modes to average the kernels for: those of more angles too, as runs differ in these alone."""
+def _modes_to_average(angles: int) -> int:
+    """Number of modes for which kernels are averaged, at least angles + 1; see SHARED_MODES."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 
@@ -237,20 +237,38 @@ def _modes_to_know(angles: int) -> int:
 def _shared_influence(
     psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mode matrices of rings with the edges `psi`, see ring_influence."""
+    """Influence matrices of modes on rings with the edges `psi`, see ring_influence."""
     return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
 
 
 def influence_modes(
     rings: Rings, angles: int, symmetry: str, poisson: float, modulus: float, width: int
 ) -> tuple[Modes, np.ndarray]:
-    """A and its resolvents on rings times angles, and the self-influence of each ring, (N,).
+    """The operator A and its resolvents on rings times angles, and the self-influence of each ring.
 
-    angles: points on half of a ring; width: columns of a field.
+    Parameters
+    ----------
+    rings : mesh.Rings
+        Mesh of N rings.
+    angles : int
+        Number of points on half of a ring.
+    symmetry : str
+        WHOLE, ROTATION or TRANSLATION.
+    poisson, modulus : float
+        Poisson's ratio, and G* in working units.
+    width : int
+        Number of columns of a field.
+
+    Returns
+    -------
+    operators : Modes
+        The operators, for one contact.
+    scale : np.ndarray, shape (N,)
+        Mean displacement of each ring under a unit traction on itself.
     """
     kappa, n = poisson / (2.0 - poisson), len(rings.bound)
     influence = near, _ = _shared_influence(
-        tuple(rings.psi), _modes_to_know(angles), poisson > 0.0, modulus
+        tuple(rings.psi), _modes_to_average(angles), poisson > 0.0, modulus
     )
     scale = np.ascontiguousarray(np.diag(near[0]))
     points = 2 * angles if symmetry == WHOLE else angles
@@ -262,7 +280,7 @@ def influence_modes(
         matrices, columns = near[numbers], width
     else:
         pairs, single = _pairs(angles, symmetry)
-        ratio = rings.area[:, None] / rings.area[None, :]  # the transpose, weighted with the areas
+        ratio = rings.area[:, None] / rings.area[None, :]  # weights of the transpose
         matrices = _coupled_matrices(pairs, single, influence, ratio, kappa)
         matrices = matrices.reshape(-1, 2 * n, 2 * n)
         waves = [wave for pair in (*pairs, *single) for wave in pair]

@@ -1,16 +1,15 @@
-"""Rings times angular modes: rotating motions at any nu, translation at nu > 0, and both at once.
+"""Contact of rings times angular modes, for rotations at any nu and for translations at nu > 0.
 
-Points sit on rings at angles theta_j = (j + 1/2) pi / M, theta from the lateral axis; the other
-half of the disc follows from symmetry:
+Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  They are on one
+half of the disc, and the other half follows from symmetry:
 
-- motions that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
-- translation: point symmetry, traction(-z) = traction(z), so even modes only.
+- for rotations, a mirror across the lateral axis (forward traction even, lateral traction odd);
+- for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
 
-A motion that does both has neither symmetry, and the points of the other half are resolved, too.
+A motion with both has neither symmetry, and the whole disc is resolved.
 
-Coulomb's law is asked for at the points; the elastic operator is block-diagonal in the angular
-modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).
-"""
+Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
+with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
 
 from __future__ import annotations
 
@@ -19,7 +18,6 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.models import contact
-from microslip.models.path import Path
 from microslip.models.polar.angular_modes import ROTATION, TRANSLATION, WHOLE, influence_modes
 from microslip.models.rings.contact import RadialContact, width_of
 from microslip.models.rings.mesh import Focus, make_rings
@@ -28,35 +26,34 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Rings below which tractions of a coarser contact are no better a start than the static limit."""
+"""Smallest number of rings for which tractions of a coarser contact are a better initial guess than
+the static limit."""
 
 
 class PolarContact(SystemContact):
-    """Rings times points on the disc (see models.contact.Contact); states: (2, angles, cells).
+    """Contact of rings times angles (see models.contact.Contact); states have shape (2, angles,
+    cells).
 
     Parameters
     ----------
     cells, angles : int
-        Rings, and points of each on half the disc.
+        Number of rings, and of points of each ring on half the disc; angles must be even.
     rotates : bool
-        Mirror symmetry of rotating motions, else point symmetry of translations.
+        Whether the motion is a rotation, with mirror symmetry; otherwise a translation.
     poisson : float
         Poisson's ratio.
     focus : mesh.Focus, float or None
-        Where the rings gather.
+        Radii towards which the rings are graded.
     pressure : pressure.Pressure
-        One that depends on the radius alone.
+        Pressure that depends on the radius alone.
     whole : bool
-        Whether the other half of the disc is resolved as well; states: (2, 2 angles, cells).
+        Whether the whole disc is resolved; states then have shape (2, 2 angles, cells).
 
     Raises
     ------
     ValueError
-        Where the half disc cannot be filled.
+        If `angles` is odd or below 2.
     """
-
-    loaded: RadialContact | None = None
-    """Rings that know the bounds while the normal load changes, a RadialContact."""
 
     def __init__(
         self,
@@ -87,7 +84,7 @@ class PolarContact(SystemContact):
             rings, angles, symmetry, poisson, pressure.G_star, self.layout.width
         )
         self.resultants = np.ones(3)
-        if not whole:  # what the half disc that is not resolved cancels
+        if not whole:  # the other half of the disc cancels this resultant
             self.resultants[contact.LATERAL if rotates else contact.TORQUE] = 0.0
         self._made_of = cells, focus, pressure
 
@@ -103,16 +100,18 @@ class PolarContact(SystemContact):
         *,
         whole: bool,
     ) -> PolarContact:
-        """The contact with these arguments, which runs that differ in their motion share."""
+        """Return the contact with these arguments; equal arguments return the same object, which
+        must not be changed."""
         return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
-        """A contact with these points spread over the largest contact area of a period.
+        """Return a contact whose points fill the largest contact area of a period.
 
         The arguments are those of RadialContact.at_indentation.
         """
         out = self.unprepared()
-        out.loaded = loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
+        loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
+        out.bounds, out.bounds_along = loaded.bounds, loaded.bounds_along
         out.radius = radius = loaded.radius
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
@@ -122,39 +121,27 @@ class PolarContact(SystemContact):
         out.stiffness = self.stiffness * radius
         return out
 
-    def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
-        assert self.loaded is not None  # as at_indentation makes it
-        return self.loaded.bounds(depths)
-
-    def bounds_along(self, path: Path) -> np.ndarray:
-        """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
-        assert self.loaded is not None  # as at_indentation makes it
-        return self.loaded.bounds_along(path)
-
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
-        brought to the points of this one; None where it does not turn, its load changes, or its
-        rings are too few for that to be of use.
+        """Interpolate tractions (2, angles, cells) of this contact on a coarser mesh to its points.
 
-        What is interpolated is the share of the friction bound.
+        Tractions are interpolated as shares of the friction bound.  None for translations, whole
+        discs, changing loads and fewer than FEWEST_PROLONGED rings.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
-        if few or not self.rotates or self.whole or self.loaded is not None:
+        grows = hasattr(self, "bounds")
+        if few or grows or not self.rotates or self.whole:
             return None
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
         share = state / rings.bound
-        # forward tractions are even across the lateral axis, where the angles begin and end
+        # continue the angles beyond the lateral axis, where forward tractions are even
         beyond = share[:, [0, -1]] * contact.MIRROR
         share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
-        given, wanted = ((np.arange(-1, count + 1) + 0.5) / count, self._theta / np.pi)
-        share = _interpolated(wanted, given, share, axis=1)
+        angles = (np.arange(-1, count + 1) + 0.5) / count
+        share = _interpolated(self._theta / np.pi, angles, share, axis=1)
         return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
 
-def _interpolated(
-    wanted: np.ndarray, given: np.ndarray, values: np.ndarray, axis: int
-) -> np.ndarray:
-    """Linear between the given places along an axis, constant beyond them."""
-    return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)
+def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
+    """Interpolate values at nodes along an axis linearly to x; constant beyond the nodes."""
+    return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)

@@ -1,1 +1,1 @@
-"""Models that leave elasticity or partial slip out."""
+"""Models that neglect elasticity, partial slip or the interaction of points."""

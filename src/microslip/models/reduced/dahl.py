@@ -1,12 +1,11 @@
-"""The Dahl model in two directions (Tsai and Tseng 2005): a bristle that drifts under any load.
+"""The Dahl model in two directions (Tsai and Tseng 2005).
 
-    dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
+    dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1
 
-k the stiffness of the contact without slip.  It has the contact's stiffness and its friction bound
-and nothing in between: no stick, so an infinitely slow motion meets no resistance once the contact
-vibrates at all.  Along a straight piece of the path the equation has a closed solution, and the
-march is linear in its start.
-"""
+Here k is the stiffness of the contact without slip.  The model has the stiffness and the friction
+bound of the contact, but no stick: any vibration removes all friction of an infinitely slow motion.
+Along a straight piece of the path the equation has a closed solution, which is linear in the force
+at the start."""
 
 from __future__ import annotations
 
@@ -20,7 +19,7 @@ class DahlContact(contact.Contact):
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
 
     compiled = False
-    sticks = False  # no point of it ever sticks: nothing is left of it in the static limit
+    sticks = False  # the static limit of friction is 0
     angles = 1
 
     def __init__(self, stiffness: float):
@@ -38,7 +37,7 @@ class DahlContact(contact.Contact):
         return state * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """The solution q = image(march(q)) of two linear equations."""
+        """Solve q = image(march(q)), which is linear in q, for the two components."""
         image = np.diag([1.0, -1.0]) if mirror else np.eye(2)
         starts = np.vstack([np.zeros(2), np.eye(2)]).reshape(3, 2, 1, 1)
         ends = np.array([image @ self.march(path, q, 0.0).state.ravel() for q in starts])
@@ -52,7 +51,7 @@ class DahlContact(contact.Contact):
         tolerance: float,
         previous: contact.Guess | None = None,
     ) -> contact.March:
-        """Solve along `path`, straight from phase to phase (translations only)."""
+        """Integrate along straight lines between the phases of the path (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)
         lengths = np.hypot(*moves.T)
         forces = np.zeros((path.steps + 1, 3))

@@ -1,11 +1,11 @@
 """The method of dimensionality reduction: a row of independent springs with friction.
 
-For tangential loading in one direction it reproduces the half-space exactly (Cattaneo and Mindlin,
-any axisymmetric indenter); with two components of slip it is an approximation, since its springs
-know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and the
-indenter gives each the friction bound G* (1 - h(x)) per length (dimensionless), h(x) the share of
-the depth at which the contact radius is x, so that it yields at (1 - h) u_lim: 1 - x^2 for a
-sphere.  At another indentation d these are (d - h) u_lim, where that is above 0.
+For tangential loading of an axisymmetric indenter in one direction it is exact (Cattaneo and
+Mindlin).  With two components of slip it is an approximation, because the springs do not interact.
+Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per length, where
+h(x) is the depth for the contact radius x over the actual depth.  So the spring at x slides at the
+displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a sphere.  At another depth d it slides at
+(d - h) u_lim if this is above 0.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ from microslip.pressures.pressure import Pressure
 def mdr_contact(
     cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
 ) -> RadialContact:
-    """`cells` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
-    gathered around x = `focus`.
+    """Contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards x = `focus`.
 
-    The spring at x stands for both halves of a ring: what a spring carries is force over length.
+    `bound` is force over length.  The weight of a spring is the length of it and its mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)

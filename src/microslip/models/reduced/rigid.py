@@ -1,7 +1,7 @@
-"""The rigid contact: no elasticity, every point slips along its rigid velocity at every instant.
+"""The rigid contact: every point slips in the direction of its rigid velocity at every instant.
 
-Translation makes it the rigid slider behind Eq 6; rotation the quasi-steady contact behind Eqs 21,
-22 and 29.  There is no state: a march is an evaluation.
+For a translation it is the rigid slider of Eq 6; for a rotation it is the quasi-steady contact of
+Eqs 21, 22 and 29.  It has no memory, so that a march only evaluates the forces at each phase.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
-"""Steps at the turning points, over the mean: the direction turns there within a phase v/y."""
+"""Grading of the steps towards the turning points, where the direction of slip reverses within a
+phase v/y."""
 
 
 class RigidContact(contact.Contact):
-    """Points on rings x half-circle angles (one point for translation); see models.contact."""
+    """Points on rings times angles of a half disc, or one point for a translation (see
+    models.contact)."""
 
     compiled = False
     sticks = False
@@ -40,15 +42,15 @@ class RigidContact(contact.Contact):
         self.compliance = np.ones_like(self.bound)
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """No elastic displacement."""
+        """Elastic displacement of each point, which is 0."""
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """theta -> pi - theta, lateral traction negated."""
+        """The state after lateral -> -lateral (lateral traction negated)."""
         return state[:, ::-1, :] * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """The state after one march, which does not depend on its start."""
+        """Return the state after one march, which does not depend on the state before."""
         end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
         return self.mirrored(end) if mirror else end
 
@@ -70,5 +72,5 @@ class RigidContact(contact.Contact):
             )
             forces[k] = contact.forces(self, q)
         if self.angles > 1:
-            forces[:, contact.LATERAL] = 0.0  # cancelled by the half disc that is not resolved
+            forces[:, contact.LATERAL] = 0.0  # the other half of the disc cancels it
         return contact.March(q, forces, 0.0, 0, path.steps + 1)

@@ -1,8 +1,8 @@
 """The elastic single slider: one friction element behind an isotropic spring (Benad et al. 2019).
 
-Its spring yields at u_lim, as the contact as a whole does, so the dimensionless groups coincide.
-It knows no partial slip: above the static limit it is a good and very cheap model, near it Eq 7
-shows what it misses.
+The element slides from the displacement u_lim on, as the whole contact does, so that the
+dimensionless groups are the same.  The model has no partial slip.  It is good and cheap well above
+the static limit; near this limit its friction is Eq 7.
 """
 
 from __future__ import annotations
@@ -13,5 +13,5 @@ from microslip.models.rings.contact import RadialContact
 
 
 def slider_contact() -> RadialContact:
-    """The slider as a contact of one point: unit friction bound, unit compliance."""
+    """Contact of one point with unit friction bound and unit compliance."""
     return RadialContact(np.ones((1, 1)), np.ones(1), np.ones(1))

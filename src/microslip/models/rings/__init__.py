@@ -1,1 +1,1 @@
-"""The contact on rings: motion along one line at nu = 0."""
+"""The contact on rings, for translations at nu = 0."""

@@ -1,4 +1,5 @@
-"""Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone."""
+"""Contact of rings, exact for translations at nu = 0, where tractions depend on the radius
+alone."""
 
 from __future__ import annotations
 
@@ -21,24 +22,25 @@ from microslip.pressures.pressure import Pressure
 class RadialContact(SystemContact):
     """Contact of rings (see models.contact.Contact); states have shape (2, 1, cells).
 
-    `resolved` builds the half-space's; the elastic slider is the one-ring contact of unit
-    compliance.
+    `resolved` creates the contact of the half-space.
 
     Parameters
     ----------
     influence : np.ndarray, shape (cells, cells)
-        Mean ring tractions to ring-averaged displacements, symmetric once its rows are weighted.
+        Matrix from mean tractions of rings to mean displacements of rings.  It is symmetric after
+        multiplication of its rows by `weight`.
     bound, weight : np.ndarray, shape (cells,)
         Friction bound and area of each ring.
     stiffness : float or None
-        Stiffness of the whole contact, see models.contact.Contact; None: that of the matrix.
+        Stiffness of the whole contact, see models.contact.Contact; None to compute it from the
+        matrix.
     growth : varying_load.Growth or None
-        Growth of the contact with the depth; None: the normal load is constant.
+        Growth of the contact with the depth; None if the normal load is constant.
 
     Attributes
     ----------
     edges : np.ndarray or None, shape (cells + 1,)
-        Radii between the rings of the reference contact, None where there are none.
+        Radii between the rings of the reference contact; None without `growth`.
     """
 
     angles = 1
@@ -61,7 +63,7 @@ class RadialContact(SystemContact):
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
         weighted = weight[:, None] * self.influence
         self._weighted = 0.5 * (weighted + weighted.T)
-        if stiffness is None:  # the force that moves all points by one
+        if stiffness is None:  # force for a unit displacement of all rings
             stiffness = float(weight @ np.linalg.solve(self._weighted, weight))
         self.stiffness = float(stiffness)
         self.layout = Layout(1, 1, len(bound), width_of(len(bound)))
@@ -70,7 +72,7 @@ class RadialContact(SystemContact):
         self.resultants = np.array([1.0, 1.0, 0.0])
 
     def _matrices(self) -> np.ndarray:
-        """A and its resolvents, (operators, 1, cells, cells)."""
+        """The operator A and its resolvents, (operators, 1, cells, cells)."""
         weight = self.weight
         penalty = best_penalty(self.compliance, len(weight))
         shifts = PENALTIES[:, None, None] * np.diag(weight * penalty)
@@ -78,24 +80,36 @@ class RadialContact(SystemContact):
         return np.concatenate([self._weighted[None] / weight[:, None], resolvents])[:, None]
 
     @staticmethod
+    @lru_cache(maxsize=32)
     def resolved(
         cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
     ) -> RadialContact:
-        """The half-space on `cells` rings refined around the radius `focus`."""
-        return _resolved(cells, focus, pressure)
+        """Return the contact of the half-space on `cells` rings graded towards `focus`.
+
+        Equal arguments return the same object, which must not be changed.
+        """
+        rings = make_rings(cells, focus, pressure)
+        near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
+        edges = np.sin(rings.psi)
+        growth = Growth(pressure, edges, load_on_rings, influence_power=1, weight_power=2)
+        return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)
 
     @property
-    def _known_growth(self) -> Growth:
-        assert self.growth is not None  # else the normal load cannot change
+    def _checked_growth(self) -> Growth:
+        assert self.growth is not None  # otherwise the normal load is constant
         return self.growth
 
     def at_indentation(self, deepest: float, start: float) -> RadialContact:
-        """A contact with these rings spread over the largest contact area of a period.
+        """Return a contact whose rings fill the largest contact area of a period.
 
-        deepest: largest depth (see varying_load.py), above 0.  start: depth at the start of the
-        period, at which the friction bound is taken.
+        Parameters
+        ----------
+        deepest : float
+            Largest depth (see varying_load.py), above 0.
+        start : float
+            Depth at the start of the period, for which `bound` is computed.
         """
-        growth = self._known_growth
+        growth = self._checked_growth
         radius = float(growth.pressure.radius(deepest))
         out = RadialContact(
             self.influence * radius**growth.influence_power,
@@ -111,25 +125,25 @@ class RadialContact(SystemContact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Radius of the contact that is as stiff as the first k rings, stuck together, for k from 0
-        to all; shape (cells + 1,).
+        """Effective radii (cells + 1,): radius of the contact with the stiffness of the first k
+        rings without slip.
 
-        It is a little less than their outer edge.  A ring joins the contact halfway from the radius
-        without it to that with it: then a growing contact has the right stiffness in the mean.
-        Were it to join where the edge of the contact reaches it, all of it would be held too early
-        by its inner part, an error of first order.
+        An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
+        contact when the contact radius is halfway between the effective radii without and with this
+        ring.  A growing contact then has the right stiffness on average.  If the ring joined when
+        the contact reached its inner edge, it would stick too early, an error of first order.
         """
         part = np.linalg.solve(np.linalg.cholesky(self._weighted), self.weight)
-        # w^T B^-1 w of the first k rings
+        # w^T B^-1 w of the first k rings, B: weighted influence
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 
     def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells).
 
-        edge: radii (len(depths),) that say which rings are in contact, by default those of the
-        contact.  What is outside of these rings counts for the last of them.
+        edge: radii (len(depths),) that determine which rings are in contact; None for the contact
+        radii.  Load outside these rings is added to the last of them.
         """
-        growth = self._known_growth
+        growth = self._checked_growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)
         edge = growth.pressure.radius(depths) if edge is None else edge
         outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
@@ -137,33 +151,23 @@ class RadialContact(SystemContact):
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.weight
 
     def bounds_along(self, path: Path) -> np.ndarray:
-        """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
+        """Friction bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
-        Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
-        carried on by the integrator.  At a steady rate a ring that joins there has been stretched
-        for the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the
-        edge of the contact is seen as early as makes up for it.
-        """
-        assert path.depth is not None  # else the bounds stay what they are
+        Rings join or leave the contact at the last stage of a step only, because the integrator
+        would carry a jump at an earlier stage on to later ones.  A ring that joins there is
+        strained for the share 1 / (1 + carried) of the step, but on average it should be strained
+        for half of the step.  The contact radius is therefore taken earlier by the difference."""
+        assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
-        ends = self._known_growth.pressure.radius(path.depth[::stages])
+        ends = self._checked_growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
-        seen = ends.copy()
-        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next march begins
-        edge = np.repeat(seen[:-1, None], stages, axis=1)
-        edge[:, -1] = seen[1:]
-        return self.bounds(path.depth, np.append(seen[:1], edge))
+        shifted = ends.copy()
+        shifted[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins
+        edge = np.repeat(shifted[:-1, None], stages, axis=1)
+        edge[:, -1] = shifted[1:]
+        return self.bounds(path.depth, np.append(shifted[:1], edge))
 
 
 def width_of(rings: int) -> int:
-    """Columns of a field of so many rings: whole vectors, see lanes.py."""
+    """Number of columns of a field for a number of rings: a multiple of 4 and at least LANES."""
     return max(-(-rings // 4) * 4, LANES)
-
-
-@lru_cache(maxsize=32)
-def _resolved(cells: int, focus: Focus | float | None, pressure: Pressure) -> RadialContact:
-    """Shared by runs that differ in their motion only: a contact never changes."""
-    rings = make_rings(cells, focus, pressure)
-    near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
-    growth = Growth(pressure, np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
-    return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)

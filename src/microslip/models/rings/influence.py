@@ -1,19 +1,18 @@
 """Influence coefficients of the elastic half-space under in-plane traction.
 
-The surface displacement u = u_x + i u_y that a traction q = q_x + i q_y causes is (dimensionless
-working units, contact radius 1, reduced shear modulus `G_STAR`)
+The surface displacement u = u_x + i u_y under a traction q = q_x + i q_y is, in working units with
+the contact radius 1 and the reduced shear modulus G*,
 
     u(z) = 1/(pi G*) Integral [ q(z') / |z-z'| + kappa e^{2 i alpha} conj(q(z')) / |z-z'| ] dA'
 
-with kappa = nu / (2 - nu) and alpha the angle of z - z'.  On circles both kernels fall apart into
+with kappa = nu / (2 - nu) and the angle alpha of z - z'.  On circles both kernels decompose into
 angular modes.  With q = Sum_m q_m(r) e^{i m theta}
 
     u_m(r) = 2/G* Integral [ G_m(r, r') q_m(r') + kappa C_m(r, r') conj(q_{2-m}(r')) ] r' dr'
     G_m(r, r') = Integral_0^inf J_m(k r) J_m(k r') dk            (a toroidal Legendre function)
     C_m(r, r') = Integral_0^inf J_m(k r) J_{m-2}(k r') dk
 
-This module averages G_m and C_m (mode_kernels.py) over pairs of rings.  It knows nothing of
-friction, motion or time.
+This module averages G_m and C_m (mode_kernels.py) over pairs of rings.
 """
 
 from __future__ import annotations
@@ -30,33 +29,29 @@ from microslip.theory.hertz import G_STAR
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Gauss points of the outer (averaging) and the inner (singular) ring integral, and the power that
-clusters the inner points at the nearest approach, where the kernels have a logarithm."""
+"""Numbers of Gauss points of the outer (averaging) and the inner (singular) ring integral, and the
+power that clusters the inner points at the nearest approach, where kernels have a logarithm."""
 APART_POINTS = 5
-"""Gauss points on each of two rings with at least a ring's width between them."""
+"""Number of Gauss points on each of two rings that are at least the width of a ring apart."""
 
 
 class Averaging(NamedTuple):
-    """How kernels are averaged over pairs of rings; every rule is (nodes, weights) on [0, 1].
+    """Quadrature of kernels over pairs of rings; every rule is (nodes, weights) on [0, 1].
 
     Attributes
     ----------
     psi : np.ndarray, shape (rings + 1,)
-        Edges of the rings as angles, r = sin(psi).
+        Edges of the rings as angles, with r = sin(psi).
     coupled : bool
         Whether modes m and 2 - m act on each other (nu > 0).
-    hertz : bool
-        Whether tractions on a ring are shaped like the bound of Hertz, else uniform.
     outer, inner : tuple of np.ndarray
-        Rules for the ring that the average is over, and for the other one from the point of nearest
-        approach on.
+        Rules for the narrower ring, and for the other ring from the point of nearest approach on.
     apart : tuple of np.ndarray
-        Rule for both of two rings with a gap between them.
+        Rule for both rings if they are at least the width of a ring apart.
     """
 
     psi: np.ndarray
     coupled: bool
-    hertz: bool
     outer: tuple
     inner: tuple
     apart: tuple
@@ -64,14 +59,14 @@ class Averaging(NamedTuple):
 
 @kernel
 def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Average kernels over ring i (outer rule) and ring j (inner rule), i the narrower one.
+    """Average kernels over ring i (outer rule) and ring j (inner rule).
 
-    The points of the inner rule alone cluster where the rings are nearest, so that those of the
-    outer rule have to be close to each other.  Adds to near[:, i, j] the averages of G_m, and to
-    far[:, i, j] and far[:, j, i] those of C_{m+1}, weighted with the ring shapes (normalised to
-    unit weight Integral shape r dr = 1 on each ring).
+    Ring i must be the narrower one, because only the points of the inner rule are clustered where
+    the rings are nearest.  Adds the averages of G_m to near[:, i, j], and those of C_{m+1} to
+    far[:, i, j] and far[:, j, i].  Averages are weighted with the shape of the traction on each
+    ring, normalised to Integral shape r dr = 1.
     """
-    psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
+    psi, coupled = averaging.psi, averaging.coupled
     a0, a1 = psi[i], psi[i + 1]
     b0, b1 = psi[j], psi[j + 1]
     apart = max(a0 - b1, b0 - a1) >= 0.999 * max(a1 - a0, b1 - b0)
@@ -80,13 +75,13 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
     n_modes = len(near)
     norm_i = 0.0
     for p in range(len(x_out)):
-        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p], hertz)
-    norm_j = _weight_integral(b0, b1, hertz)
+        norm_i += (a1 - a0) * w_out[p] * _weight(a0 + (a1 - a0) * x_out[p])
+    norm_j = (np.cos(b0) ** 3 - np.cos(b1) ** 3) / 3.0
     torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
     for p in range(len(x_out)):
         at = a0 + (a1 - a0) * x_out[p]
-        weight_out = (a1 - a0) * w_out[p] * _weight(at, hertz) / norm_i
-        # the inner panel is cut at the point of nearest approach
+        weight_out = (a1 - a0) * w_out[p] * _weight(at) / norm_i
+        # the inner ring is divided at the point of nearest approach
         cut = min(max(at, b0), b1)
         for end in (b0, b1):
             length = end - cut
@@ -94,7 +89,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
                 continue
             for q in range(len(x_in)):
                 chi = cut + length * x_in[q]
-                w = weight_out * abs(length) * w_in[q] * _weight(chi, hertz) / norm_j
+                w = weight_out * abs(length) * w_in[q] * _weight(chi) / norm_j
                 torus = mode_kernels(np.sin(at), np.sin(chi), n_modes, coupled, torus, pair)
                 for m in range(n_modes):
                     near[m, i, j] += w * torus[m]
@@ -107,24 +102,15 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
 
 
 @kernel
-def _weight(psi: float, hertz: bool) -> float:
-    """Shape times r dr/dpsi on r = sin psi: uniform traction, or one shaped like the bound."""
+def _weight(psi: float) -> float:
+    """Shape of the friction bound of Hertz times r dr/dpsi, at r = sin psi."""
     c = np.cos(psi)
-    return np.sin(psi) * c * (c if hertz else 1.0)
-
-
-@kernel
-def _weight_integral(b0: float, b1: float, hertz: bool) -> float:
-    """Exact integral of _weight from b0 to b1."""
-    c0, c1 = np.cos(b0), np.cos(b1)
-    if hertz:
-        return (c0**3 - c1**3) / 3.0
-    return 0.5 * (c0 * c0 - c1 * c1)
+    return np.sin(psi) * c * c
 
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill near and far, (n_modes, rings, rings), which are zero before."""
+    """Fill near and far, (n_modes, rings, rings), which must be zero on entry."""
     width = np.diff(averaging.psi)
     for one in range(len(width)):
         for other in range(one + 1):
@@ -150,33 +136,32 @@ def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ring_influence(
-    psi: np.ndarray, n_modes: int, coupled: bool, hertz: bool = True, modulus: float = G_STAR
+    psi: np.ndarray, n_modes: int, coupled: bool, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mode matrices of a half-space under ring tractions.
+    """Influence matrices of angular modes on rings of a half-space.
 
-    Averages are Galerkin averages, so that near is symmetric after weighting with ring areas.
+    Tractions on a ring have the shape of the friction bound of Hertz.  Averages are Galerkin
+    averages, so that near is symmetric after weighting with ring areas.
 
     Parameters
     ----------
     psi : np.ndarray, shape (n + 1,)
-        Ring edges as angles, r = sin(psi), increasing up to pi/2.
+        Edges of the rings as angles, with r = sin(psi), increasing up to pi/2.
     n_modes : int
-        Modes 0 to n_modes - 1.
+        Number of modes; they are 0 to n_modes - 1.
     coupled : bool
-        Whether far is asked for, which is zero else.
-    hertz : bool
-        Average with the shape of the friction bound of Hertz, else uniformly.
+        Whether to compute `far`, which is zero otherwise.
     modulus : float
         G* in working units.
 
     Returns
     -------
     near : np.ndarray, shape (n_modes, n, n)
-        near[m] maps mean ring tractions (force per area) of mode m to ring-averaged displacements
-        of mode m (also for mode -m); dimensionless.
+        near[m] maps mean tractions of rings (force over area) of mode m to mean displacements of
+        rings of mode m; modes m and -m have the same matrix.
     far : np.ndarray, shape (n_modes, n, n)
-        kappa * far[j] maps conj of the tractions of mode 1 - j to the displacements of mode 1 + j,
-        and its transpose those of 1 + j to 1 - j.
+        kappa * far[j] maps conjugate tractions of mode 1 - j to displacements of mode 1 + j; its
+        transpose maps those of mode 1 + j to mode 1 - j.
     """
     psi = np.ascontiguousarray(psi, dtype=float)
     n = len(psi) - 1
@@ -185,7 +170,6 @@ def ring_influence(
     averaging = Averaging(
         psi,
         bool(coupled),
-        bool(hertz),
         outer=_smooth_ends_gauss(OUTER_POINTS),
         inner=_unit_gauss(INNER_POINTS, CLUSTER_POWER),
         apart=_unit_gauss(APART_POINTS, 1),

@@ -1,8 +1,8 @@
-"""Rings of a circular contact: edges that follow the motion, areas, bounds and lever arms.
+"""Mesh of rings of a circular contact: edges, areas, friction bounds and lever arms.
 
-Radii are r = sin(psi), psi equidistant but for what a motion asks for: so the edge of the contact
-is refined, where pressures of smooth bodies fall like a square root, and the edge of a hole alike.
-"""
+Edges are r = sin(psi) with equidistant psi, unless the mesh is graded towards a focus.  This
+refines the mesh at the edge of the contact, where smooth pressures fall like a square root.
+Contacts with a hole are refined at its edge in the same way."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from microslip.pressures.pressure import Pressure
 
 
 class Focus(NamedTuple):
-    """Radii that rings gather at.
+    """Radii towards which a mesh of rings is graded.
 
     Attributes
     ----------
     radii : tuple of float
-        Over the contact radius, 0 to 1, increasing.
+        Increasing radii over the contact radius, 0 to 1.
     strength : float
-        The width of the rings there is 1 - strength of the mean.
+        Strength of the grading: the width of rings at a radius is 1 - strength of the mean width.
     """
 
     radii: tuple[float, ...]
@@ -34,18 +34,19 @@ class Focus(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """n rings up to psi = pi/2.
+    """A mesh of n rings up to psi = pi/2.
 
     Attributes
     ----------
     psi : np.ndarray, shape (n + 1,)
-        Edges, r = sin(psi).
+        Edges as angles, with r = sin(psi).
     area : np.ndarray, shape (n,)
-        Ring areas (units a^2).
+        Areas over a^2.
     bound : np.ndarray, shape (n,)
-        Mean friction bound, area-weighted sum 1.
+        Mean friction bound of each ring; area @ bound is 1.
     radius : np.ndarray, shape (n,)
-        Mean lever arm of a traction shaped like the bound, so that full slip has the exact torque.
+        Mean lever arm of a traction with the shape of the bound, for which the torque at full slip
+        is exact.
     """
 
     psi: np.ndarray
@@ -55,25 +56,25 @@ class Rings:
 
 
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
-    """Rings that are refined around a focus.
+    """Create a mesh of rings that is graded towards a focus.
 
-    An edge lies on each radius of it exactly: the traction has a kink at the stick radius, and a
-    ring that straddles it costs an order of accuracy.
+    Each radius of the focus is an edge of the mesh.  The traction has a kink at the stick radius,
+    and a ring across it would reduce the order of accuracy by one.
 
     Parameters
     ----------
     count : int
-        Unknown radii.
+        Number of rings.
     focus : Focus, float or None
-        A Focus or just a radius; None: nowhere.
+        A Focus, a single radius, or None for a mesh without grading.
     pressure : pressure.Pressure
-        One that depends on the radius alone.
+        Pressure that depends on the radius alone.
 
     Raises
     ------
     InputError
-        For count < 2, or a focus outside 0..1 or without order; for several radii of which one lies
-        on the edge of the contact or of its hole, or in the middle, where an edge is in any case.
+        If count < 2, if the radii of the focus are outside 0..1 or not increasing, or if one of
+        several radii is 0, 1 or the radius of the hole.
     """
     if count < 2:
         raise InputError("cells", count, "allowed is a whole number of at least 2 rings")
@@ -91,7 +92,8 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
-    """The Rings between edges that are those of a contact without a hole, at first."""
+    """Create the Rings from edges for a contact without a hole, mapped to one with a hole if the
+    pressure has one."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
@@ -99,6 +101,7 @@ def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
 
 
 def _as_focus(focus: Focus | float) -> Focus:
+    """Convert a radius to a Focus, and check a Focus; raises InputError."""
     focus = focus if isinstance(focus, Focus) else Focus((focus,))
     radii = focus.radii
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
@@ -110,9 +113,9 @@ def _as_focus(focus: Focus | float) -> Focus:
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Edges in psi with one on each of the places and widths that grow away from it on both sides.
+    """Edges (count + 1,) as angles psi, graded towards `places`, which are edges themselves.
 
-    Halfway between two places the one gives way to the other.
+    Between two places the widest rings are in the middle.
     """
     edge = np.pi / 2
 
@@ -130,7 +133,7 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     for piece, rings in enumerate(counts):
         start, width = ends[piece], ends[piece + 1] - ends[piece]
         t = np.linspace(0.0, 1.0, rings + 1)
-        # a piece ends at a place, the next one begins there
+        # every second piece ends at a place, and the others begin there
         share = 1.0 - spread(1.0 - t) if piece % 2 == 0 else spread(t)
         psi += list((start + width * share)[1:])
     psi[-1] = edge
@@ -138,8 +141,8 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """How many of the rings lie before each of the ends: as their widths would have it, but some on
-    both sides of each place."""
+    """Number of rings before each of the ends, in proportion to psi, with some rings on both sides
+    of each place."""
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]
     for k in range(1, len(ends)):

@@ -1,4 +1,4 @@
-"""The kernels G_m and C_m of influence.py at a pair of radii, for all angular modes at once."""
+"""The kernels G_m and C_m of influence.py at two radii, for all angular modes at once."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 ACCURACY = 1e-10
-"""Relative accuracy of the kernels, far below that of the averages over rings."""
+"""Relative accuracy of the kernels, much better than that of averages over rings."""
 MOST_GROWTH = np.log(ACCURACY / np.finfo(float).eps)
-"""Exponent of the largest growth of rounding errors in an upward recurrence."""
+"""Logarithm of the largest growth of rounding errors in an upward recurrence."""
 DECAY = -np.log(ACCURACY)
-"""Exponent of the decay after which a downward recurrence has forgotten how it began."""
+"""Logarithm of the decay after which a downward recurrence does not depend on its start value."""
 
 
 @kernel
 def _elliptic_ke(kc: float) -> tuple[float, float]:
-    """Complete elliptic integrals (K, E) for the complementary modulus kc, by the AGM."""
+    """Complete elliptic integrals (K, E) for the complementary modulus kc, by the
+    arithmetic-geometric mean."""
     a, b = 1.0, kc
     c2 = 1.0 - kc * kc
     total, weight = 0.5 * c2, 0.5
@@ -35,11 +36,10 @@ def _elliptic_ke(kc: float) -> tuple[float, float]:
 def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
     """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. len(out) - 1.
 
-    Parameters: two different positive radii (dimensionless) and the array to fill.  G_m equals
-    Q_{m-1/2}(chi) / (pi sqrt(r s)) with chi = (r^2 + s^2) / (2 r s).  Q is the solution of its
-    three-term recurrence that decays with m, so upward recurrence loses accuracy once m times the
-    decay rate is no longer small; there the ratios are run downward instead (Miller's method).
-    """
+    The radii r and s must be positive and different.  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with
+    chi = (r^2 + s^2) / (2 r s).  Q is the solution of a three-term recurrence that decays with m,
+    so that an upward recurrence loses accuracy if m times the decay rate is large.  Then ratios are
+    computed by a downward recurrence (Miller's method)."""
     n = len(out)
     kc = abs(r - s) / (r + s)
     big_k, big_e = _elliptic_ke(kc)
@@ -70,12 +70,11 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
 def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) -> None:
     """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk, j = 0 .. len(out) - 1.
 
-    `toroidal` holds G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
-    Multiplying e^{2 i alpha}/|z-z'| by conj(z - z') gives r C_m - s C_{m-1} = r G_{m-2} - s G_{m-1}
-    and C_1 = -G_1: stable upward for s < r; for s > r it is run downward from an index where C has
-    died out, or upward where (s/r)^m stays of order one.  Modes below 1 follow from
-    C_{2-m}(r, s) = C_m(s, r).
-    """
+    `toroidal` contains G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
+    Multiplication of e^{2 i alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} =
+    r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  It is stable upward for s < r, and as long as (s/r)^m
+    is of order one.  Otherwise it runs downward from an index at which C is negligible.  Modes
+    below 1 follow from C_{2-m}(r, s) = C_m(s, r)."""
     n = len(out)
     out[0] = -toroidal[1]
     if s <= r or (n + 1) * np.log(s / r) < 2.0:
@@ -97,7 +96,10 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
 def mode_kernels(
     r: float, s: float, n_modes: int, coupled: bool, torus: np.ndarray, pair: np.ndarray
 ) -> np.ndarray:
-    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus, perhaps enlarged."""
+    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}.
+
+    Returns torus, or a larger array that replaces it if it was too short.
+    """
     top = n_modes
     if coupled:
         top = n_modes + 2

@@ -1,1 +1,1 @@
-"""The contact on squares: any outline, any motion."""
+"""The contact on square cells, for any outline and any motion."""

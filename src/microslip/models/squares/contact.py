@@ -1,9 +1,8 @@
-"""Square cells with FFT convolution: any nu, any outline; the general reference, and the paper's
-own method.
+"""Contact of square cells with FFT convolution, for any nu and any outline.
 
-What tells the rest is enough, see `_images`: tractions have the symmetries that the rigid
-displacement, the pressure and the influence of tractions share.
-"""
+It is the general reference for the other models, and the discretisation of the paper.  Tractions
+have the symmetries that rigid displacement, pressure and influence have in common.  Only cells that
+are not images of others by these symmetries are resolved (see `_images`)."""
 
 from __future__ import annotations
 
@@ -18,39 +17,39 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 ROUNDED = 1e-10
-"""Difference of two loads, over the largest, below which they are one number: those of a sphere on
-192 squares across differ from their images by less than a twentieth of it."""
+"""Difference of two loads over the largest load, below which they are equal.  For a sphere on 192 x
+192 squares, loads differ from their images by less than 1/20 of it."""
 
 
 class CartesianContact(SystemContact):
-    """Squares over the circumscribed square of the contact (see models.contact.Contact).
+    """Contact of squares over the circumscribed square (see models.contact.Contact).
 
-    States: (2, cells, cells), axis 1 along the forward axis, axis 2 along the lateral one, or half
-    as many along axis 1, or both, where these tell the rest.  Cells that the edge cuts carry the
-    load of their part inside.
+    States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
+    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell
+    across the edge of the contact carries the load of its part inside.
 
     Parameters
     ----------
     cells : int
-        Along a side.
+        Number of cells along a side.
     poisson : float
         Poisson's ratio.
     pressure : pressure.Pressure
-        Any.
+        Any pressure.
     symmetry : str
-        half.TURN of translations, half.MIRROR of rotations with nothing lateral besides, "" of
-        all else.  Squares then stand for their images, too, as far as the pressure has it.
+        Symmetry of the motion: half.TURN for translations, half.MIRROR for rotations without a
+        lateral displacement, "" for other motions.  It is used if the pressure has it as well.
 
     Attributes
     ----------
     images : int
-        Squares that one stands for, itself included: 4 where both coordinates are positive, 2 where
-        the forward one is, 1.
+        Number of squares of the whole contact for each resolved square: 4 if those with positive
+        coordinates are resolved, 2 if those with a positive forward coordinate are, otherwise 1.
 
     Raises
     ------
     ValueError
-        For fewer than 2 cells.
+        If there are fewer than 2 cells.
     """
 
     angles = 1
@@ -86,21 +85,21 @@ class CartesianContact(SystemContact):
         self.mirror = mirror
         self.operators = convolved(convolution, rows, columns)
         self.resultants = np.ones(3)
-        if self.images > 1:  # what the images of the squares cancel
+        if self.images > 1:  # the images of the squares cancel this resultant
             self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
     def solver(self, weight: np.ndarray) -> Descent:
-        """The solver of a step."""
+        """Solver of a Coulomb step, by projected gradients."""
         length = np.array([1.0 / self.scale])
         return Descent(self.largest, PATIENCE, length, np.empty((3, self.layout.columns)))
 
 
 def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
-    """Squares that one stands for.
+    """Number of squares of the whole contact for each resolved square: 1, 2 or 4.
 
-    Translations move all points alike, and a half turn takes that to its opposite; so do rotations
-    and a mirror across the lateral axis.  At nu = 0 forward and lateral displacements of
-    translations do not mix, and each of them is even along both axes.
+    Displacements of a translation are symmetric under a half turn, and those of a rotation under a
+    mirror across the lateral axis.  For translations at nu = 0, forward and lateral displacements
+    are independent, and each is even along both axes.
     """
     if len(loads) % 2 or not symmetry:
         return 1
@@ -113,12 +112,12 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
 
 
 def _is_like(loads: np.ndarray, image: np.ndarray) -> bool:
-    """Whether two fields are the same but for rounding."""
+    """Whether two fields are equal up to rounding errors."""
     return bool(np.abs(image - loads).max() <= ROUNDED * loads.max())
 
 
 def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray:
-    """Loads of the squares that are left, without what rounding makes of images."""
+    """Loads of the resolved squares, averaged over their images to remove rounding errors."""
     if images == 1:
         return loads
     ahead = len(loads) // 2

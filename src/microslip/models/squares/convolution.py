@@ -1,13 +1,12 @@
-"""Surface displacement of square cells under tractions: compiled convolution by FFT.
+"""Surface displacement of square cells under tractions, by a compiled FFT convolution.
 
-The convolution is made linear by zero-padding each side to at least twice as many cells.  A
-transform leaves its output in the order in which it was computed (digit-reversed), the inverse
-starts from there, and the transformed kernel sits in the same order, so that nothing is ever
-sorted.  Butterflies run over whole rows, which the compiler turns into vector instructions, and
-rows that are known to be zero, or of no interest, are left out.
+Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
+of a transform is in digit-reversed order, as are the transformed influence coefficients and the
+input of the inverse transform, so that no array is ever sorted.  Butterflies run over whole rows,
+which the compiler turns into vector instructions.  Rows that are zero or not needed are skipped.
 
-Of fields with a symmetry less is enough: a quarter if they are even along both axes (quarter.py),
-a half if they are their own image under a half turn, or in a mirror (half.py).
+For symmetric fields a part is sufficient: a quarter for fields that are even along both axes
+(quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
 """
 
 from __future__ import annotations
@@ -26,8 +25,10 @@ from microslip.theory.hertz import G_STAR
 
 
 class Convolution(NamedTuple):
-    """All that the compiled convolution needs; P: padded cells along a side, of a quarter if that
-    is all there is; H: lateral frequencies that are kept, P but of a half.
+    """Tables of the compiled convolution.
+
+    P is the padded number of cells along a side of the resolved part.  H is the number of lateral
+    frequencies: P, or fewer for a half.
 
     Attributes
     ----------
@@ -36,16 +37,16 @@ class Convolution(NamedTuple):
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
     kernel : np.ndarray, shape (P, H)
-        Transform of the influence coefficients, real; of a quarter quarter.folded_filter.
+        Transform of the influence coefficients, real; for a quarter see quarter.folded_filter.
     cross : np.ndarray, shape (2, P, H)
-        Transform of those on the conjugate traction, used only if `coupled`; of a half what
-        multiplies the other transform, see half.halved_filter.
+        Transform of the influence coefficients on the conjugate traction, used only if `coupled`;
+        for a half see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
-        Row of minus the frequency of each row.
+        Row of the opposite frequency of each row.
     images : int
-        Squares that one of them stands for, itself included: 1, of a half 2, of a quarter 4.
+        Number of squares for each resolved square: 1, 2 for a half, 4 for a quarter.
     folding : quarter.Folding
         Tables for the convolution of a quarter of the squares.
     halving : half.Halving
@@ -71,12 +72,29 @@ def square_convolution(
     images: int = 1,
     symmetry: str = half.TURN,
 ) -> tuple[Convolution, float, float]:
-    """Convolution of `cells` x `cells` squares over [-1, 1]^2, their self-influence, and an
-    upper bound on the eigenvalues (u_lim per unit traction).
+    """Convolution on cells x cells squares over [-1, 1]^2.
 
-    modulus: G* in working units; images: see Convolution, 4 for fields at nu = 0 that are even
-    along both axes, by those where both coordinates are positive; 2 for fields with a symmetry of
-    half.py, by those where the forward one is; both on an even number of cells.
+    Parameters
+    ----------
+    cells : int
+        Number of cells along a side; even if `images` is 2 or 4.
+    poisson, modulus : float
+        Poisson's ratio, and G* in working units.
+    images : int
+        See Convolution.  4: fields at nu = 0 that are even along both axes, on squares with
+        positive coordinates.  2: fields with a symmetry of half.py, on squares with a positive
+        forward coordinate.
+    symmetry : str
+        Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
+
+    Returns
+    -------
+    convolution : Convolution
+        Tables of the compiled convolution.
+    scale : float
+        Displacement of a square under a unit traction on itself, in u_lim.
+    largest : float
+        Upper bound on the eigenvalues of the convolution, in u_lim over traction.
     """
     padded = _padded(cells // 2 if images == 4 else cells)
     radices = _radices(padded)
@@ -85,7 +103,7 @@ def square_convolution(
     opposite = np.argsort(order)[-order % padded]
     coefficients = influence(cells, 2 * padded if images == 4 else padded, poisson, modulus)
     if images == 2 and padded % 2 == 0:
-        # the offset that is its own negative is further than any, and would not be even
+        # the largest offset is its own negative and is never used; 0 keeps the kernel even
         coefficients[1][padded // 2], coefficients[1][:, padded // 2] = 0.0, 0.0
     halving = half.halving(order, opposite, cells, symmetry)
     transforms = [np.fft.fft2(part) for part in coefficients]
@@ -94,7 +112,7 @@ def square_convolution(
     else:
         kernel, cross = (part.T[np.ix_(order, order)] for part in transforms)
     largest = np.abs(kernel).max() + np.abs(cross).max()
-    # each factor of the inverse transform brings its size along: divide once, here
+    # the inverse transform lacks the factor 1 / P^2
     kernel, cross = (kernel / padded**2).real, cross / padded**2
     convolution = Convolution(
         radices,
@@ -113,11 +131,11 @@ def square_convolution(
 def influence(
     cells: int, padded: int, poisson: float, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Influence coefficients on the traction and on its conjugate, (P, P) each; u_lim per unit
-    traction, first axis forward, second lateral offset, negative offsets wrapped around.
+    """Influence coefficients for the traction and for its conjugate, (P, P) each.
 
-    Closed forms of the kernels of rings/influence.py, integrated over a square, at cell centres.
-    """
+    They are closed forms: the kernels of rings/influence.py integrated over a square, at the
+    centres of cells.  Units are u_lim over traction.  The first axis is the forward offset, and the
+    second the lateral offset; negative offsets are wrapped around."""
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")
@@ -127,7 +145,7 @@ def influence(
             u, v = x + sx * size / 2, y + sy * size / 2
             r = np.hypot(u, v)
             log_u, log_v = np.arcsinh(u / np.abs(v)), np.arcsinh(v / np.abs(u))
-            # sign(v) v arcsinh(u/|v|) is v ln(u + r) up to terms that cancel in the differences
+            # sign(v) v arcsinh(u/|v|) equals v ln(u + r), except for terms that cancel in the sum
             single = single + sx * sy * (u * log_v + v * log_u)
             squares = squares + sx * sy * (v * log_u - u * log_v)
             product = product - sx * sy * r
@@ -137,7 +155,7 @@ def influence(
 
 
 def _padded(cells: int) -> int:
-    """Smallest P >= 2 cells - 1 with factors 2 and 3 only."""
+    """Smallest P >= 2 cells - 1 whose prime factors are 2 and 3."""
     padded = 2 * cells - 1
     while padded != 2 ** _power(padded, 2) * 3 ** _power(padded, 3):
         padded += 1
@@ -155,11 +173,11 @@ def _power(number: int, prime: int) -> int:
 def _radices(padded: int) -> np.ndarray:
     twos = _power(padded, 2)
     radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
-    return np.array(radices, dtype=np.int64)  # also those of a single cell, which are none
+    return np.array(radices, dtype=np.int64)  # integers even if there are none, for a single cell
 
 
 def _order(radices: list[int]) -> np.ndarray:
-    """Frequency in each row after the transform."""
+    """Frequency of each row after the transform."""
     if not radices:
         return np.zeros(1, dtype=np.int64)
     rest = _order(radices[1:])
@@ -167,14 +185,14 @@ def _order(radices: list[int]) -> np.ndarray:
 
 
 def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
-    """Scratch arrays of `convolve`: reusable, not shared between threads."""
+    """Scratch arrays of `convolve`, for use by one thread."""
     return np.zeros((2, *operator.kernel.shape)), np.zeros((2, *operator.kernel.shape))
 
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """out = A q; q, out: forward and lateral parts, (2, n, n), or of what there is of them;
-    scratch: from `workspace`."""
+    """Fill out with A q; q and out are forward and lateral parts of the resolved squares, (2, rows,
+    columns); scratch: from `workspace`."""
     (first, second), radices, roots = scratch, operator.radices, operator.roots
     columns, kept = q.shape[1], second.shape[2]
     _spread(operator, q, first)
@@ -189,18 +207,18 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
 
 
 class Convolved(NamedTuple):
-    """A on fields of squares, contact after contact, of equal shape.
+    """The operator A on fields of one or several equal contacts of squares.
 
     Attributes
     ----------
     convolution : Convolution
-        The convolution of each contact.
+        Convolution of each contact.
     extents : np.ndarray, shape (contacts,)
-        u_lim of each over that of the body.
+        u_lim of each contact over that of the body.
     first, second : np.ndarray
-        Scratch, see `workspace`.
+        Scratch arrays, see `workspace`.
     traction, displacement : np.ndarray, shape (2, rows, columns)
-        Scratch.
+        Scratch arrays.
     """
 
     convolution: Convolution
@@ -216,12 +234,12 @@ class Convolved(NamedTuple):
 
     @staticmethod
     def joined(each: Sequence[Convolved], extents: np.ndarray) -> Convolved:
-        """The operator of several equal contacts on one body, see models/side_by_side.py."""
+        """Join the operators of several equal contacts on one body (see models/side_by_side.py)."""
         return each[0]._replace(extents=extents)
 
 
 def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
-    """The operator of one contact on fields of so many rows and columns, with scratch."""
+    """Operator of one contact on fields of rows and columns, with scratch arrays."""
     scratch = np.empty((2, 2, rows, columns))
     return Convolved(convolution, np.ones(1), *workspace(convolution), scratch[0], scratch[1])
 
@@ -231,7 +249,7 @@ def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
 def apply_convolution(
     convolved: Convolved, number: int, field: np.ndarray, image: np.ndarray
 ) -> None:
-    """image = A field."""
+    """image = A field; see operators.operator."""
     scratch = (convolved.first, convolved.second)
     traction, displacement = convolved.traction, convolved.displacement
     points = traction[0].size
@@ -250,7 +268,7 @@ def apply_convolution(
 
 @kernel
 def _spread(operator: Convolution, q: np.ndarray, first: np.ndarray) -> None:
-    """Tractions to the rows where the transform wants them, and zeros to the others."""
+    """Copy tractions to the rows of the first transform, and zeros to the other rows."""
     if operator.images == 4:
         quarter.spread(operator.folding, q, first)
     elif operator.images == 2:
@@ -265,7 +283,7 @@ def _spread(operator: Convolution, q: np.ndarray, first: np.ndarray) -> None:
 
 @kernel
 def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: np.ndarray) -> None:
-    """Columns to rows, for the transform along the other axis."""
+    """Transpose, for the transform along the other axis."""
     if operator.images == 4:
         quarter.fold(operator.folding, columns, first, second)
     elif operator.images == 2:
@@ -283,7 +301,7 @@ def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: n
 
 @kernel
 def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
-    """The transform times those of the influence coefficients; first: scratch."""
+    """Multiply the transform by that of the influence coefficients; first: scratch array."""
     if operator.images == 4:
         quarter.apply_filter(operator.folding, operator.kernel, second)
     elif not operator.coupled:
@@ -292,9 +310,9 @@ def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> N
                 for k in range(second.shape[2]):
                     second[part, i, k] *= operator.kernel[i, k]
     elif operator.images == 1:
-        given, values = first.ravel(), second.ravel()
+        copied, values = first.ravel(), second.ravel()
         for i in range(values.size):
-            given[i] = values[i]
+            copied[i] = values[i]
         _multiply_coupled(operator, first, second)
     elif operator.halving.sign < 0.0:
         half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
@@ -331,14 +349,15 @@ def _gather(operator: Convolution, first: np.ndarray, out: np.ndarray) -> None:
 
 
 @kernel
-def _multiply_coupled(operator: Convolution, given: np.ndarray, out: np.ndarray) -> None:
-    """Kernel times transform, plus cross kernel times the transform of the conjugate traction."""
-    padded = given.shape[1]
+def _multiply_coupled(operator: Convolution, values: np.ndarray, out: np.ndarray) -> None:
+    """Fill out with kernel times transform, plus cross times transform of the conjugate
+    traction."""
+    padded = values.shape[1]
     for i in range(padded):
         far = operator.opposite[i]
         for k in range(padded):
-            real = given[0, far, operator.opposite[k]]
-            imag = -given[1, far, operator.opposite[k]]
+            real = values[0, far, operator.opposite[k]]
+            imag = -values[1, far, operator.opposite[k]]
             cr, ci = operator.cross[0, i, k], operator.cross[1, i, k]
-            out[0, i, k] = operator.kernel[i, k] * given[0, i, k] + cr * real - ci * imag
-            out[1, i, k] = operator.kernel[i, k] * given[1, i, k] + cr * imag + ci * real
+            out[0, i, k] = operator.kernel[i, k] * values[0, i, k] + cr * real - ci * imag
+            out[1, i, k] = operator.kernel[i, k] * values[1, i, k] + cr * imag + ci * real

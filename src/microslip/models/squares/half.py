@@ -1,19 +1,21 @@
-"""The convolution of fields with one symmetry, from a half of them, the rows ahead of the middle.
+"""Convolution of fields with one symmetry, from the rows with a positive forward coordinate.
 
-- TURN, of translations: a field is its own image under a half turn.  Of n cells along a side,
-  those in the row -i are those in the row i from behind, and so is their transform along the
-  lateral axis: w^((n-1) k) times that at the frequency -k, w = exp(-2 pi i / P).
-- MIRROR, of rotations about a point of the lateral axis: behind it forward parts are the same, and
-  lateral ones have the opposite sign.  With lateral + i forward as one complex field, the row -i is
-  minus the conjugate of the row i, and its transform that of the transform at -k.
+- TURN, for translations: a half turn leaves a field unchanged.  With n cells along a side, the row
+-i
+  is the row i in reverse order.  Its transform along the lateral axis at the frequency k is
+  w^((n-1) k) times that of the row i at -k, with w = exp(-2 pi i / P).
+- MIRROR, for rotations about a point of the lateral axis: in the mirror image, forward parts are
+  equal, and lateral parts have the opposite sign.  With the complex field lateral + i forward, the
+  row -i is minus the conjugate of the row i.  Its transform at k is minus the conjugate of that of
+  the row i at -k.
 
-So half of the rows are transformed along the lateral axis, and half of the lateral frequencies
-along the forward axis: the values at -k come out in the other half of the cells.
+So half of the rows are transformed along the lateral axis, and then half of the lateral frequencies
+along the forward axis.  The values at the other frequencies give the other half of the cells.
 
-The influence on the conjugate traction needs its transform.  After a half turn the transforms of
-real fields are real but for the phase e of the centre, so that it is e^2 times the conjugate of the
-transform, at the same frequency.  In the mirror image it is -w^((n-1) k) times the transform at the
-forward frequency -k.
+The influence on the conjugate traction needs the transform of the conjugate.  Under a half turn the
+transform of a real field is real, except for the phase e of the centre.  The transform of the
+conjugate is therefore e^2 times the conjugate of the transform at the same frequency.  Under the
+mirror it is -w^((n-1) k) times the transform at the forward frequency -k.
 """
 
 from __future__ import annotations
@@ -26,20 +28,20 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 TURN, MIRROR = "half turn", "mirror image"
-"""The symmetries."""
+"""Symmetries of a field."""
 
 
 class Halving(NamedTuple):
-    """Which H lateral frequencies are kept, and what their images are multiplied by.
+    """The H lateral frequencies that are computed, and factors for the others.
 
     Attributes
     ----------
     rows, images : np.ndarray, shape (H,)
-        Row of each one in the lateral transform, and row of its negative.
+        Row of each frequency in the lateral transform, and row of the opposite frequency.
     turn : np.ndarray, shape (2, H)
-        Real and imaginary part of the factor.
+        Real and imaginary part of the factor for the opposite frequency.
     sign : float
-        That of its product's imaginary part: -1 for the conjugate, in the mirror image.
+        Sign of the imaginary part of the product: -1 (conjugate) for the mirror, else 1.
     """
 
     rows: np.ndarray
@@ -49,8 +51,10 @@ class Halving(NamedTuple):
 
 
 def halving(order: np.ndarray, opposite: np.ndarray, cells: int, symmetry: str) -> Halving:
-    """The Halving of a transform with the frequencies `order` in its rows, and those of the
-    opposite sign in the rows `opposite`, shape (P,) each, for so many cells along a side."""
+    """Create the Halving of a transform with P rows for `cells` along a side.
+
+    order: frequency of each row, (P,); opposite: row of the opposite frequency, (P,).
+    """
     rows = np.flatnonzero(np.arange(len(order)) <= opposite)
     mirror = symmetry == MIRROR
     turn = np.full(len(rows), -1.0 + 0j) if mirror else _turn(order[rows], cells, len(order))
@@ -62,9 +66,9 @@ def halved_filter(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The two factors of a convolution of half the squares, shape (P, H) each.
 
-    The first one multiplies the transform.  The second one multiplies the conjugate of the
-    transform, or in the mirror image the opposite row of the transform.  transforms: those of the
-    influence coefficients, (P, P), forward frequency first.
+    The first factor multiplies the transform.  The second factor multiplies the conjugate of the
+    transform for TURN, and the opposite row of the transform for MIRROR.  transforms: transforms of
+    the influence coefficients, (P, P), with the forward frequency along the first axis.
     """
     direct, cross = (part[np.ix_(order, order[rows])] for part in transforms)
     forward, lateral = (_turn(part, cells, len(order)) for part in (order, order[rows]))
@@ -77,7 +81,7 @@ def _turn(frequencies: np.ndarray, cells: int, padded: int) -> np.ndarray:
 
 @kernel
 def turned(q: np.ndarray, out: np.ndarray) -> None:
-    """Cells of q, (2, m, n), to columns of out, (2, P, H), lateral part first, zeros below."""
+    """Copy rows of q (2, m, n) to columns of out (2, P, H), lateral part first; zeros below."""
     m, n = q.shape[1], q.shape[2]
     for part in range(2):
         for row in range(n):
@@ -89,25 +93,28 @@ def turned(q: np.ndarray, out: np.ndarray) -> None:
 
 
 @kernel
-def turned_back(given: np.ndarray, out: np.ndarray) -> None:
-    """Undo `turned`."""
+def turned_back(values: np.ndarray, out: np.ndarray) -> None:
+    """Inverse of `turned`."""
     for part in range(2):
         for row in range(out.shape[1]):
             for column in range(out.shape[2]):
-                out[1 - part, row, column] = given[part, column, row]
+                out[1 - part, row, column] = values[part, column, row]
 
 
 @kernel
-def completed(halving: Halving, m: int, given: np.ndarray, out: np.ndarray) -> None:
-    """All 2 m rows along the forward axis, at the frequencies that are kept, from the lateral
-    transform of m rows, which are columns of `given`; zeros below; (2, P, H) each."""
+def completed(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> None:
+    """Fill 2 m rows of out with all cells along the forward axis, at the H lateral frequencies.
+
+    values: lateral transform of m rows of cells, in columns; both arrays are (2, P, H), and the
+    other rows of out become 0.
+    """
     for column in range(len(halving.rows)):
         near, far = halving.rows[column], halving.images[column]
         c, s = halving.turn[0, column], halving.turn[1, column]
         for row in range(m):
-            out[0, m + row, column] = given[0, near, row]
-            out[1, m + row, column] = given[1, near, row]
-            x, y = given[0, far, row], given[1, far, row]
+            out[0, m + row, column] = values[0, near, row]
+            out[1, m + row, column] = values[1, near, row]
+            x, y = values[0, far, row], values[1, far, row]
             out[0, m - 1 - row, column] = c * x - s * y
             out[1, m - 1 - row, column] = halving.sign * (c * y + s * x)
     for part in range(2):
@@ -117,22 +124,22 @@ def completed(halving: Halving, m: int, given: np.ndarray, out: np.ndarray) -> N
 
 
 @kernel
-def halved(halving: Halving, m: int, given: np.ndarray, out: np.ndarray) -> None:
-    """Undo `completed`."""
+def halved(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> None:
+    """Inverse of `completed`."""
     for column in range(len(halving.rows)):
         near, far = halving.rows[column], halving.images[column]
         c, s = halving.turn[0, column], halving.turn[1, column]
         for row in range(m):
-            x, y = given[0, m - 1 - row, column], given[1, m - 1 - row, column]
+            x, y = values[0, m - 1 - row, column], values[1, m - 1 - row, column]
             out[0, far, row] = c * x + s * y
             out[1, far, row] = halving.sign * (c * y - s * x)
-            out[0, near, row] = given[0, m + row, column]
-            out[1, near, row] = given[1, m + row, column]
+            out[0, near, row] = values[0, m + row, column]
+            out[1, near, row] = values[1, m + row, column]
 
 
 @kernel
 def multiply_turned(direct: np.ndarray, cross: np.ndarray, values: np.ndarray) -> None:
-    """values = direct values + cross conj(values), complex as (2, P, H)."""
+    """values = direct values + cross conj(values), for complex values as (2, P, H)."""
     for i in range(values.shape[1]):
         for k in range(values.shape[2]):
             x, y = values[0, i, k], values[1, i, k]
@@ -144,7 +151,7 @@ def multiply_turned(direct: np.ndarray, cross: np.ndarray, values: np.ndarray) -
 def multiply_mirrored(
     direct: np.ndarray, cross: np.ndarray, opposite: np.ndarray, values: np.ndarray
 ) -> None:
-    """values = direct values + cross times those in the opposite rows, complex as (2, P, H)."""
+    """values = direct values + cross times opposite rows, for complex values as (2, P, H)."""
     for i in range(values.shape[1]):
         far = opposite[i]
         if i <= far:

@@ -1,17 +1,17 @@
-"""The convolution of fields that are even along both axes, from a quarter of them.
+"""Convolution of fields that are even along both axes, from a quarter of their cells.
 
-A field of 2 m cells that is even about the middle and zero beyond its edge has a cosine transform
-(type II) in place of a Fourier transform: that of the m cells of one half, padded to L, which is
-half of what the whole is padded to.  A Fourier transform of length L gives it, if the even cells
-come first and the odd ones after them in reverse (Makhoul 1980): with its values Z at the
-frequencies k and L - k, and t = pi k / (2 L),
+The Fourier transform of an even field of 2 m cells is a cosine transform (type II) of the m cells
+of one half.  These are padded to the length L, half the padded length of the whole field.  A
+Fourier transform of length L gives the cosine transform, if cells with even numbers come first and
+the others follow in reverse order (Makhoul 1980).  With its values Z at the frequencies k and L -
+k, and t = pi k / (2 L),
 
     2 C_k = exp(-i t) Z_k + exp(i t) Z_{L-k},      Z_k = exp(i t) (C_k - i C_{L-k}),      Z_0 = C_0.
 
-All of this is linear, so that one complex transform serves two real fields at once.  The influence
-coefficients are even, too, and so the cosine transform of a displacement is that of the tractions
-times theirs.  Rows are in the order of transform.py; the first one has the frequency 0.
-"""
+All steps are linear, so that one complex transform serves two real fields at once.  The influence
+coefficients are even as well.  Hence the cosine transform of the displacement is the product of
+those of the tractions and of the influence coefficients.  Rows are in the order of transform.py, in
+which the first row has the frequency 0."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from microslip.foundation.compiled import kernel
 
 
 class Folding(NamedTuple):
-    """Rows of the cells and of the frequencies of a quarter, padded to L rows.
+    """Order of cells and frequencies of a quarter that is padded to L rows.
 
     Attributes
     ----------
     place : np.ndarray, shape (L,)
-        Row of each cell before the transform.
+        Row of each cell in the input of the transform.
     opposite : np.ndarray, shape (L,)
-        Row of the frequency L - k for each row, its own for k = 0.
+        Row of the frequency L - k for the row of k; the same row for k = 0.
     turn : np.ndarray, shape (2, L)
         cos and sin of pi k / (2 L) for each row.
     """
@@ -41,8 +41,10 @@ class Folding(NamedTuple):
 
 
 def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
-    """The Folding of rows whose frequencies after the transform are `order`, those of the opposite
-    ones in the rows `opposite`; shape (L,) each."""
+    """Create the Folding of a transform with L rows.
+
+    order: frequency of each row, (L,); opposite: row of the opposite frequency, (L,).
+    """
     cells = np.arange(len(order))
     place = np.where(cells % 2 == 0, cells // 2, len(order) - 1 - cells // 2)
     angle = np.pi * order / (2 * len(order))
@@ -50,11 +52,11 @@ def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
 
 
 def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
-    """The filter for `apply_filter`: half sums and half differences of opposite rows.
+    """Coefficients (L, L) for `apply_filter`, from the cosine transform of influence coefficients.
 
-    Half the sum of two opposite rows stands in the first of them, half their difference in the
-    other.  transform: the cosine transform of the coefficients, (L, L), with the rows along the
-    second axis, without the factor that `fold` leaves out.
+    The first of two opposite rows contains half their sum, and the second half their difference.
+    transform: cosine transform (L, L), with the rows along the second axis and without the factor 2
+    of `fold`.
     """
     rows = np.arange(len(transform))[:, None]
     near, far = 0.5 * transform, 0.5 * transform[opposite]
@@ -65,7 +67,7 @@ def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
 
 @kernel
 def spread(folding: Folding, q: np.ndarray, out: np.ndarray) -> None:
-    """Cells of q, (2, m, m), to their rows of out, (2, L, L), and zeros to the others."""
+    """Copy cells of q (2, m, m) to their rows of out (2, L, L), and zeros to the other rows."""
     m, padded = q.shape[1], out.shape[1]
     for part in range(2):
         for row in range(m):
@@ -77,24 +79,27 @@ def spread(folding: Folding, q: np.ndarray, out: np.ndarray) -> None:
 
 
 @kernel
-def gather(folding: Folding, given: np.ndarray, out: np.ndarray) -> None:
-    """Cells of out, (2, m, m), from their rows of `given`, (2, L, L)."""
+def gather(folding: Folding, values: np.ndarray, out: np.ndarray) -> None:
+    """Fill cells of out (2, m, m) from their rows of `values` (2, L, L)."""
     for part in range(2):
         for row in range(out.shape[1]):
             for column in range(out.shape[2]):
-                out[part, row, column] = given[part, folding.place[row], column]
+                out[part, row, column] = values[part, folding.place[row], column]
 
 
 @kernel
-def fold(folding: Folding, m: int, given: np.ndarray, out: np.ndarray) -> None:
-    """Twice the cosine transform from the Fourier transform in the first m columns of `given`,
-    turned round: its columns are rows of out, spread for the next transform; (2, L, L) each."""
-    padded = given.shape[1]
+def fold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
+    """Fill out with twice the cosine transform, transposed, from the Fourier transform in the first
+    m columns of `values`.
+
+    Rows of out are in the order of the input of the next transform; both arrays are (2, L, L).
+    """
+    padded = values.shape[1]
     for row in range(padded):
         far, c, s = folding.opposite[row], folding.turn[0, row], folding.turn[1, row]
         for column in range(m):
-            x, y = given[0, row, column], given[1, row, column]
-            u, v = given[0, far, column], given[1, far, column]
+            x, y = values[0, row, column], values[1, row, column]
+            u, v = values[0, far, column], values[1, far, column]
             cell = folding.place[column]
             out[0, cell, row] = c * (x + u) + s * (y - v)
             out[1, cell, row] = c * (y + v) + s * (u - x)
@@ -105,28 +110,28 @@ def fold(folding: Folding, m: int, given: np.ndarray, out: np.ndarray) -> None:
 
 
 @kernel
-def unfold(folding: Folding, m: int, given: np.ndarray, out: np.ndarray) -> None:
-    """The Fourier transform, turned back, from the cosine transform in the rows of m cells."""
-    padded = given.shape[1]
+def unfold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
+    """Fill out with the Fourier transform, transposed back, from the cosine transform of m rows."""
+    padded = values.shape[1]
     for column in range(m):
         cell = folding.place[column]
-        out[0, 0, column], out[1, 0, column] = given[0, cell, 0], given[1, cell, 0]
+        out[0, 0, column], out[1, 0, column] = values[0, cell, 0], values[1, cell, 0]
     for row in range(1, padded):
         far, c, s = folding.opposite[row], folding.turn[0, row], folding.turn[1, row]
         for column in range(m):
             cell = folding.place[column]
-            x = given[0, cell, row] + given[1, cell, far]
-            y = given[1, cell, row] - given[0, cell, far]
+            x = values[0, cell, row] + values[1, cell, far]
+            y = values[1, cell, row] - values[0, cell, far]
             out[0, row, column], out[1, row, column] = c * x - s * y, c * y + s * x
 
 
 @kernel
 def apply_filter(folding: Folding, coefficients: np.ndarray, values: np.ndarray) -> None:
-    """Multiply the cosine transform along the first axis of `values`, (2, L, L), which holds the
-    Fourier transform before and after; coefficients: see folded_filter.
+    """Multiply the cosine transform along the first axis by coefficients, in place.
 
-    For factors f_k of C_k, with h the half of f_k + f_{L-k} and d that of f_k - f_{L-k}, this is
-    h Z_k + d exp(2 i t) Z_{L-k} in place of Z_k, h Z_{L-k} + d exp(-2 i t) Z_k in that of Z_{L-k}.
+    values: Fourier transform Z, (2, L, L); coefficients: from `folded_filter`.  If f_k are the
+    factors of C_k, h = (f_k + f_{L-k}) / 2 and d = (f_k - f_{L-k}) / 2, then Z_k becomes
+    h Z_k + d exp(2 i t) Z_{L-k}, and Z_{L-k} becomes h Z_{L-k} + d exp(-2 i t) Z_k.
     """
     re, im = values
     for row in range(re.shape[0]):

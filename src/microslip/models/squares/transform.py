@@ -1,8 +1,8 @@
-"""The compiled Fourier transform of convolution.py, along the first axis of two real arrays.
+"""Compiled Fourier transform for convolution.py, along the first axis of two real arrays.
 
 Butterflies of 2, 3 and 4 rows run over whole rows, which the compiler turns into vector
-instructions.  They take the first of their rows, a, which are `part` rows apart, and the index of
-their first root, w.
+instructions.  The rows of a butterfly are `part` rows apart; a is the first of them, and w is the
+index of the first root of unity.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from microslip.contacts.lanes import fused
 from microslip.foundation.compiled import kernel
 
 Parts = tuple[np.ndarray, np.ndarray]
-"""Real and imaginary parts."""
+"""Real and imaginary part."""
 
 
 @kernel
 def forward(
     re: np.ndarray, im: np.ndarray, columns: int, radices: np.ndarray, roots: np.ndarray
 ) -> None:
-    """Transform the first `columns` columns in place; for the order see `convolution._order`."""
+    """Transform the first `columns` columns in place; the order of rows is `convolution._order`."""
     length = padded = re.shape[0]
     for radix in radices:
         part = length // radix
@@ -40,7 +40,7 @@ def forward(
 def backward(
     re: np.ndarray, im: np.ndarray, columns: int, radices: np.ndarray, roots: np.ndarray
 ) -> None:
-    """Undo `forward`, up to the factor P."""
+    """Inverse of `forward`, times the number of rows."""
     part, padded = 1, re.shape[0]
     for radix in radices[::-1]:
         length = part * radix

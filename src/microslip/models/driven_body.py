@@ -1,13 +1,12 @@
-"""A body that a force or a spring drives, and what a march of it returns (contacts/drive.py)."""
+"""A body that a force or a spring drives, and its equation along a path (contacts/drive.py)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from microslip.contacts.drive import Drive
-from microslip.models.contact import March
 from microslip.models.path import Path
 
 
@@ -18,9 +17,10 @@ class Body:
     Attributes
     ----------
     stiffness, damping, mass : float
-        k over mu F_z / u_lim, c and m by the phase likewise; all 0: the load alone pulls.
+        k over mu F_z / u_lim, and c and m in the same units with the phase as time; all are 0 if a
+        constant force alone drives a body without mass.
     load : float
-        Force that does not change, over mu F_z.
+        Constant force, over mu F_z.
     """
 
     stiffness: float
@@ -30,11 +30,11 @@ class Body:
 
     @property
     def remembers(self) -> bool:
-        """Whether x and x' belong to the state: else the tractions tell x."""
+        """Whether x and x' belong to the state; otherwise x follows from the tractions."""
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray) -> Drive:
-        """The Drive along a path, from x and x' at its start."""
+        """The Drive along a path, from x and x' at its start, shape (2,)."""
         share = 1.0 / (1.0 + path.carry[-1].sum())  # a stiffly accurate method carries the rest
         lengths = share * np.diff(path.phase)
         return Drive(
@@ -45,16 +45,3 @@ class Body:
             lengths,
             np.array(start, dtype=float),
         )
-
-
-@dataclass(frozen=True, eq=False)
-class PulledMarch(March):
-    """A March of a driven body.
-
-    Attributes
-    ----------
-    body : np.ndarray, shape (steps + 1, 2)
-        x and x' at every phase.
-    """
-
-    body: np.ndarray = field(kw_only=True)
