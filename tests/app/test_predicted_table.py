@@ -73,7 +73,7 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert [first.split()[0], second.split()[0]] == ["3", "4"]
     told = [line for line in said if "warning" not in line]
     assert len(told) == 1 and told[0].startswith(
-        "line 4: NOT CONVERGED: load: of those tried, down to"
+        "line 4: NOT CONVERGED: load: no load of the search, down to"
     )
     kept = xr.load_dataset(folder / "found.nc")
     assert kept.converged.values.tolist() == [True, False]

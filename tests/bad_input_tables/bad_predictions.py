@@ -1,7 +1,7 @@
-"""Bad options of `microslip predict`, each with a part of the one line that refuses it.
+"""Bad options of `microslip predict`, each with a part of its error message.
 
-A row is the motion, the options that are changed in a good command line (None: left out), and the
-part.  One row for each reason that there is.
+A row has the options that differ from a valid command line (None: missing) and the part.  There is
+one row for each cause of an error.
 """
 
 GOOD = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
@@ -11,8 +11,8 @@ SPRUNG = {"drive_stiffness": "1 N/um"}
 SIZED = {"radius": None, "contact_radius": "1 mm"}
 STEADY = {"amplitude": None, "frequency": None, "rotation": "1 Hz"}
 ELASTIC = {"material": None, "young": "210 GPa", "nu": "0.3"}
-SOUGHT = {"amplitude": None, "reduction": "50 %"}
-MOVED = [
+SEARCH = {"amplitude": None, "reduction": "50 %"}
+MOTIONS = [
     ({"motion": "sideways"}, "MOTION = 'sideways': "),
     ({"motion": "Transverse"}, "MOTION = 'Transverse': did you mean transverse?"),
     ({"motion": "normal:lateral=0.5"}, "allowed is normal with --load-amplitude"),
@@ -20,8 +20,8 @@ MOVED = [
     ({"amplitude": None}, "--amplitude: transverse needs it"),
     ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     ({"amplitude": "-1 um"}, "--amplitude = '-1 um': allowed is a finite value at least 0 m"),
-    ({"amplitude": "1 m"}, "times the 2.17e-07 m that let the whole contact slide; allowed is at"),
-    ({"motion": "bore", "amplitude": "1e9 turn"}, "half of the contact sticking"),
+    ({"amplitude": "1 m"}, "times the 2.17e-07 m at which the whole contact slides; allowed is"),
+    ({"motion": "bore", "amplitude": "1e9 turn"}, "half of the contact radius sticks"),
     ({"frequency": "0 Hz"}, "--frequency = '0 Hz': allowed is a finite value above 0 Hz"),
     ({"frequency": "20 s^-1"}, "may mean Hz or rad/s"),
     ({"rotation": "10 rpm"}, "--rotation = '10 rpm': transverse has none"),
@@ -30,7 +30,7 @@ MOVED = [
     ({"motion": "elliptic", "forward_amplitude": "0 m", "phase": "1 m"}, "the unit is meter"),
     (
         {"motion": "elliptic", "amplitude": "0 m", "forward_amplitude": "0 m"},
-        "--amplitude = '0 m': allowed is above 0 where no other one is",
+        "--amplitude = '0 m': allowed is above 0 where no other amplitude is",
     ),
     ({"motion": "normal", "load_amplitude": "0 N"}, "--load-amplitude = '0 N': allowed is"),
     (
@@ -39,7 +39,7 @@ MOVED = [
     ),
     ({"motion": "continuous-bore", "amplitude": None, "frequency": None}, "--rotation: continuous"),
 ]
-PRESSED = [
+CONTACTS = [
     ({"load": None}, "--load: needed"),
     ({"load": "nan N"}, "it is not finite"),
     ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
@@ -48,27 +48,27 @@ PRESSED = [
     ({"mu": None}, "--mu: needed"),
     ({"mu": "0,3"}, "--mu = '0,3': read 0 and stopped at ',3', since decimals follow a point"),
     ({"mu": "1100 %"}, "--mu = '1100 %': allowed is a finite value above 0 and at most 10"),
-    ({"radius": None}, "--radius: needed, or --contact-radius in its place"),
+    ({"radius": None}, "--radius: needed, or --contact-radius"),
     ({"radius": "5"}, "--radius = '5': 5 is a number without a unit"),
     ({"radius": "1e-320 m"}, "sizes of real bodies"),
     ({"radius": "1e-300 m", "load": "1e-300 N"}, "--load = '1e-300 N': with these bodies"),
     ({"radius": "1e-12 m"}, "--radius = '1e-12 m': by Hertz's theory"),
     ({"counter_radius": "0 mm"}, "allowed is a radius other than 0"),
-    ({"counter_radius": "-4 mm"}, "allowed is a hollow wider than the sphere"),
+    ({"counter_radius": "-4 mm"}, "allowed is a hollow with a larger radius"),
     (
         ELASTIC | {"young": "1 MPa", "radius": "40 mm", "counter_radius": "1 mm"},
         "--counter-radius = '1 mm': by Hertz's theory",
     ),
     ({"radius_across": "1 um"}, "--radius-across = '1 um': the contact would be an ellipse of"),
-    ({"radius_across": "1 mm", "counter_radius": "1 m"}, "allowed is none beside --counter-radius"),
-    ({"contact_radius": "1 mm"}, "--radius = '5 mm': allowed is none beside --contact-radius"),
-    ({"pressure": "hertz"}, "none beside a pressure, which needs --contact-radius in place"),
-    ({"radius": None, "pressure": "hertz"}, "--contact-radius: needed beside a pressure"),
+    ({"radius_across": "1 mm", "counter_radius": "1 m"}, "allowed only without --counter-radius"),
+    ({"contact_radius": "1 mm"}, "--radius = '5 mm': allowed only without --contact-radius"),
+    ({"pressure": "hertz"}, "only without a pressure, which needs --contact-radius"),
+    ({"radius": None, "pressure": "hertz"}, "--contact-radius: needed with a pressure"),
     (SIZED | {"pressure": "rong"}, "--pressure = 'rong'"),
-    (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': no contact"),
+    (SIZED | {"contact_radius": "1e-200 m"}, "--contact-radius = '1e-200 m': outside the range"),
     ({"contacts": "load=1;mass=1"}, "--contacts = 'load=1;mass=1'"),
     ({"contacts": "load=2;load=1", "radius_across": "7 mm"}, "allowed are equal loads"),
-    ({"contacts": "phase=0"} | SOUGHT, "--reduction = '50 %': allowed for one contact only"),
+    ({"contacts": "phase=0"} | SEARCH, "--reduction = '50 %': allowed for one contact only"),
     ({"motion": "continuous-bore", "contacts": "phase=0"} | STEADY, "does not oscillate"),
     (
         {
@@ -79,11 +79,11 @@ PRESSED = [
     ),
 ]
 BODIES = [
-    ({"material": None}, "--young: needed, or a material by name"),
+    ({"material": None}, "--young: needed, or a material"),
     (ELASTIC | {"nu": None}, "--nu: needed"),
     (ELASTIC | {"nu": "0.7"}, "--nu = '0.7': allowed is a finite value at least 0 and at most 0.5"),
     (ELASTIC | {"young": "inf GPa"}, "it is not finite"),
-    ({"nu": "30 %"}, "--material = 'steel': allowed without young and nu"),
+    ({"nu": "30 %"}, "--material = 'steel': allowed only without young and nu"),
     ({"material": "Steel"}, "(did you mean steel?)"),
     ({"material": "rigid"}, "allowed is an elastic body where the counterbody is rigid"),
     ({"counterbody": "wood"}, "or E and nu as in '70 GPa, 0.22'"),
@@ -97,52 +97,58 @@ BODIES = [
     ({"hardness": "HV"}, "the text is empty"),
     ({"density": "7.85"}, "--density = '7.85': 7.85 is a number without a unit"),
 ]
-DRIVEN = [
-    ({"speed": None}, "--speed: needed, or a force in its place"),
+DRIVES = [
+    ({"speed": None}, "--speed: needed, or a force"),
     ({"speed": "1 mm"}, "--speed = '1 mm': the unit is millimeter"),
-    ({"speed": "1e300 m/s", "frequency": "1e-300 Hz"}, "--speed = '1e300 m/s': over that of the"),
+    (
+        {"speed": "1e300 m/s", "frequency": "1e-300 Hz"},
+        "--speed = '1e300 m/s': divided by that of the",
+    ),
     ({"force": "1 N"}, "--force = '1 N': allowed is a force or a speed, not both"),
     (FORCED | {"force": "0 N"}, "--force = '0 N': allowed is a finite value above 0 N"),
-    (FORCED | SPRUNG, "--drive-stiffness = '1 N/um': allowed is none beside a force"),
-    (FORCED | {"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed is none beside a force"),
-    ({"mass": "20 g"}, "--mass = '20 g': allowed beside a force or --drive-stiffness"),
-    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed beside --drive-stiffness"),
+    (FORCED | SPRUNG, "--drive-stiffness = '1 N/um': allowed only without a force"),
+    (FORCED | {"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed only without a force"),
+    ({"mass": "20 g"}, "--mass = '20 g': allowed only with a force or --drive-stiffness"),
+    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed only with --drive-stiffness"),
     (SPRUNG | {"mass": "-20 g"}, "--mass = '-20 g': allowed is a finite value"),
-    (SPRUNG | {"mass": "1e308 kg"}, "--mass = '1e308 kg': over that of the contact, it is beyond"),
-    (SPRUNG | {"motion": "longitudinal", "speed": "0 m/s"}, "allowed is a speed above 0 where a"),
-    (SPRUNG | {"motion": "continuous-bore"} | STEADY, "which is steady: nothing swings"),
+    (
+        SPRUNG | {"mass": "1e308 kg"},
+        "--mass = '1e308 kg': divided by",
+    ),
+    (SPRUNG | {"motion": "longitudinal", "speed": "0 m/s"}, "allowed is a speed above 0 for a"),
+    (SPRUNG | {"motion": "continuous-bore"} | STEADY, "continuous-bore is steady"),
     ({"tolerance": "none"}, "--tolerance = 'none'"),
     ({"tolerance": "1e-9"}, "at least 1e-06 and at most 0.1"),
 ]
-FOUND = [
+REDUCTIONS = [
     (
         {"reduction": "50 %"},
-        "--reduction = '50 %': allowed without an amplitude, a speed",
+        "--reduction = '50 %': allowed only without the amplitude",
     ),
-    (SOUGHT | {"load": None}, "one thing can be looked for, and amplitude and load are not given"),
-    (SOUGHT | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
-    (SOUGHT | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
-    (SOUGHT | {"reduction": "100 %"}, "allowed is at most 90 %, 100 % less the tolerance"),
-    (SOUGHT | {"motion": "bore", "reduction": "100 %"}, "allowed is less than all of it"),
-    (SOUGHT | FORCED, "--reduction = '50 %': allowed where a speed alone pulls"),
-    (SOUGHT | SPRUNG, "--reduction = '50 %': allowed where a speed alone pulls"),
-    (SOUGHT | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
+    (SEARCH | {"load": None}, "it determines one quantity, but amplitude and load are missing"),
+    (SEARCH | {"reduction": "150 %"}, "--reduction = '150 %': allowed is a finite value above 0"),
+    (SEARCH | {"reduction": "5 %"}, "allowed is at least the tolerance, 0.1"),
+    (SEARCH | {"reduction": "100 %"}, "allowed is at most 90 %, 100 % minus the tolerance"),
+    (SEARCH | {"motion": "bore", "reduction": "100 %"}, "allowed is less than 100 %"),
+    (SEARCH | FORCED, "--reduction = '50 %': allowed only without a force"),
+    (SEARCH | SPRUNG, "--reduction = '50 %': allowed only without a force"),
+    (SEARCH | {"motion": "elliptic", "forward_amplitude": "1 um"}, "elliptic has several amplit"),
     (
         {"reduction": "50 %", "load": None, "amplitude": "0 m"},
         "allowed is above 0 with a reduction",
     ),
 ]
 UNCERTAIN = [
-    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is a spread below the value"),
+    ({"mu": "0.3 +- 0.3"}, "--mu = '0.3 +- 0.3': allowed is an uncertainty below the value"),
     ({"load": "10 N +- 1 mm"}, "in it '1 mm': the unit is millimeter"),
     ({"load": "10 +- 1 N"}, "in it '10': 10 is a number without a unit"),
     ({"tolerance": "0.01 +- 1 %"}, "--tolerance = '0.01 +- 1 %'"),
 ]
 OTHERS = [
-    ({"output": "found.nc"}, "--output = 'found.nc': allowed with --table alone"),
-    ({"points": "3"}, "--points = '3': allowed with --propulsion alone"),
+    ({"output": "found.nc"}, "--output = 'found.nc': allowed only with --table"),
+    ({"points": "3"}, "--points = '3': allowed only with --propulsion"),
 ]
-PREDICTIONS = OTHERS + MOVED + PRESSED + BODIES + DRIVEN + FOUND + UNCERTAIN
+PREDICTIONS = OTHERS + MOTIONS + CONTACTS + BODIES + DRIVES + REDUCTIONS + UNCERTAIN
 
 SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
 PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
@@ -159,4 +165,4 @@ PROPULSIONS = [
         "allowed is a motion without a rotation",
     ),
 ]
-"""The same with --propulsion."""
+"""Bad options of `microslip predict --propulsion`, in the form of PREDICTIONS."""

@@ -79,7 +79,7 @@ def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
 def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
     asked = BALL | {"material": "steel", "rotation": "10 Hz"}
     for given, said in (
-        ({}, "rigid, as none was given"),
+        ({}, "rigid (default)"),
         ({"counterbody": "rigid"}, "rigid"),
         ({"counterbody": "glass"}, "glass (E = 70 GPa, nu = 0.2, hardness 6 GPa"),
         ({"counterbody": Material(70e9, 0.22)}, "E = 70 GPa, nu = 0.22"),
@@ -88,7 +88,7 @@ def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
         assert found.counterbody.startswith(said)
         assert found.understood["counterbody"] == found.counterbody
     assert found.understood["rotation"] == "10 Hz = 62.8319 rad/s"
-    assert found.understood["counter_radius"] == "flat, as none was given"
+    assert found.understood["counter_radius"] == "flat (default)"
 
 
 # Command line

@@ -40,7 +40,8 @@ def test_an_odd_quantity_is_its_value_or_is_refused(value, unit, expected):
 
 def test_every_unit_is_what_pint_defines_by_the_same_name():
     known, usual = registry(), pint.UnitRegistry()
-    for name in known.get_group("root").members - {"counts_per_second"}:  # pint counts counts
+    turning = {"hertz", "counts_per_second"}  # pint leaves out the turn
+    for name in known.get_group("root").members - turning:
         (own, dimension), (factor, expected) = (one.get_root_units(name) for one in (known, usual))
         assert float(own) == pytest.approx(factor, rel=HALF_A_DIGIT), name
         assert str(dimension) == str(expected), name

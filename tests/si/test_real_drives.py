@@ -344,7 +344,7 @@ def test_the_command_line_says_what_comes_of_a_force(capsys):
     moves = said(capsys, *words, "--force", "2.5 N")
     assert "it moves, cycle by cycle" in moves and "1 mm in " in moves
     away = said(capsys, *words, "--force", "4 N", code=1)
-    assert "it runs away: friction holds no more than 3 N" in away and "CONVERGED" not in away
+    assert "it runs away: friction holds at most 3 N" in away and "CONVERGED" not in away
     words += ["--speed", "1 mm/s", "--drive-stiffness", "10 N/um", "--mass", "20 g"]
     assert "stiff or heavy: the velocity is as good as constant" in said(capsys, *words)
     found = json.loads(said(capsys, *words, "--json"))

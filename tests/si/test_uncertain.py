@@ -84,5 +84,5 @@ def test_a_spread_in_per_cent_is_a_share_of_the_value(mu, ends):
 
 
 def test_an_end_that_predict_refuses_is_named():
-    with pytest.raises(InputError, match="^mu = '9': at an end of its spread, 14: mu: allowed is"):
+    with pytest.raises(InputError, match="^mu = '9': at one standard uncertainty, 14: mu: allowed"):
         microslip.predict("continuous-bore", **SPIN | {"mu": "9 +- 5"})

@@ -1,4 +1,4 @@
-"""Text that `microslip point` prints for a Result."""
+"""The output of `microslip point` in words."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 
-RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
-"""Explanation next to a number."""
+RATIO = "a ratio: mean forward force over mu F_z; the coefficient of friction is mu times mu_macro"
+"""Explanation of mu_macro."""
 OWN_EQUATIONS = (
-    "an approximation: the error is that of its own equations, not of what they leave out"
+    "an approximate model: the error estimate covers its discretisation, not the approximation"
 )
 
 DIGITS = 6
-"""Significant digits of numbers known exactly."""
+"""Significant digits of a number without an error."""
 
 
 def as_text(result: Result) -> str:
-    """Lines on standard output for a Result."""
+    """The lines of a result on standard output."""
     if result.force is not None:
-        assert result.velocity_error is not None  # as under all forces
+        assert result.velocity_error is not None  # set under a force
         lines = [f"velocity = {number_text(result.velocity, result.velocity_error, digits=DIGITS)}"]
     else:
         ratio = number_text(result.mu_macro, result.mu_macro_error, digits=DIGITS)
@@ -35,7 +35,7 @@ def as_text(result: Result) -> str:
     if result.steps_per_period:
         resolved += f", {result.steps_per_period} steps a period"
     lines.append(f"model {result.model}" + (f" ({resolved})" if result.cells else ""))
-    if _leaves_something_out(result):
+    if _is_approximate(result):
         lines.append(OWN_EQUATIONS)
     if not result.converged:
         quantity = "mu_macro" if result.force is None else "velocity"
@@ -43,9 +43,9 @@ def as_text(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _leaves_something_out(result: Result) -> bool:
-    """Whether no refinement of the model would find what the contact does."""
+def _is_approximate(result: Result) -> bool:
+    """True for a model whose error remains when its mesh is refined."""
     if result.model not in MODELS:
-        return False  # a closed form, whose error is known
+        return False  # a closed form
     problem = Problem(motion_named(result.motion), result.velocity, result.amplitude)
     return not MODELS[result.model].exact(problem)

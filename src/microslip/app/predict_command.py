@@ -1,4 +1,4 @@
-"""`microslip predict`: a contact in SI units."""
+"""The command `microslip predict`: friction of a contact in SI units."""
 
 from __future__ import annotations
 
@@ -14,107 +14,89 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "bodies": {
         "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
         "nu": ("NU", "Poisson's ratio of the body"),
-        "material": ("NAME", f"instead of both: one of {', '.join(MATERIALS)}"),
-        "counterbody": (
-            "BODY",
-            "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'",
-        ),
+        "material": ("NAME", f"in place of E and NU: one of {', '.join(MATERIALS)}"),
+        "counterbody": ("BODY", "rigid (default), a material, or E and nu as in '70 GPa, 0.22'"),
         "radius": ("R", "radius of the sphere, such as '5 mm'"),
-        "counter-radius": (
-            "R2",
-            "radius of the counterbody, negative if hollow; flat if not given",
+        "counter-radius": ("R2", "radius of the counterbody, negative if hollow (default: flat)"),
+        "radius-across": ("R", "second radius, across the forward direction; gives an ellipse"),
+        "contact-radius": ("A", "in place of all radii: half the longer side of the contact"),
+        "pressure": (
+            "NAME",
+            "with --contact-radius: hertz, ring:inner=0.5, file:FILE... (hertz)",
         ),
-        "radius-across": (
-            "R",
-            "another radius across the forward direction: an ellipse is touched",
-        ),
-        "contact-radius": (
-            "A",
-            "in place of radii: half the longer side of a contact that is known",
-        ),
-        "pressure": ("NAME", "over that contact, such as ring:inner=0.5 or file:FILE (hertz)"),
         "mu": ("MU", "coefficient of friction without vibration"),
-        "hardness": (
-            "H",
-            "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'",
-        ),
-        "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
-        "counter-hardness": ("H2", "of the counterbody"),
-        "counter-density": ("RHO2", "of the counterbody"),
+        "hardness": ("H", "for a warning of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
+        "density": ("RHO", "for a warning of inertia, such as '7850 kg/m^3'"),
+        "counter-hardness": ("H2", "hardness of the counterbody"),
+        "counter-density": ("RHO2", "density of the counterbody"),
     },
     "load": {
         "load": ("F", "normal load, such as '10 N'"),
         "contacts": (
             "TEXT",
-            "that carry the body together, such as 'phase=0;phase=180': the load is that of "
-            "all, which share it by load=..., and so is what pulls",
+            "the contacts of one body, such as 'phase=0;phase=180'.  The load and the drive are "
+            "those of the body; load=... sets the fraction of each contact",
         ),
     },
     "motion": {
-        "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
-        "forward-amplitude": (
+        "amplitude": ("A", "half stroke, such as '1 um'; for bore an angle, such as '0.5 deg'"),
+        "forward-amplitude": ("A", "forward half stroke, for elliptic and normal"),
+        "rotation-amplitude": (
             "A",
-            "half stroke along the forward direction, of elliptic and normal",
+            "half stroke in spin, for transverse-bore and normal",
         ),
-        "rotation-amplitude": ("A", "half stroke in spin, an angle, of transverse-bore and normal"),
-        "load-amplitude": ("A", "half stroke of the load, of normal, such as '5 N'"),
-        "phase": ("P", "of these against the rest, an angle, such as '90 deg' (0)"),
-        "frequency": (
-            "F",
-            "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
-            "'125664 rad/s'",
-        ),
-        "rotation": (
-            "W",
-            "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
-        ),
+        "load-amplitude": ("A", "half stroke of the normal load, for normal, such as '5 N'"),
+        "phase": ("P", "phase between the oscillations, such as '90 deg' (0)"),
+        "frequency": ("F", "frequency, such as '20 kHz', '1200 rpm' or '125664 rad/s'"),
+        "rotation": ("W", "angular speed of continuous-bore, such as '60 rpm' or '6 rad/s'"),
         "reduction": (
             "SHARE",
-            "instead of the amplitude, the speed or the load: find the least amplitude, the "
-            "largest speed or the largest load at which vibration takes '50 %%' away",
+            "in place of the amplitude, the speed or the load: the reduction of friction, such as "
+            "'50 %%'.  The answer is the least amplitude, the largest speed or the largest load",
         ),
     },
     "drive": {
         "speed": ("V", "forward speed, such as '1 mm/s'"),
-        "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
-        "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
-        "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
-        "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
+        "force": ("P", "in place of the speed: a constant forward force, such as '1 N'"),
+        "drive-stiffness": ("K", "stiffness of a spring between drive and body, such as '10 N/um'"),
+        "mass": ("M", "mass of a body on a spring or under a force, such as '20 g'"),
+        "damping": ("C", "damping of a dashpot beside the spring, such as '5 N*s/m'"),
     },
     "output": {
         "tolerance": (
             "T",
-            "largest accepted error: of the ratio mu_macro, absolute (1e-3; 1e-2 with "
-            "--propulsion); with --force, of the speed, relative (1e-2)",
+            "largest accepted error: absolute, of the ratio mu_macro (1e-3; 1e-2 with "
+            "--propulsion); with --force relative, of the speed (1e-2)",
         ),
-        "points": ("N", "with --propulsion: on the line, its ends included (9)"),
-        "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
-        "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
+        "points": ("N", "with --propulsion: number of points on the line, both ends included (9)"),
+        "decimal": ("MARK", "with --table: decimal mark of the file, a point or a comma (.)"),
+        "encoding": ("NAME", "with --table: encoding of the file, such as cp1252 (utf-8)"),
     },
 }
-"""Options by the headings of the help: metavar and help."""
+"""Options by the headings of the help: metavar and help text."""
 ABOUT_GROUPS = {
-    "drive": "Where the normal load oscillates there are two reference loads: stiffness, mass and "
+    "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
     "by mu times the mean load.",
 }
-"""Sentences below headings of the help."""
+"""Descriptions of groups of options."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the description and the arguments of `predict` to its parser."""
     parser.description = (
-        "How much friction falls in a contact given in SI units, and how far to trust "
-        "that.  All quantities take units.  The answer has two kinds of numbers: mu_macro is a "
-        "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
-        "friction that is felt.  A number with a standard uncertainty, such as '0.15 +- 0.05' or "
-        "'10 N +- 5 %', gives intervals and the probability of each outcome."
+        "Friction of a vibrated contact in SI units, with its error estimate and with warnings "
+        "where the theory does not apply.  Every quantity has a unit.  mu_macro is a ratio: "
+        "friction with vibration divided by friction without.  mu_apparent is the coefficient of "
+        "friction with vibration.  For a quantity with a standard uncertainty, such as "
+        "'0.15 +- 0.05' or '10 N +- 5 %', the answer has intervals and the probability of each "
+        "outcome."
     )
     motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(
         "motion",
         metavar="MOTION",
-        help=f"what the sphere does. {motions}; or another motion of point",
+        help=f"motion of the sphere. {motions}; or another motion of `microslip point`",
     )
     for title, options in GROUPS.items():
         group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))
@@ -123,27 +105,26 @@ def fill(parser: argparse.ArgumentParser) -> None:
             group.add_argument(
                 "--propulsion",
                 action="store_true",
-                help="ask what a self-propelled motion pulls with, such as "
-                "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and "
-                "efficiency",
+                help="compute the stall force, the no-load speed, the power and the efficiency of "
+                "a self-propelled motion, such as elliptic:forward_cycles=2,phase=0",
             )
     group.add_argument(
-        "--power", action="store_true", help="also compute the power that vibrates the contact"
+        "--power", action="store_true", help="also compute the power of the oscillation"
     )
     group.add_argument(
         "--table",
         metavar="CSV",
-        help="a contact for every line of a file, whose heading names some of the options, as in "
-        "load [N],speed [mm/s],material; the others are shared",
+        help="predict one contact for each line of a file.  Its heading names options, as in "
+        "load [N],speed [mm/s],material; the other options hold for all lines",
     )
     group.add_argument(
-        "--output", metavar="FILE", help="with --table: writes all that is found into a .csv or .nc"
+        "--output", metavar="FILE", help="with --table: write all columns to a .csv or .nc file"
     )
     add_json(group)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
     names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
     return respond("microslip predict", options, _answer, {"motion": "MOTION"}, names)
 
@@ -157,12 +138,12 @@ def _answer(options: argparse.Namespace) -> Answer:
         return predicted_table.answer(options, arguments)
     for name in ("output", "decimal", "encoding"):
         if getattr(options, name) is not None:
-            raise InputError(name, getattr(options, name), "allowed with --table alone")
+            raise InputError(name, getattr(options, name), "allowed only with --table")
     with Elapsed("microslip predict"):
         if options.propulsion:
-            found = predicted_propulsion.ask(options.motion, arguments)
-            return Answer(found.to_dict(), str(found), found.converged)
+            line = predicted_propulsion.line_of(options.motion, arguments)
+            return Answer(line.to_dict(), str(line), line.converged)
         if "points" in arguments:
-            raise InputError("points", arguments["points"], "allowed with --propulsion alone")
-        found = predict(options.motion, **{"mu": None} | arguments, power=options.power)
-    return Answer(found.to_dict(), str(found), found.converged)
+            raise InputError("points", arguments["points"], "allowed only with --propulsion")
+        prediction = predict(options.motion, **{"mu": None} | arguments, power=options.power)
+    return Answer(prediction.to_dict(), str(prediction), prediction.converged)

@@ -1,4 +1,4 @@
-"""`microslip predict --propulsion`: options to arguments of predict_propulsion."""
+"""The command `microslip predict --propulsion`: a call of predict_propulsion."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ if TYPE_CHECKING:
 
 REFUSED = dict.fromkeys(
     ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
-    "the motion pulls by itself",
+    "the motion propels the body by itself",
 )
-REFUSED["rotation"] = "such a motion has no rotation"
+REFUSED["rotation"] = "a self-propelled motion has no steady spin"
 REFUSED |= dict.fromkeys(
-    ("radius_across", "contact_radius", "pressure"), "it is computed for spheres, given by a radius"
+    ("radius_across", "contact_radius", "pressure"), "the contact is that of a sphere"
 )
 REFUSED |= dict.fromkeys(
     ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
-    "the numbers of the motion are its shares of the amplitude and its phases",
+    "numbers behind the name of the motion set the components and their phases",
 )
-"""Options of predict that --propulsion refuses, and why."""
+"""Options of predict that --propulsion does not accept, and the reasons."""
 
 
-def ask(motion: str, given: dict) -> RealPropulsionLine:
-    """The si.propulsion.RealPropulsionLine; given: options by name.  Raises InputError."""
+def line_of(motion: str, options: dict) -> RealPropulsionLine:
+    """The line of a motion for options of predict by name; raises InputError."""
     from microslip.si.propulsion import predict_propulsion
 
     for name, reason in REFUSED.items():
-        if name in given:
-            raise InputError(name, given[name], f"allowed is none with --propulsion: {reason}")
-    if "points" in given:
-        given = given | {"points": read("points", given["points"], whole=True)}
+        if name in options:
+            raise InputError(name, options[name], f"allowed is none with --propulsion: {reason}")
+    if "points" in options:
+        options = options | {"points": read("points", options["points"], whole=True)}
     missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
-    return predict_propulsion(motion, **missing | given)
+    return predict_propulsion(motion, **missing | options)

@@ -1,4 +1,4 @@
-"""Input and output of `microslip predict --table`: one contact for each line of a CSV file."""
+"""The command `microslip predict --table`: one contact for each line of a CSV file."""
 
 from __future__ import annotations
 
@@ -19,43 +19,54 @@ from microslip.si.printed_lines import not_converged, probability_text, runs_awa
 from microslip.si.tables import Table
 
 FORMAT = ("decimal", "encoding")
-"""Options that describe the file."""
+"""Options that describe the format of the file."""
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
-"""Quantities of a periodic motion, which a contact that runs away does not have."""
+"""Columns of a periodic motion; a contact that runs away has none of them."""
 PROBABILITIES = {
     "stays %": "probability_stays",
     "moves %": "probability_moves",
     "runs away %": "probability_runs_away",
 }
-"""Headings of the probabilities of each outcome, and their columns."""
+"""Columns of the probabilities of the outcomes, by heading."""
 
 
-def answer(options: argparse.Namespace, given: Mapping[str, Any]) -> Answer:
-    """The answer to a table, complete if all of it converged.
+def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
+    """The predictions of a table; complete if all of them converged.
 
-    Errors of lines without a prediction go to standard error.  options: those of predict; given:
-    the ones that were typed.  Raises InputError.
+    Error messages of lines without a prediction are written to standard error.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Options of predict.
+    arguments : mapping
+        Values of the options on the command line.
+
+    Raises
+    ------
+    InputError
+        For a bad option, and for a table without a valid line.
     """
     from tqdm import tqdm
 
     from microslip.si.table import NAMES, predictions
     from microslip.si.tables import table_of
 
-    if options.propulsion or "points" in given:
+    if options.propulsion or "points" in arguments:
         raise InputError("table", options.table, "allowed without --propulsion")
     _refuse_output(options.output, options.table)
-    format: dict[str, Any] = {name: given[name] for name in FORMAT if name in given}
-    shared = {name: value for name, value in given.items() if name not in FORMAT}
+    format: dict[str, Any] = {name: arguments[name] for name in FORMAT if name in arguments}
+    shared = {name: value for name, value in arguments.items() if name not in FORMAT}
     table = table_of("table", options.table, NAMES, **format)
     try:
-        found = predictions(options.motion, table, shared | {"power": options.power})
+        cases = predictions(options.motion, table, shared | {"power": options.power})
     except InputError as error:
         if error.argument not in table.columns or error.argument in shared:
             raise
         raise InputError("table", options.table, _problem(error, table.columns)) from None
-    answers = list(tqdm(found, "contacts", len(table.lines), leave=False, disable=None))
+    answers = list(tqdm(cases, "contacts", len(table.lines), leave=False, disable=None))
     rows = _rows(table, answers)
     if options.output is not None:
         _write(options.output, options.motion, table, answers, rows)
@@ -67,7 +78,7 @@ def answer(options: argparse.Namespace, given: Mapping[str, Any]) -> Answer:
 
 
 def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[dict[str, Any]]:
-    """A dict for each line with its number, its labels and an error, which may be None."""
+    """A dict for each line: its number, its labels, its error message or None, and its columns."""
     rows = []
     for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
         labels = {name: texts[index] for name, texts in table.labels.items()}
@@ -81,9 +92,9 @@ def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[di
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
-    """Error message of a line, with the names of columns and options in place of arguments.
+    """The error message of a line, with names of columns and options in place of arguments.
 
-    error: InputError, without a value where the cell is empty or has no column; or a text.
+    An InputError about an empty cell, or about a missing column, has no value.
     """
     from microslip.si.predict import NOTHING
 
@@ -91,14 +102,13 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
         return format_as_options(error)
     others = [name for name in NOTHING if name not in columns]
     name = error.argument if error.argument in columns else option(error.argument)
-    given = "" if error.value is None else f" = {shown(error.value)}"
+    value = "" if error.value is None else f" = {shown(error.value)}"
     allowed = format_as_options(error.allowed, others)
-    return " ".join(f"{name}{given}: {allowed}".split())
+    return " ".join(f"{name}{value}: {allowed}".split())
 
 
 def _refuse_output(path: str | None, table: str) -> None:
-    """Raise InputError for an output that cannot be written, before anything is computed; table:
-    the file that is read."""
+    """Raise InputError for an output file that cannot be written, or is the table itself."""
     if path is None:
         return
     file, allowed = Path(path), ""
@@ -119,7 +129,7 @@ def _write(
     answers: Sequence[Prediction | NoPrediction],
     rows: Sequence[Mapping[str, Any]],
 ) -> None:
-    """All columns of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
+    """Write all columns of all cases to a .csv or .nc file, atomically; raises InputError."""
     from microslip.foundation.files import writing_beside
     from microslip.si.table import as_dataset
 
@@ -138,8 +148,17 @@ def _write(
 
 
 class _Quantity(NamedTuple):
-    """Columns of a quantity, of its error and of its standard uncertainty, and their headings,
-    empty where a table has no such column; sought: the search that it is the result of, or None."""
+    """A quantity of the printed table.
+
+    Attributes
+    ----------
+    columns : tuple of str
+        Columns of its value, its error estimate and its standard uncertainty.
+    headings : tuple of str
+        Their headings; empty for a column that is not printed.
+    sought : str or None
+        For the result of a search: the name of the quantity.
+    """
 
     columns: tuple[str, str, str]
     headings: tuple[str, str, str]
@@ -147,9 +166,9 @@ class _Quantity(NamedTuple):
 
 
 def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
-    """A row for each case, and remarks below the table."""
-    found = [one for one in answers if isinstance(one, Prediction)]
-    quantities, verdict = _quantities(found), _verdict_headings(found)
+    """The printed table: a row for each case, and remarks below."""
+    some = [one for one in answers if isinstance(one, Prediction)]
+    quantities, verdict = _quantities(some), _verdict_headings(some)
     headings = [text for one in quantities for text in one.headings if text] + verdict
     lines = ["".join(f"{title:>{WIDTH}}" for title in ("line", *table.labels, *headings))]
     remarks: list[str] = []
@@ -170,10 +189,10 @@ def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
     return "\n".join(lines + remarks)
 
 
-def _quantities(found: Sequence[Prediction]) -> list[_Quantity]:
-    """The quantities that are shown of some predictions."""
-    forced = any(one.force_N is not None for one in found)
-    spread = "spread" if any("mu_apparent_spread" in one.uncertainty for one in found) else ""
+def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
+    """The quantities in the printed table of some predictions."""
+    forced = any(one.force_N is not None for one in answers)
+    spread = "spread" if any("mu_apparent_spread" in one.uncertainty for one in answers) else ""
     friction = ("mu_apparent", "mu_apparent_error", "mu_apparent_spread")
     shown = [
         _Quantity(friction, ("mu_apparent", "+-", spread)),
@@ -185,12 +204,14 @@ def _quantities(found: Sequence[Prediction]) -> list[_Quantity]:
     if forced:
         threshold = ("force_threshold_N", "force_threshold_error_N", "")
         shown.append(_Quantity(threshold, ("threshold N", "+- N", "")))
-    for sought in dict.fromkeys(one.sought for one in found):
-        if sought is not None:  # an empty cell may be sought, another one in each line
-            known = [one for one in found if one.sought == sought]
-            amplitude = unit_of_amplitude(known[0].motion)
+    for sought in dict.fromkeys(one.sought for one in answers):
+        if sought is not None:  # each line can search for another quantity
+            results = [one for one in answers if one.sought == sought]
+            amplitude = unit_of_amplitude(results[0].motion)
             unit = {"amplitude": amplitude, "speed": "m/s", "load": "N"}[sought]
-            spread = f"spread {unit}" if any(one.sought_spread is not None for one in known) else ""
+            spread = (
+                f"spread {unit}" if any(one.sought_spread is not None for one in results) else ""
+            )
             headings = (f"{sought} {unit}", f"+- {unit}", spread)
             columns = ("sought_value", "sought_error", "sought_spread")
             shown.append(_Quantity(columns, headings, sought))
@@ -198,7 +219,7 @@ def _quantities(found: Sequence[Prediction]) -> list[_Quantity]:
 
 
 def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
-    """Texts of the columns of one quantity: to the digits that its error allows."""
+    """Texts of the columns of one quantity, with the digits that its error estimate allows."""
     value, error, spread = (row.get(name) for name in quantity.columns)
     accelerates = row["outcome"] == "runs away" and quantity.columns[0] in STEADY
     texts = ["", "", ""]
@@ -211,16 +232,16 @@ def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
     return [text for text, heading in zip(texts, quantity.headings, strict=True) if heading]
 
 
-def _verdict_headings(found: Sequence[Prediction]) -> list[str]:
-    """Headings of the outcome under a force and of its probabilities, which follow it."""
-    if all(one.force_N is None for one in found):
+def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
+    """Headings of the outcome under a force and of the probabilities of all outcomes."""
+    if all(one.force_N is None for one in answers):
         return []
-    uncertain = any("probability_error" in one.uncertainty for one in found)
+    uncertain = any("probability_error" in one.uncertainty for one in answers)
     return ["outcome", *PROBABILITIES, "+- %"] if uncertain else ["outcome"]
 
 
 def _verdict_cells(row: Mapping[str, Any]) -> list[str]:
-    """Outcome, the probability of each outcome, and the error of these probabilities."""
+    """The outcome, the probability of each outcome, and the error of these probabilities."""
     error = row["probability_error"]
     chances = [row[column] for column in PROBABILITIES.values()]
     texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]

@@ -1,4 +1,4 @@
-"""`microslip propulsion`: what a self-propelled motion pulls with, from stall to no load."""
+"""The command `microslip propulsion`: force of a self-propelled motion, from stall to no load."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ if TYPE_CHECKING:
     from microslip.adaptive.propulsion_line import PropulsionLine
 
 OPTIONS = {
-    "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),
-    "pressure": ("NAME", "how the load is spread, as for point (hertz)"),
+    "amplitude": ("A", "amplitude of the oscillation, as for `microslip point`"),
+    "pressure": ("NAME", "pressure of the contact, as for `microslip point` (hertz)"),
     "poisson": ("NU", "Poisson's ratio, 0 to 0.5 (0)"),
-    "model": ("NAME", "auto, rigid, radial, polar or cartesian, as for point (auto)"),
+    "model": ("NAME", "auto, rigid, radial, polar or cartesian (auto)"),
     "tolerance": ("T", "largest accepted error of a force, absolute (1e-3)"),
-    "points": ("N", "on the line, its ends included (9)"),
-    "time-limit": ("SECONDS", "give up after so long, looked at between two marches"),
+    "points": ("N", "number of points on the line, both ends included (9)"),
+    "time-limit": ("SECONDS", "time limit of the computation"),
 }
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")
-"""Fields of the line that have an error."""
+"""Fields of the line with an error estimate."""
 REFERENCE_LOADS = (
-    "u_lim is that of the load without oscillation (the reference load); forces and powers are "
-    "over mu times the mean load"
+    "u_lim belongs to the load without oscillation (the reference load); forces and powers are "
+    "divided by mu times the mean load"
 )
-"""Sentence beside the answer where the normal load oscillates."""
+"""Remark for an oscillating normal load."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the description and the arguments of `propulsion` to its parser."""
     parser.description = (
-        "Some motions propel the contact forward by themselves: a loop that is not its "
-        "own image after half a period, or a load that is higher on the way back.  The line from "
-        "the stall force, the load that stops it, to the no-load velocity; forces over mu times "
-        "the mean normal load, powers over that, u_lim and omega.  A heavy body moves at the "
-        "velocity; below 0 it moves backward."
+        "Some motions propel a body by themselves: a loop that is not symmetric under a shift by "
+        "half a period, or a normal load that is larger on the way back.  The answer is the line "
+        "from the stall force, which stops the body, to the no-load velocity.  Forces are divided "
+        "by mu times the mean normal load, powers by that force, u_lim and omega.  A negative "
+        "velocity is backward."
     )
     parser.add_argument(
         "motion",
@@ -50,7 +50,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
     return respond("microslip propulsion", options, _answer, {"motion": "MOTION"})
 
 

@@ -1,4 +1,4 @@
-"""The parts that commands share which answer one question: options, refusals and output."""
+"""Options, error messages and output of the commands that answer one question."""
 
 from __future__ import annotations
 
@@ -13,11 +13,21 @@ from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError, shown
 
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
-"""Second names of options."""
+"""Alternative names of options."""
 
 
 class Answer(NamedTuple):
-    """The answer to a question: for JSON, in words, and whether it is exit code 0."""
+    """An answer.
+
+    Attributes
+    ----------
+    plain : object
+        The answer as JSON values.
+    text : str
+        The answer in words.
+    complete : bool
+        True for exit code 0.
+    """
 
     plain: Any
     text: str
@@ -27,7 +37,7 @@ class Answer(NamedTuple):
 def add_options(
     parser: Any, options: Mapping[str, tuple[str, str]], required: Iterable[str] = ()
 ) -> None:
-    """Add options with a value to a parser or a group: metavar and help by name."""
+    """Add options with a value to a parser or a group; options: metavar and help text by name."""
     for name, (metavar, text) in options.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
@@ -40,14 +50,14 @@ def add_options(
 
 
 def add_json(parser: Any) -> None:
-    """Add the option of JSON output."""
+    """Add the option `--json`."""
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
 
 def typed_options(options: argparse.Namespace) -> dict[str, Any]:
-    """Values of the options that were typed, by their arguments."""
+    """Values of the options on the command line, by argument."""
     return {name: getattr(options, name) for name in getattr(options, "said", {})}
 
 
@@ -58,15 +68,30 @@ def respond(
     titles: Mapping[str, str],
     arguments: Iterable[str] = (),
 ) -> int:
-    """Print the answer to the options.
+    """Print the answer to a command line, or its error message.
 
-    titles: names of positional arguments in messages; arguments: those of Python that messages
-    show as options.  Returns the exit code: 0 complete, 1 not complete, 2 bad input.
+    Parameters
+    ----------
+    command : str
+        Name of the command, for messages.
+    options : argparse.Namespace
+        The command line.
+    answer : callable
+        answer(options) -> Answer.
+    titles : mapping of str
+        Names of positional arguments in messages.
+    arguments : iterable of str
+        Python arguments that messages show as options.
+
+    Returns
+    -------
+    int
+        Exit code: 0 complete, 1 not complete, 2 bad input.
     """
     from microslip.sweeps.evaluate import plain
 
     try:
-        found = answer(options)
+        result = answer(options)
     except InputError as error:
         said, value = getattr(options, "said", {}), error.value
         if error.argument in said or error.argument in titles:
@@ -79,7 +104,7 @@ def respond(
     except CacheError as error:
         complain(f"{command}: {error}")
         return 2
-    text = json.dumps(plain(found.plain)) if options.json else found.text
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it
+    text = json.dumps(plain(result.plain)) if options.json else result.text
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # it may lack the letters of units
     print(text.encode(encoding, "backslashreplace").decode(encoding))
-    return 0 if found.complete else 1
+    return 0 if result.complete else 1

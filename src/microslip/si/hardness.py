@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.quantities import Given, read
+from microslip.si.quantities import Quantity, read
 
 KILOGRAM_FORCE_PER_SQUARE_MM = 9.80665e6
 """Pa."""
@@ -29,7 +29,7 @@ _SCALE = re.compile(r"(.*?)\s*(HV|HRC)", re.S)
 _OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 
 
-def read_hardness(name: str, value: Any) -> Given:
+def read_hardness(name: str, value: Any) -> Quantity:
     """Mean pressure under a hardness indent, Pa; raises InputError.
 
     name: of the argument.  value: a pressure, or a text such as "200 HV" or "60 HRC".
@@ -48,7 +48,7 @@ def read_hardness(name: str, value: Any) -> Given:
             raise InputError(name, value, f"allowed is {ends}, or a Vickers hardness")
         number = float(np.interp(number, ROCKWELL, VICKERS))
     pressure = number * KILOGRAM_FORCE_PER_SQUARE_MM / PROJECTED
-    return Given(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
+    return Quantity(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
 
 
 def _refuse_other_scale(name: str, value: object) -> None:

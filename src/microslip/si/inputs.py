@@ -1,4 +1,4 @@
-"""Inputs of a prediction: bodies, contact, motion and drive, each read and checked."""
+"""Inputs of a prediction: read and check the bodies, the contact, the motion and the drive."""
 
 from __future__ import annotations
 
@@ -14,17 +14,15 @@ from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, PARTS, TAKES
-from microslip.si.quantities import Given, read
+from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
-"""Largest accepted coefficient of friction: no pair of bodies in elastic contact has more."""
+"""Largest accepted coefficient of friction; bodies in elastic contact are below it."""
 LARGEST_PHASE = 1e3
 """Largest accepted phase, rad."""
-OUT_OF_RANGE = (
-    "no contact that floating-point numbers can describe; allowed are sizes of real bodies"
-)
+OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
 EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
 
 
@@ -62,32 +60,34 @@ QUANTITIES = {
     "counter_density": Range("kg/m^3"),
     "reduction": Range("", high=1.0),
 }
-"""Arguments of predict that are quantities; the amplitude of some motions is an angle."""
+"""Arguments of predict that are quantities.  The amplitude of a rotation is an angle."""
 
 
 def read_argument(
     name: str, value: object, unit: str | None = None, title: str | None = None
-) -> Given:
-    """One of QUANTITIES, in another unit and with another name in messages where they are given;
-    raises InputError."""
+) -> Quantity:
+    """Read and check one of QUANTITIES; raises InputError.
+
+    unit: another SI unit; title: another name for messages.
+    """
     usual, *limits = QUANTITIES[name]
     ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
     return read(title or name, value, unit or usual, **ranges)
 
 
 Arguments = Mapping[str, Any]
-"""Arguments of predict by their names; None for those that are missing."""
+"""Arguments of predict by name; None for a missing one."""
 
 
 class Body(NamedTuple):
-    """A material, and its properties in words, as they were given."""
+    """A material, and its properties in the words of the user."""
 
     material: Material
     text: str
 
 
 def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
-    """The body and the counterbody, of arguments by their names; raises InputError."""
+    """The body and the counterbody; raises InputError."""
     body = _body(*(arguments[name] for name in ("young", "nu", "material")))
     return _completed(body, "", arguments), _completed(
         _counterbody(arguments["counterbody"]), "counter_", arguments
@@ -95,7 +95,7 @@ def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
 
 
 def _completed(body: Body, side: str, arguments: Arguments) -> Body:
-    """The body with its hardness and density; side: "counter_" or nothing."""
+    """The body with its hardness and density; side: "counter_" for the counterbody, else empty."""
     for name in ("hardness", "density"):
         argument, value = f"{side}{name}", arguments[f"{side}{name}"]
         if value is None:
@@ -112,10 +112,10 @@ def _body(young: object, nu: object, material: Any) -> Body:
     if material is None:
         for name, value in (("young", young), ("nu", nu)):
             if value is None:
-                raise InputError(name, None, "needed, or a material by name")
+                raise InputError(name, None, "needed, or a material")
         return _elastic(read_argument("young", young), read_argument("nu", nu))
     if young is not None or nu is not None:
-        raise InputError("material", material, "allowed without young and nu")
+        raise InputError("material", material, "allowed only without young and nu")
     if isinstance(material, Material):
         return Body(material, _numbers(material))
     try:
@@ -126,9 +126,9 @@ def _body(young: object, nu: object, material: Any) -> Body:
 
 
 def _counterbody(body: Any) -> Body:
-    """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid."""
+    """The counterbody: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid body."""
     if body is None:
-        return Body(RIGID, "rigid, as none was given")
+        return Body(RIGID, "rigid (default)")
     if isinstance(body, Material):
         return Body(body, _numbers(body))
     pair = isinstance(body, tuple | list)
@@ -151,7 +151,7 @@ def _counterbody(body: Any) -> Body:
     raise InputError("counterbody", body, f"{count}; allowed: {EXAMPLE}")
 
 
-def _elastic(young: Given, nu: Given) -> Body:
+def _elastic(young: Quantity, nu: Quantity) -> Body:
     return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
 
 
@@ -161,7 +161,7 @@ def _named(name: Any) -> Body:
 
 
 def _numbers(body: Material) -> str:
-    """A Material in one line."""
+    """The properties of a material in one line."""
     if body.rigid:
         return "rigid"
     parts = [f"E = {body.young / 1e9:.6g} GPa", f"nu = {body.poisson:g}"]
@@ -175,16 +175,29 @@ def _numbers(body: Material) -> str:
 def read_contact(
     bodies: tuple[Body, Body], arguments: Arguments, *, load: object, contacts: int = 1
 ) -> tuple[TwoBodies, dict[str, str]]:
-    """The contact, and texts of what was understood; raises InputError.
+    """The contact, and texts of its arguments by name.
 
-    given: arguments that describe the shape, and mu; load: that of all contacts, of which this one
-    carries the mean.
+    Parameters
+    ----------
+    bodies : tuple of Body
+        The body and the counterbody.
+    arguments : mapping
+        Arguments of predict: the shape and mu are read.
+    load : quantity
+        Load of all contacts.
+    contacts : int
+        Number of contacts.  The returned contact carries the mean load.
+
+    Raises
+    ------
+    InputError
+        For an argument that is missing or not allowed, and for a contact outside Hertz's theory.
     """
     sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
-        _refuse_radii(arguments)
+        _check_without_radii(arguments)
     elif arguments["radius"] is None:
-        raise InputError("radius", None, "needed, or a contact_radius in its place")
+        raise InputError("radius", None, "needed, or a contact_radius")
     name = "contact_radius" if sized else "radius"
     size = read_argument(name, arguments[name])
     force, mu = read_argument("load", load), read_argument("mu", arguments["mu"])
@@ -203,38 +216,49 @@ def read_contact(
     texts |= {"load": force.text, "mu": mu.text}
     if sized:
         return _of_size(plain, size.si, pressure, arguments[name]), texts
-    _refuse_senseless(plain, arguments["counter_radius"], arguments, load)
+    _check_hertzian(plain, arguments["counter_radius"], arguments, load)
     across = arguments["radius_across"]
     if across is None:
         return plain, texts
     if arguments["counter_radius"] is not None:
-        allowed = "allowed is none beside a counter_radius: give the relative curvatures"
+        allowed = "allowed only without a counter_radius: give the radii of relative curvature"
         raise InputError("radius_across", across, allowed)
     second = read_argument("radius_across", across)
     try:
         contact = elliptic(plain, second.si)
     except InputError as error:
         raise error.renamed("radius_across", across) from None
-    _refuse_senseless(contact, across, arguments, load)
+    _check_hertzian(contact, across, arguments, load)
     return contact, texts | {"radius_across": second.text}
 
 
-def _refuse_radii(arguments: Arguments) -> None:
+def _check_without_radii(arguments: Arguments) -> None:
     """Raise InputError unless a contact has a size and no radii."""
     for name in ("radius", "counter_radius", "radius_across"):
         if arguments[name] is not None:
             cause = "a contact_radius"
             if arguments["contact_radius"] is None:
                 cause = "a pressure, which needs a contact_radius in place of radii"
-            raise InputError(name, arguments[name], f"allowed is none beside {cause}")
+            raise InputError(name, arguments[name], f"allowed only without {cause}")
     if arguments["contact_radius"] is None:
-        allowed = "needed beside a pressure: half the longer side of the contact"
+        allowed = "needed with a pressure: half the longer side of the contact"
         raise InputError("contact_radius", None, allowed)
 
 
 def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> TwoBodies:
-    """A contact of known size, m, and pressure; plain: the same with any radius; argument: the size
-    as it was given."""
+    """A contact with a prescribed size and pressure; raises InputError.
+
+    Parameters
+    ----------
+    plain : TwoBodies
+        The bodies and the load; the radius does not matter.
+    size : float
+        Half the longer side, m.
+    pressure : str
+        Name of the pressure.
+    argument : object
+        The size as the user wrote it, for messages.
+    """
     try:
         contact = of_size(plain, size, pressure)
         sizes = (contact.u_lim, contact.load / size**2)
@@ -249,8 +273,8 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
 
 
 def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], dict[str, str]]:
-    """Radii of the sphere and the counterbody, m, the second infinite where it is flat."""
-    text, counter, argument = "flat, as none was given", math.inf, arguments["counter_radius"]
+    """Radii of the sphere and of the counterbody, m, and texts; infinite for a flat counterbody."""
+    text, counter, argument = "flat (default)", math.inf, arguments["counter_radius"]
     if argument is not None:
         second = read_argument("counter_radius", argument)
         if second.si == 0.0:
@@ -264,16 +288,16 @@ def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], di
     if math.isinf(curvature):
         raise InputError("counter_radius", argument, OUT_OF_RANGE)
     if not curvature > 0.0:
-        allowed = "allowed is a hollow wider than the sphere"
+        allowed = "allowed is a hollow with a larger radius than the sphere"
         raise InputError("counter_radius", argument, allowed)
     return (radius, counter), {"counter_radius": text}
 
 
-def _refuse_senseless(
-    contact: TwoBodies, second: object, arguments: Arguments, load: object
-) -> None:
-    """Raise InputError where Hertz's theory does not describe these bodies; second: the radius of
-    the counterbody, or that across, as it was given."""
+def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, load: object) -> None:
+    """Raise InputError for a contact outside Hertz's theory.
+
+    second: the counter_radius or the radius_across as the user wrote it.
+    """
     try:
         a, smallest = contact.contact_radius, contact.smallest_radius
         if a >= SENSELESS * smallest:
@@ -284,8 +308,8 @@ def _refuse_senseless(
                 name,
                 value,
                 f"by Hertz's theory, which is for contacts much smaller than either body, the "
-                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of it; allowed is less "
-                f"than {SENSELESS:g}",
+                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of this radius; allowed is "
+                f"less than {SENSELESS:g}",
             )
         sizes = (a, contact.indentation, contact.u_lim, contact.largest_pressure)
         good = all(0.0 < size < math.inf for size in sizes)
@@ -298,68 +322,78 @@ def _refuse_senseless(
 def read_motion(
     motion: str, arguments: Arguments, sought: str | None
 ) -> tuple[RealMotion, dict[str, str]]:
-    """The motion, and texts of what was understood; raises InputError.
+    """The motion, and texts of its arguments by name; raises InputError.
 
-    given: arguments by their names.  The speed may be missing, and the quantity that is sought.
+    sought: name of the quantity of a search, which is missing, or None.  The speed can be missing.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)
     needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
-    for name in MOVED:
+    for name in MOTION_ARGUMENTS:
         if name not in (*needed, *TAKES.get(motion, ())) and arguments[name] is not None:
             raise InputError(name, arguments[name], f"{motion} has none")
     for name in needed:
         if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
     unit = motions.unit_of_amplitude(motion)
-    found = {
+    quantities = {
         name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
-        for name in ("speed", *MOVED)
+        for name in ("speed", *MOTION_ARGUMENTS)
         if arguments[name] is not None
     }
-    values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in found.items()}
+    values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in quantities.items()}
     if motion in COMBINED and not any(values.get(name) for name in PARTS):
-        raise InputError(
-            needed[0], arguments[needed[0]], "allowed is above 0 where no other one is"
-        )
+        allowed = "allowed is above 0 where no other amplitude is"
+        raise InputError(needed[0], arguments[needed[0]], allowed)
     texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
-    return RealMotion(motion, **values), texts | {name: one.text for name, one in found.items()}
+    return RealMotion(motion, **values), texts | {
+        name: one.text for name, one in quantities.items()
+    }
 
 
-MOVED = ("rotation", *PARTS, "phase", "frequency")
-"""Arguments that describe the motion, besides the speed."""
-PULLED = {"force": "force", "drive_stiffness": "stiffness", "mass": "mass", "damping": "damping"}
-"""Arguments that describe the drive besides the speed, and their fields of a RealDrive."""
+MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")
+"""Arguments of predict that describe the motion, except the speed."""
+DRIVE_FIELDS = {
+    "force": "force",
+    "drive_stiffness": "stiffness",
+    "mass": "mass",
+    "damping": "damping",
+}
+"""Arguments of predict that describe the drive, except the speed, and their RealDrive fields."""
 
 
 def read_drive(
     motion: RealMotion, arguments: Arguments, sought: str | None
 ) -> tuple[RealDrive, dict[str, str]]:
-    """The drive, and texts of what was understood; raises InputError."""
+    """The drive, and texts of its arguments by name; raises InputError.
+
+    sought: name of the quantity of a search, which is missing, or None.
+    """
     speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
     if speed is None and force is None and sought != "speed":
-        raise InputError("speed", None, "needed, or a force in its place")
+        raise InputError("speed", None, "needed, or a force")
     if speed is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a speed, not both")
     refused: dict[str, str] = {}
     if motion.steady:
-        which = f"allowed is none for {motion.name}, which is steady: nothing swings"
+        which = f"allowed only for a motion that oscillates; {motion.name} is steady"
         refused = dict.fromkeys(("drive_stiffness", "mass", "damping"), which)
     elif force is not None:
-        which = "allowed is none beside a force, which does not pull through a spring"
+        which = "allowed only without a force"
         refused = dict.fromkeys(("drive_stiffness", "damping"), which)
     elif spring is None:
-        which = "allowed beside {}, for a speed alone moves any body"
-        refused = {"mass": which.format("a force or a drive_stiffness")}
-        refused["damping"] = which.format("a drive_stiffness")
+        refused = {"mass": "allowed only with a force or a drive_stiffness"}
+        refused["damping"] = "allowed only with a drive_stiffness"
     for name, allowed in refused.items():
         if arguments[name] is not None:
             raise InputError(name, arguments[name], allowed)
     if spring is not None and motion.name == "longitudinal" and motion.speed == 0.0:
-        allowed = "allowed is a speed above 0 where a spring pulls a longitudinal motion"
+        allowed = "allowed is a speed above 0 for a longitudinal motion with a spring"
         raise InputError("speed", speed, allowed)
-    found = {
-        name: read_argument(name, arguments[name]) for name in PULLED if arguments[name] is not None
+    quantities = {
+        name: read_argument(name, arguments[name])
+        for name in DRIVE_FIELDS
+        if arguments[name] is not None
     }
-    values = {PULLED[name]: one.si for name, one in found.items()}
-    return RealDrive(**values), {name: one.text for name, one in found.items()}
+    values = {DRIVE_FIELDS[name]: one.si for name, one in quantities.items()}
+    return RealDrive(**values), {name: one.text for name, one in quantities.items()}

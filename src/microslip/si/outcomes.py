@@ -1,11 +1,11 @@
 """Uncertainty of the static limit and probability of each outcome under a force.
 
-The uncertain inputs are independent and normally distributed.  A low-discrepancy sequence draws
-them; the same request always gets the same draws.  Forces and amplitudes of a draw follow from
-those along each input alone, whose logarithms add up: this is exact for power laws, such as those
-of Hertz.  Friction at vanishing speed is a function of the amplitude, solved at a few of them.
+The uncertain inputs are independent and normally distributed.  Their draws are a low-discrepancy
+sequence, so equal requests have equal draws.  Forces and amplitudes are tabulated along each input
+alone, and the changes of their logarithms are added: this is exact for power laws, such as Hertz's
+theory.  The static limit is a function of the amplitude, solved at a few amplitudes.
 
-A draw beyond the physical range is replaced by the closest physical value: a negative amplitude,
+A draw outside the physical range is replaced by the closest physical value: a negative amplitude,
 load, force or coefficient of friction by 0, a Poisson's ratio above 0.5 by 0.5.
 """
 
@@ -29,30 +29,37 @@ from microslip.si.static_curve import static_limits
 from microslip.si.static_limit import equals_static_limit, largest_force
 
 DRAWS = 2**16
-"""Number of draws: their error of a probability is below 1e-3."""
+"""Number of draws.  The error of a probability is below 1e-3."""
 DEVIATIONS = np.linspace(-4.0, 4.0, 17)
-"""Standard deviations from the central value at which the closed forms of a contact are tabulated;
-1 in 16000 draws lies beyond."""
+"""Nodes of the table along one input, in standard deviations from its central value.  One draw in
+16000 is outside."""
 SMALLEST_SHARE = 1e-2
-"""Least value of a positive quantity that is tabulated, over its central value; where 0 is not a
-physical value, smaller draws are replaced by it."""
+"""Smallest tabulated value of a positive quantity, divided by its central value.  Where 0 is not a
+physical value it replaces smaller draws."""
 BISECTIONS = 12
-"""Bisections of the end of the values that predict accepts: to 2**-12 of half a deviation."""
+"""Bisections for the limit of the accepted values, to 2**-12 of half a standard deviation."""
 TOWARDS_ZERO = 2.0
-"""Largest ratio of neighbouring tabulated values between that and the central value: an
-interpolation of logarithms is exact for power laws, and others vary little over a factor of 2."""
+"""Largest ratio of neighbouring nodes below the central value.  The interpolation of logarithms is
+exact for power laws; other functions vary little over a factor of 2."""
 SAME_SHARE = 9
-"""Decimal of a share of the amplitude below which a change is rounding."""
+"""Decimals to which shares of the amplitude are compared; later digits are rounding errors."""
 INTERVAL = 0.025, 0.975
-"""Quantiles of an interval with 95 % probability."""
+"""Quantiles at the ends of a 95 % interval."""
 DEVIATIONS_OF_INTERVAL = 1.959964
-"""Standard deviations from the centre of a normal distribution to the ends of such an interval."""
+"""Half a 95 % interval of a normal distribution, in standard deviations."""
 
 
 @dataclass(frozen=True)
 class UncertainInput:
-    """An argument of predict, as it was given, and one standard deviation below and above it, in
-    SI units."""
+    """An uncertain argument of predict.
+
+    Attributes
+    ----------
+    name, text : str
+        Its name and the text of the user.
+    low, high : float
+        Its value minus and plus one standard deviation, in its SI unit.
+    """
 
     name: str
     text: str
@@ -69,15 +76,27 @@ class UncertainInput:
 
 
 Ends = Mapping[str, tuple[Prediction | None, Prediction | None]]
-"""Predictions one standard deviation below and above, by the names of the inputs."""
+"""Predictions one standard deviation below and above an input, by its name; None: no solution."""
 RequestAt = Callable[[Mapping[str, float]], Request]
-"""request_at(changes) -> Request with some arguments changed."""
+"""request_at(changes) -> Request; changes: values of arguments by name."""
 
 
 @dataclass(frozen=True)
 class _State:
-    """Closed forms of one set of inputs: forces in N, the amplitude as a group, and what else the
-    static limit depends on."""
+    """Closed forms for one set of inputs.
+
+    Attributes
+    ----------
+    still, largest, force : float
+        Friction without vibration, the force from which on the contact runs away, and the
+        prescribed force or None, N.
+    amplitude : float or None
+        Dimensionless amplitude.
+    mu, poisson : float
+        Coefficient of friction and Poisson's ratio, dimensionless.
+    shape : tuple
+        Everything else on which the static limit depends.
+    """
 
     still: float
     largest: float
@@ -89,22 +108,22 @@ class _State:
 
 
 def uncertainty_of_outcomes(
-    found: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
+    prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
 ) -> dict[str, Any]:
     """Columns of the uncertainty of the static limit and of the outcome.
 
-    found: the Prediction for the central values.
+    prediction: the Prediction for the central values.
     """
     request = request_at({})
     if request.sought is not None:
-        return _normal_intervals(found, ends.values())
+        return _normal_intervals(prediction, ends.values())
     share = equals_static_limit(request)
     draws = _draws(len(inputs))
     table = _Table(_state(request), inputs, request_at, draws)
     if table.centre.amplitude is None:
         static = None
     else:
-        static = _static_of(found, request, table, ends, draws)
+        static = _static_of(prediction, request, table, ends, draws)
     fields: dict[str, Any] = {}
     if static is not None:
         value, error = static
@@ -113,7 +132,7 @@ def uncertainty_of_outcomes(
         fields |= _distribution("mu_static", value)
         fields |= _distribution("mu_static_apparent", table.mu * value)
     if share is True:
-        assert static is not None  # as of all that oscillate
+        assert static is not None  # the motion oscillates
         value, error = static
     elif share is not None:
         value, error = np.full(DRAWS, share), np.zeros(DRAWS)
@@ -142,29 +161,39 @@ def uncertainty_of_outcomes(
 
 
 def _error_of_draws(outcome: np.ndarray) -> float:
-    """Error estimate of a probability: the difference of the shares in both halves of the draws,
-    and at least log(DRAWS) / DRAWS, the order of the discrepancy of the sequence."""
+    """Error estimate of a probability; outcome: True for each draw with this outcome.
+
+    It is the difference between the two halves of the draws, and at least log(DRAWS) / DRAWS, the
+    order of the discrepancy of the sequence.
+    """
     halves = [float(np.mean(outcome[first::2])) for first in (0, 1)]
     return max(abs(halves[0] - halves[1]), math.log(DRAWS) / DRAWS)
 
 
+def half_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
+    """Half the difference of a field of two predictions.
+
+    It is infinite where one of them has no value: no solution, or a contact that runs away.
+    """
+    if low is None or high is None:
+        return math.inf
+    half = 0.5 * (getattr(high, name) - getattr(low, name))
+    return math.inf if math.isnan(half) else half
+
+
 def _normal_intervals(
-    found: Prediction, ends: Iterable[tuple[Prediction | None, Prediction | None]]
+    prediction: Prediction, ends: Iterable[tuple[Prediction | None, Prediction | None]]
 ) -> dict[str, Any]:
-    """Fields of the uncertainty where a draw would be a search for an amplitude, a speed or a load:
-    to first order, from half the difference of the predictions at the ends of each input."""
+    """Columns of the uncertainty for the result of a search, to first order in each input.
+
+    Each draw would need a search of its own.
+    """
     fields: dict[str, Any] = {"interval_method": FIRST_ORDER}
     for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
-        value = getattr(found, name + unit)
+        value = getattr(prediction, name + unit)
         if value is None:
             continue
-        halves = [
-            math.inf
-            if low is None or high is None
-            else 0.5 * (getattr(high, name + unit) - getattr(low, name + unit))
-            for low, high in ends
-        ]
-        deviation = math.hypot(*halves)
+        deviation = math.hypot(*(half_difference(*pair, name + unit) for pair in ends))
         fields[f"{name}_spread{unit}"] = deviation
         fields[f"{name}_low{unit}"] = max(0.0, value - DEVIATIONS_OF_INTERVAL * deviation)
         fields[f"{name}_high{unit}"] = value + DEVIATIONS_OF_INTERVAL * deviation
@@ -172,13 +201,13 @@ def _normal_intervals(
 
 
 def _ratio(threshold: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Threshold over force: infinite without a force, and 0 where the threshold is 0, too."""
+    """Threshold divided by force: infinite for a force of 0, and 0 where both are 0."""
     without = np.where(threshold > 0.0, math.inf, 0.0)
     return np.divide(threshold, force, out=without, where=force > 0.0)
 
 
 def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any]:
-    """Standard deviation and interval of a quantity, some draws of which may be infinite."""
+    """Columns of the standard deviation and the 95 % interval; some draws can be infinite."""
     low, high = np.quantile(draws, INTERVAL, method="nearest")
     return {
         f"{name}_spread{unit}": math.inf if np.isinf(draws).any() else float(np.std(draws)),
@@ -188,12 +217,15 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
 
 
 def _draws(count: int) -> np.ndarray:
-    """Independent standard normal numbers, shape (DRAWS, count): a Kronecker sequence whose
-    irrational numbers are powers of the root of x^(count + 1) = x + 1."""
+    """Independent standard normal numbers, shape (DRAWS, count).
+
+    They are a Kronecker sequence.  Its irrational numbers are powers of the root of
+    x^(count + 1) = x + 1.
+    """
     from scipy.special import ndtri
 
     root = 2.0
-    for _ in range(60):  # a contraction by at least 2 in every step
+    for _ in range(60):  # each step reduces the error by at least a factor of 2
         root = (1.0 + root) ** (1.0 / (count + 1.0))
     steps = root ** -np.arange(1.0, count + 1.0)
     return ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
@@ -213,8 +245,15 @@ def _state(request: Request) -> _State:
 
 
 class _Table:
-    """Closed forms at all draws, from those along each input alone: mu, forces in N, the logarithm
-    of the amplitude, Poisson's ratio."""
+    """Closed forms at all draws, interpolated along each input alone.
+
+    Attributes
+    ----------
+    mu, still, largest, amplitude, poisson, force : np.ndarray, shape (DRAWS,)
+        Fields of a _State at each draw; force: None without a prescribed force.
+    one_shape : bool
+        True if every state has the shape of the central one.
+    """
 
     def __init__(
         self,
@@ -255,7 +294,7 @@ class _Table:
 
 
 SMALLEST_LOGARITHM = -700.0
-"""Logarithm of the smallest number near 1e-304; that of 0 is replaced by it."""
+"""Logarithm of a number near 1e-304, used for the logarithm of 0."""
 
 
 def _log(value: float) -> float:
@@ -263,9 +302,9 @@ def _log(value: float) -> float:
 
 
 def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
-    """Logarithms of the size of an input, ascending, and the states there.
+    """Nodes along one input: logarithms of its size, ascending, and the states there.
 
-    Where predict refuses a value, the last one is at the end of the values that it accepts.
+    Where predict does not accept a node, the last node is at the limit of the accepted values.
     """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))
@@ -298,15 +337,11 @@ def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list
 
 
 def _static_of(
-    found: Prediction,
-    request: Request,
-    table: _Table,
-    ends: Ends,
-    draws: np.ndarray,
+    prediction: Prediction, request: Request, table: _Table, ends: Ends, draws: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of all draws and its error."""
-    static, static_error = found.mu_static, found.mu_static_error
-    assert static is not None and static_error is not None  # as of all that oscillate
+    """mu_static of all draws, and its error estimate."""
+    static, static_error = prediction.mu_static, prediction.mu_static_error
+    assert static is not None and static_error is not None  # the motion oscillates
     if not math.isfinite(static):
         return np.full(DRAWS, np.nan), np.full(DRAWS, np.inf)
     if not table.centre.amplitude:

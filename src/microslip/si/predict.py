@@ -1,4 +1,4 @@
-"""How much friction falls in a real contact, and how far to trust that."""
+"""Friction of a vibrated contact in SI units."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from microslip.si.validity import broken_assumptions, unchecked
 
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
-"""The outcome, and the beginning of the solver's reason for it."""
+"""The outcome, and the first words of the solver's reason for it."""
 UNKNOWN_WITHOUT = {
     "amplitude": ("amplitude_si",),
     "speed": ("speed_m_s",),
@@ -44,7 +44,7 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are not known without the sought quantity."""
+"""Fields of a Prediction that are NaN for a search without a solution, by its quantity."""
 
 
 def predict(
@@ -82,115 +82,112 @@ def predict(
     tolerance: object = None,
     power: bool = False,
 ) -> Prediction:
-    """Friction of a sphere on a flat, on a second sphere, or of another contact under vibration.
+    """Friction of a vibrated contact of two bodies, in SI units.
 
-    A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the
-    unit of the SI.  Loads, radii, speeds, forces, mu, young and nu may have a spread, their
-    standard uncertainty: "10 N +- 5 %".  Texts are read strictly: what is not understood to its
-    last character is refused.
+    A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the SI
+    unit.  A text can have a standard uncertainty, "10 N +- 5 %", except for the phase, densities,
+    hardnesses and the reduction.  A text with any other character raises InputError.
 
     Parameters
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere spins to and fro about the
         contact normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore",
-        "normal", or another motion that `microslip.solve` takes, which translates or rotates.
+        "normal", or another translation or rotation of `microslip.solve`.
     radius, load, mu : quantity
-        Radius of the sphere, m; normal force, N; coefficient of friction without vibration.
+        Radius of the sphere, m, normal load, N, and coefficient of friction without vibration.
     speed : quantity
-        Forward speed of sliding, m/s; of the far end of a spring, if there is one.
+        Forward speed of sliding, m/s.  With a spring, the speed of its far end.
     force : quantity
-        Instead of the speed, the constant force that pulls, N: the speed is asked for.
+        Constant forward force, N, in place of the speed.  The answer is the speed.
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
-        The body by the name of a material, or as a microslip.Material.
+        Material of the body: a name, or a microslip.Material.
     counterbody : str, Material or pair of quantities, optional
-        "rigid", a material, or E and nu as in "70 GPa, 0.22" or (70e9, 0.22); rigid if not given.
+        "rigid", a material, or E and nu as in "70 GPa, 0.22" or (70e9, 0.22).  Default: rigid.
     counter_radius : quantity, optional
-        Radius of the counterbody, m, negative if hollow; flat if not given.
+        Radius of the counterbody, m, negative if hollow.  Default: flat.
     radius_across : quantity, optional
-        Another radius of curvature across the forward direction, m: the contact is an ellipse.
+        Radius of curvature across the forward direction, m.  The contact is then an ellipse.
     contact_radius, pressure : quantity, str, optional
-        In place of all radii: half the longer side of a contact that is known, m, and how the load
-        is spread over it, as microslip.solve takes it: "ring:inner=0.5", "file:pad.csv"; "hertz" if
-        not given.
+        In place of all radii, half the longer side of the contact, m, and a pressure of
+        microslip.solve: "ring:inner=0.5", "file:pad.csv".  Default: "hertz".
     amplitude : quantity
-        Half stroke of the oscillation: a length, or for a bore an angle.  For motions that
-        oscillate in several ways it is the half stroke across.
+        Half stroke of the oscillation: a length, or for a bore an angle.  For a motion with several
+        oscillations it is the lateral half stroke.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
-        For motions that oscillate in several ways: half strokes along, m, in spin, rad, and of the
-        load, N; and a phase, rad.  These follow sin(omega t + phase): the forward motion of
-        elliptic, the rotation of transverse-bore, and all of normal except its load.  All others
-        follow sin(omega t).
+        For a motion with several oscillations, half strokes forward, m, in spin, rad, and of the
+        load, N, and a phase, rad.  The forward oscillation of elliptic, the rotation of
+        transverse-bore, and the motion of normal follow sin(omega t + phase).  The others follow
+        sin(omega t).
     frequency : quantity
-        Frequency of the oscillation: cyclic (Hz, cps), or angular (rad/s, deg/s, rpm, turn/s),
-        which is converted, 2 pi rad/s being 1 Hz.  A number is in Hz.
+        Frequency of the oscillation: cyclic (Hz, cps) or angular (rad/s, deg/s, rpm, turn/s).  A
+        number is in Hz.
     rotation : quantity
-        Angular speed of a continuous bore, in the same units.  A number is in rad/s.
+        Angular speed of a continuous bore, in the units of a frequency.  A number is in rad/s.
     reduction : quantity, optional
-        Instead of the amplitude, the speed or the load, the share of friction to be taken away, 0
-        to 1 or in per cent: the least amplitude, the largest speed or the largest load at which
-        vibration does it is looked for.  A speed alone pulls then.
+        Requested reduction of friction, 0 to 1 or in per cent, in place of the amplitude, the speed
+        or the load.  The answer is the least amplitude, the largest speed or the largest load with
+        this reduction.  Not allowed with a force or a spring.
     drive_stiffness, mass, damping : quantity, optional
-        Stiffness of a spring that pulls the body at the speed, N/m, mass of the body, kg, and
-        damping of a dashpot on it, N s/m.  A mass is also allowed under a force.
+        Stiffness of a spring between the drive and the body, N/m, mass of the body, kg, and damping
+        of a dashpot beside the spring, N s/m.  A mass is also allowed under a force.
     contacts : str, optional
-        The contacts of a body that rests on several equal ones, as for microslip.solve:
-        "phase=0;phase=180".  `load` is the sum over all contacts, divided in proportion to the
-        `load` of each; force, drive_stiffness, mass and damping are those of the body; amplitudes
-        are those of a contact whose `amplitude` is 1.  Results for a single contact refer to one
-        that carries the mean load, and warnings to the one that carries most.
+        Contacts of a body on several equal contacts, as for microslip.solve: "phase=0;phase=180".
+        `load` is the sum over all contacts, divided in proportion to the `load` of each.  force,
+        drive_stiffness, mass and damping are those of the body.  Amplitudes are those of a contact
+        whose `amplitude` is 1.  Results for a single contact belong to one with the mean load,
+        warnings to the one with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Hardness and density of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and
-        kg/m^3.  Only the warnings use them.
+        Hardness, Pa or as in "700 HV" and "60 HRC", and density, kg/m^3, of the body and of the
+        counterbody.  They serve for warnings only.
     tolerance : quantity
-        Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
-        relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
-        that of the motion) where it is slower.
+        Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, the
+        largest relative error of the speed, default 1e-2; below a thousandth of the unit of speed
+        (omega u_lim, or that of the motion), it is relative to this thousandth.
     power : bool
-        Whether to ask the solver, too, what it takes to vibrate the contact.
+        True to also compute the power of the oscillation.
 
     Returns
     -------
     Prediction
-        With what was understood, what was found, and where the theory breaks.
+        The request in words, the answer, and warnings where the theory does not apply.
 
     Raises
     ------
     InputError
-        A ValueError that names the argument, its value as it was given, and what is allowed: for
-        what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
-        is half as wide as one of them, and where no amplitude takes that much friction away.
+        A ValueError with the argument, its value and what is allowed: for an input that is missing,
+        ambiguous or out of range, for a contact radius above half the radius of a body, and for a
+        reduction without a solution.
     """
-    arguments = dict(locals())  # all arguments, and nothing else yet
+    arguments = dict(locals())  # the arguments and nothing else
     return predict_arguments(arguments.pop("motion"), arguments)
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
 NOTHING["power"] = False
-"""Arguments of predict besides the motion, each missing."""
+"""Arguments of predict except the motion, with their defaults."""
 
 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for arguments of predict by their names, with its uncertainty if some are
-    uncertain."""
+    """The Prediction for arguments of predict by name, with the uncertainty of uncertain inputs."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
-    found = answer_request(request_of(motion, plain))
+    prediction = answer_request(request_of(motion, plain))
     if not uncertain:
-        return found
-    return with_uncertainty(found, motion, plain, uncertain, answer_request)
+        return prediction
+    return with_uncertainty(prediction, motion, plain, uncertain, answer_request)
 
 
 def answer_request(request: Request) -> Prediction:
-    """The Prediction of a request whose inputs are exact."""
+    """The Prediction for exact inputs."""
     parts: dict[str, Any] = {}
     if request.sought is not None:
-        found, error = reduce_friction(request)
+        solution, error = reduce_friction(request)
         parts["search"] = Search(request.sought, error)
-        load = found.contact.load
-        request = found if request.sought != "load" else request.under(load)
-    request.refuse_out_of_range()
+        load = solution.contact.load
+        request = solution if request.sought != "load" else request.under(load)
+    request.check_range()
     limit = static_limit(request)
     threshold = force_threshold(request, limit)
     answer = answer_of(request, limit, threshold)
@@ -223,8 +220,8 @@ def answer_request(request: Request) -> Prediction:
 
 
 def without_solution(request: Request, reason: str) -> Prediction:
-    """The Prediction where nothing has the wanted reduction: NaN for what would follow from it."""
-    assert request.sought is not None  # as of every request with a reduction
+    """The Prediction for a search without a solution: NaN for all that depends on it."""
+    assert request.sought is not None  # the request has a reduction
     nothing: dict[str, Any] = {"motion": request.motion.name, "pressure": request.contact.pressure}
     nothing |= {"model": "none", "reason": reason, "amplitude": math.nan, "poisson": math.nan}
     answer = Result.from_dict(nothing)
@@ -234,7 +231,7 @@ def without_solution(request: Request, reason: str) -> Prediction:
 
 
 def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
-    """Fields of a quantity and of its error; unit: its unit in the SI, si: the name of that."""
+    """Fields of a quantity and of its error; unit: factor to SI units, si: end of their names."""
     value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
     return {f"{name}{si}": value, f"{name}_error{si}": error}
 
@@ -288,7 +285,7 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     groups = {name: one for name, one in request.drive_groups.items() if name != "force"}
     if groups:
         drive, spring = request.drive, Spring(**{"stiffness": 0.0} | groups)
-        assert answer.amplitude is not None  # as of all that oscillate
+        assert answer.amplitude is not None  # the motion oscillates
         widest = answer.amplitude * max(request.carriers.widest, 1.0)
         fields["body"] = DrivenBody(
             drive_stiffness_N_m=drive.stiffness,
@@ -306,7 +303,7 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
 def _under_force(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
     """Fields of a Prediction under a force."""
     force, unit, motion = request.drive.force, request.speed_unit, request.motion
-    assert force is not None  # as of every request under a force
+    assert force is not None  # the request has a force
     velocity, error = answer.mean_velocity.value, answer.mean_velocity.error
     speed, speed_error = velocity * unit, error * unit if unit else 0.0
     group = request.drive_groups["force"]
@@ -319,7 +316,7 @@ def _under_force(request: Request, answer: Result, threshold: Estimate | None) -
         fields["displacement_per_cycle_m"] = speed / motion.rate
         fields["displacement_per_cycle_error_m"] = speed_error / motion.rate
     if fields["outcome"] == "moves":
-        share = error / (velocity - error)  # largest relative error of what is over the velocity
+        share = error / (velocity - error)  # largest relative error of a time
         times = [way / speed for way in (MILLIMETRE, request.contact.contact_radius)]
         fields["travel"] = Travel(times[0], times[0] * share, times[1], times[1] * share)
     return fields
@@ -337,8 +334,10 @@ def _outcome(force: float, answer: Result) -> str | None:
 
 
 def _way_to_rest(request: Request) -> dict[str, Any]:
-    """Fields of the displacement of a contact that comes to rest, or of the reason why it is not
-    known.  A contact that is not round would take minutes."""
+    """Fields of the displacement of a contact that comes to rest, or the reason for its absence.
+
+    A contact that is not round would take minutes.
+    """
     contact, drive = request.contact, request.drive_groups
     if set(drive) != {"force"} or request.carriers.text is not None:
         return {"displacement_reason": "computed for one contact without mass only"}
@@ -346,13 +345,13 @@ def _way_to_rest(request: Request) -> dict[str, Any]:
         return {"displacement_reason": "computed for a round contact only"}
     point = request.solver_motion, request.groups[1], drive["force"]
     try:
-        found = shakedown(*point, **request.settings)
+        rest = shakedown(*point, **request.settings)
     except InputError as error:  # a motion that exerts a forward force by itself
         return {"displacement_reason": error.allowed}
-    if not found.converged:
-        return {"displacement_reason": found.reason}
+    if not rest.converged:
+        return {"displacement_reason": rest.reason}
     return {
-        "displacement_m": found.displacement * contact.u_lim,
-        "displacement_error_m": found.displacement_error * contact.u_lim,
-        "cycles_to_rest": found.most_after,
+        "displacement_m": rest.displacement * contact.u_lim,
+        "displacement_error_m": rest.displacement_error * contact.u_lim,
+        "cycles_to_rest": rest.most_after,
     }

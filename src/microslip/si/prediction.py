@@ -1,8 +1,8 @@
-"""The answer for a real contact: one record for each question, with a common part.
+"""Predictions for real contacts: one record for each question, with a common part.
 
-A contact at a speed is a `Sliding` one, or a `SteadySpin` where nothing oscillates.  Under a force
-it is at `Rest`, or it is a `Drift` or a `SpinDrift`.  `Prediction.to_dict` writes every record as
-one row with the same columns, those of JSON and of tables.
+The record of a contact at a speed is `Sliding`, or `SteadySpin` without an oscillation.  Under a
+force it is `Rest`, `Drift` or `SpinDrift`.  `Prediction.to_dict` returns the columns of JSON and of
+tables, which are equal for all records.
 """
 
 from __future__ import annotations
@@ -36,42 +36,42 @@ _NAMES = """
     probability_runs_away probability_error
 """
 COLUMNS = tuple(_NAMES.split())
-"""Columns of JSON and of tables, in their order."""
+"""Columns of JSON and of tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
-"""Values of the columns that a record does not have."""
+"""Values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "uncertainty")
-"""Fields of records that have columns of their own."""
+"""Fields that are records with columns of their own."""
 
 UNITS = {
     **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
     "_s": "s",
 }
-"""Ends of names of columns, and the units that they stand for; the first that fits counts."""
+"""Units by the end of the name of a column; the first matching end counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
 def unit_of(column: str) -> str:
-    """SI unit of a column by its name, "1" without one; an error has the unit of its quantity."""
+    """SI unit of a column, "1" if it is dimensionless."""
     ends = (unit for end, unit in UNITS.items() if column.endswith(end))
     return OTHER_UNITS.get(column) or next(ends, "1")
 
 
 @dataclass(frozen=True)
 class DrivenBody:
-    """A body that a spring pulls, or that has a mass.
+    """A body on a spring, or with a mass.
 
     Attributes
     ----------
     drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        Stiffness of the spring, N/m, mass, kg, and damping, N s/m; None for a part that is missing.
+        Stiffness of the spring, N/m, mass, kg, and damping, N s/m; None for a missing part.
     stiffness, mass, damping : float or None
-        The same as dimensionless groups, as for microslip.solve.
+        Dimensionless stiffness, mass and damping of microslip.solve.
     regime : str
         A key of regimes.REGIMES.
     natural_frequency : float or None
-        Natural frequency of the mass on its spring and the sticking contact, over the frequency of
-        the oscillation; None without a mass.
+        Natural frequency of the mass on the spring and the sticking contact, divided by the
+        frequency of the oscillation; None without a mass.
     """
 
     drive_stiffness_N_m: float | None
@@ -86,7 +86,7 @@ class DrivenBody:
 
 @dataclass(frozen=True)
 class Travel:
-    """Times in which a contact that a force moves goes 1 mm, and one contact radius, s."""
+    """Times to travel 1 mm and one contact radius under a force, and their error estimates, s."""
 
     time_to_1_mm_s: float
     time_to_1_mm_error_s: float
@@ -96,14 +96,14 @@ class Travel:
 
 @dataclass(frozen=True)
 class Search:
-    """The quantity at which vibration takes the requested share of friction away.
+    """A search for the quantity with the requested reduction of friction.
 
     Attributes
     ----------
     sought : str
         "amplitude", "speed" or "load".
     sought_error : float
-        Its error estimate, in its SI unit.
+        Error estimate of the quantity, in its SI unit.
     """
 
     sought: str
@@ -112,18 +112,18 @@ class Search:
 
 @dataclass(frozen=True)
 class Power:
-    """Mean power of the oscillation, or of the spin, and the energy that friction turns into heat.
+    """Mean power of the oscillation or of the spin, and the dissipated energy.
 
     Attributes
     ----------
     vibration_power_W, vibration_power_error_W : float
-        Mean work of the oscillation, or of the spin, in a second, W.
+        Mean power of the oscillation or of the spin, W.
     vibration_power_reason : str or None
-        Why its error is above the tolerance, else empty; None for a closed form.
+        Why the error is above the tolerance, else empty; None for a closed form.
     dissipated_power_W, dissipated_power_error_W : float
-        Work of the oscillation and of the drag in a second, W.
+        Mean power of the oscillation and of the drag together, W.
     energy_per_cycle_J, energy_per_cycle_error_J : float
-        The same in a period, or in a turn, J.
+        Energy that friction dissipates in a period or in a turn, J.
     """
 
     vibration_power_W: float
@@ -137,63 +137,63 @@ class Power:
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """Friction of a vibrated contact in SI units: the part that all questions share.
+    """Friction of a vibrated contact in SI units: the part common to all questions.
 
-    Every column is an attribute; it is None where the record does not have it.
+    Every column is an attribute; a missing column is None.
 
     Attributes
     ----------
     understood : dict of str
-        The request by the names of its arguments, as it was given, with the value in the SI behind
-        it where that is another kind of measure ("1200 rpm = 20 Hz").  Not compared by ==.
+        The arguments in the words of the user, by name.  The SI value follows if the unit is of
+        another kind ("1200 rpm = 20 Hz").  Not compared by ==.
     motion, pressure : str
-        The motion, and how the load is spread, as microslip.solve takes it.
+        The motion, and the pressure as for microslip.solve.
     contacts : str or None
-        The contacts that carry the body, as microslip.solve writes them; None for a single one.
-        For several contacts, forces and powers are those of the body, and sizes and groups those of
-        a contact with the mean load.
+        The contacts of the body as for microslip.solve; None for a single one.  For several
+        contacts, forces and powers are those of the body; sizes and dimensionless groups are those
+        of a contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
-        Hertz's contact.
+        Contact radius and indentation, m, and largest pressure, Pa.
     u_lim_m : float
         Displacement at which the whole contact slides, m.
     poisson : float
-        Poisson's ratio of the half-space that is equivalent to both bodies, dimensionless.
+        Poisson's ratio of the half-space equivalent to both bodies, dimensionless.
     load_N : float
         Normal force, N.
     speed_m_s : float
-        Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
+        Forward speed, m/s.  Under a force it is the mean speed, NaN for a contact that runs away.
     velocity : float or None
-        The speed as a dimensionless group; None for a bore of amplitude 0.
+        Dimensionless speed; None for a bore of amplitude 0.
     mu_macro, mu_macro_error : float
-        A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
+        Mean forward force with vibration divided by the force without, mu F_z; dimensionless.
     mu_apparent, mu_apparent_error : float
-        A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
+        Coefficient of friction with vibration, mu mu_macro; dimensionless.
     friction_force_N, friction_force_error_N, friction_force_still_N : float
-        Mean forward force with vibration, its error estimate, and the force without vibration, N,
-        under the same mean load: that of the oscillating load where it parts the bodies.
+        Mean forward force with vibration, its error estimate, and the force without vibration, N.
+        Both forces belong to the same mean load.
     force_reduction : float
         1 - mu_macro, dimensionless; its error estimate is mu_macro_error.
     force_threshold_N, force_threshold_error_N : float or None
-        Constant force from which on the contact moves, N; None where it is not known.
+        Smallest constant force that moves the contact, N; None if it is unknown.
     drag_power_W, drag_power_error_W : float or None
-        Mean work of the forward force in a second, W; None where the answer is not converged.
+        Mean power of the forward force, W; None if the answer is not converged.
     model : str
-        Contact model that gave mu_macro, or "closed-form".
+        Contact model, or "closed-form".
     converged, reason : bool, str
-        Whether the error of the requested quantity is within the tolerance, and why not: of
+        True if the error estimate is at most the tolerance, else the reason.  It is the error of
         mu_macro, or of the speed under a force, and of vibration_power_W if it was requested.
     warnings : tuple of str
-        Where an assumption of the theory breaks.
+        Assumptions of the theory that the contact violates.
     not_checked : tuple of str
-        Checks that were not possible, and why.
+        Checks that need a missing property.
     power : Power or None
-        Power of the oscillation where it was requested, or of the spin.
+        Power of the spin, or power of the oscillation if it was requested.
     uncertainty : mapping
-        Standard uncertainties and 95 % intervals that follow from uncertain inputs, and the
-        probability of each outcome, by their columns: NAME_spread, NAME_low and NAME_high,
-        `interval_method` ("quantiles" of draws, or "first order"), `probability_stays`,
-        `probability_moves`, `probability_runs_away` and `probability_error`.  A spread is infinite
-        where inputs within their uncertainty have no answer.  Empty where every input is exact.
+        Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
+        inputs, by column: NAME_spread, NAME_low and NAME_high, `interval_method` ("quantiles" of
+        draws, or "first order"), `probability_stays`, `probability_moves`, `probability_runs_away`
+        and `probability_error`.  A standard uncertainty is infinite if inputs within their
+        uncertainty have no answer.  Empty if every input is exact.
     """
 
     understood: dict = field(compare=False)
@@ -230,7 +230,7 @@ class Prediction:
 
     @property
     def counterbody(self) -> str:
-        """The body opposite, as in `understood`."""
+        """The counterbody in words."""
         return self.understood["counterbody"]
 
     def to_dict(self) -> dict[str, Any]:
@@ -254,28 +254,29 @@ class Prediction:
 
 @dataclass(frozen=True, kw_only=True)
 class Oscillating(Prediction):
-    """The part that all motions share that oscillate.
+    """The part common to all motions that oscillate.
 
     Attributes
     ----------
     amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None where only other parts oscillate.
+        Half stroke of the oscillation, m, or rad for a bore; None if only other components
+        oscillate.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
-        Further half strokes, and a phase, of motions that oscillate in several ways.
+        Further half strokes, and the phase, of a motion with several oscillations.
     frequency_Hz : float
         Cyclic frequency of the oscillation, Hz.
     amplitude : float
-        The largest half stroke as a dimensionless group.
+        The largest dimensionless half stroke.
     mu_static, mu_static_error : float
-        A ratio: mu_macro in the limit of vanishing speed.
+        mu_macro in the limit of vanishing speed, dimensionless.
     mu_static_apparent, mu_static_apparent_error : float
-        The coefficient of friction there, mu mu_static.
+        Coefficient of friction in this limit, mu mu_static; dimensionless.
     mu_static_reason : str
-        Why mu_static is not within its tolerance; else empty.
+        Why the error of mu_static is above its tolerance; else empty.
     displacement_per_cycle_m, displacement_per_cycle_error_m : float
         Mean forward displacement in a period of the oscillation, m.
     body : DrivenBody or None
-        The body, where a spring pulls it or it has a mass.
+        The body, if it is on a spring or has a mass.
     """
 
     amplitude_si: float | None
@@ -297,13 +298,13 @@ class Oscillating(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Sliding(Oscillating):
-    """Friction at a speed, with `search` where an amplitude, a speed or a load was looked for."""
+    """Friction at a speed; `search` is set for a requested reduction."""
 
     search: Search | None = None
 
     @property
     def sought_value(self) -> float | None:
-        """The sought quantity in its SI unit; NaN without a solution, None without a search."""
+        """The result of a search in its SI unit; NaN without a solution, None without a search."""
         values = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
         return None if self.search is None else values[self.search.sought]
 
@@ -317,7 +318,7 @@ class SteadySpin(Prediction):
     rotation_rad_s : float
         Angular speed, rad/s.
     torque_N_m, torque_error_N_m : float or None
-        Torque that it takes, N m; None where the answer is not converged.
+        Torque of the spin, N m; None if the answer is not converged.
     """
 
     rotation_rad_s: float | None
@@ -327,21 +328,21 @@ class SteadySpin(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Forced(Prediction):
-    """The part that all contacts under a constant force share.
+    """The part common to all contacts under a constant force.
 
     Attributes
     ----------
     force_N, force : float
-        The force, N, and as a dimensionless group.
+        The force, N, and the dimensionless force.
     outcome : str or None
-        "moves", "stays", "runs away", or "undecided" where the error does not tell whether it
-        moves; None where the solver has no answer.
+        "moves", "stays" or "runs away"; "undecided" if the speed is below its error estimate; None
+        if the solver failed.
     speed_error_m_s, velocity_error : float
-        Error estimates of speed and velocity.
+        Error estimates of speed_m_s and velocity.
     safety_factor, safety_factor_error : float or None
-        Threshold over the force; None where the threshold is not known.
+        Force threshold divided by the force; None if the threshold is unknown.
     travel : Travel or None
-        Of a contact that moves.
+        Times of a contact that moves; else None.
     """
 
     force_N: float
@@ -356,21 +357,21 @@ class Forced(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Forced, Oscillating):
-    """A contact under a force that moves it, or may move it."""
+    """A contact that moves under a force, or can move within the error."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rest(Forced, Oscillating):
-    """A contact that stays under a force.
+    """A contact that comes to rest under a force.
 
     Attributes
     ----------
     displacement_m, displacement_error_m : float or None
-        How far it goes forward before it stands, m; None where it has a mass or is not round.
+        Forward displacement until it rests, m; None for a contact with a mass or not round.
     cycles_to_rest : float or None
-        Periods after which nine tenths of the displacement by the vibration are over.
+        Periods until nine tenths of the displacement by the vibration.
     displacement_reason : str
-        Why the displacement is not known; else empty.
+        Why the displacement is unknown; else empty.
     """
 
     displacement_m: float | None = None
@@ -386,12 +387,12 @@ class SpinDrift(Forced, SteadySpin):
 
 @dataclass(frozen=True)
 class NoPrediction:
-    """A case of a table that cannot be answered.
+    """A case of a table without a prediction.
 
     Attributes
     ----------
     error : InputError or str
-        What is wrong with it.
+        The cause.
     """
 
     error: InputError | str

@@ -1,4 +1,4 @@
-"""Units and lines of the answers about real contacts."""
+"""Units and lines of printed predictions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from microslip.foundation.number_text import error_text, number_text
 
 WIDTH = 18
-"""Columns of the name in front of a line."""
+"""Width of the name at the start of a line, in characters."""
 PREFIXES = (
     ("G", 1e9),
     ("M", 1e6),
@@ -22,34 +22,34 @@ PREFIXES = (
 )
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
-"""Smallest number that u_lim may be in the unit of all lengths of an answer: the contact radius,
-which is some hundred times larger, is then a number from 1 to a few thousands."""
+"""Smallest value of u_lim in the unit of all lengths of an answer.  The contact radius is some
+hundred times larger, so its value is between 1 and a few thousands."""
 NEWTONS = 1e-2, 1e4
-"""Forces between which the unit is N, without a prefix."""
+"""Range of forces whose unit has no prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (
-    "u_lim and the contact radius are those of the load without oscillation (the reference load); "
-    "forces and powers follow from mu times the mean load"
+    "u_lim and the contact radius belong to the load without oscillation (the reference load); "
+    "forces and powers belong to mu times the mean load"
 )
-"""Sentence beside a propulsion line where the normal load oscillates."""
+"""Remark on a propulsion line for an oscillating normal load."""
 QUANTILES, FIRST_ORDER = "quantiles", "first order"
-"""How an interval follows from the uncertain inputs: of draws, whose static friction is solved for,
-or of a static friction that is linear in each input."""
+"""Methods for an interval: quantiles of draws with a solved static friction, or a static friction
+that is linear in each input."""
 EXCLUDED = 1e-3
-"""Probability below which an outcome is as good as excluded."""
+"""Probability below which an outcome counts as excluded."""
 
 
 def line(title: str, text: str) -> str:
-    """A line of the answer."""
+    """A line with its title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 
 def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float]:
-    """The largest of some units, (name, size), in which a value is at least `least`."""
+    """The largest of `units`, (name, size), in which a value is at least `least`."""
     return next((one for one in units if abs(value) >= least * one[1]), units[-1])
 
 
 def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
-    """The unit with a prefix in which a value is at least `least`, or without one for 0."""
+    """The unit with the largest prefix in which a value is at least `least`; without one for 0."""
     prefix, size = unit_for(value or 1.0, PREFIXES, least)
     return f"{prefix}{base}", size
 
@@ -62,9 +62,9 @@ def force_unit(newtons: float) -> tuple[str, float]:
 
 
 def probability_text(chance: float, error: float) -> str:
-    """A probability in percent with its error; a bound where it is close to 0 or 1.
+    """A probability in percent with its error, or a bound if it is close to 0 or 1.
 
-    It is close if its distance is below EXCLUDED or its error; the bound includes the error.
+    Close means a distance below EXCLUDED or below the error.  The bound includes the error.
     """
     distance = min(chance, 1.0 - chance)
     if distance >= max(EXCLUDED, error):
@@ -74,7 +74,7 @@ def probability_text(chance: float, error: float) -> str:
 
 
 def in_unit(value: float, error: float, unit: tuple[str, float]) -> str:
-    """A quantity and its error, both in SI units, in a unit (name, size)."""
+    """Text of a quantity and its error, both in SI units, in the unit (name, size)."""
     name, size = unit
     return number_text(value / size, error / size, name)
 
@@ -84,23 +84,23 @@ def length_unit(u_lim: float) -> tuple[str, float]:
     return unit_for(u_lim, LENGTHS, LEAST_LENGTH)
 
 
-def not_converged(found: Any) -> list[str]:
-    """Lines for every quantity whose error is larger than its tolerance."""
+def not_converged(prediction: Any) -> list[str]:
+    """Lines for all quantities whose error estimate is above its tolerance."""
     lines = []
-    if not found.converged and found.outcome != "runs away":
-        name = "mu_macro" if found.force_N is None else "speed"
-        reason = found.vibration_power_reason
-        name = "vibration power" if reason else found.sought or name
-        lines.append(f"NOT CONVERGED: {name}: {reason or found.reason}")
-    if found.mu_static_reason:
-        lines.append(f"NOT CONVERGED: static friction: {found.mu_static_reason}")
+    if not prediction.converged and prediction.outcome != "runs away":
+        name = "mu_macro" if prediction.force_N is None else "speed"
+        reason = prediction.vibration_power_reason
+        name = "vibration power" if reason else prediction.sought or name
+        lines.append(f"NOT CONVERGED: {name}: {reason or prediction.reason}")
+    if prediction.mu_static_reason:
+        lines.append(f"NOT CONVERGED: static friction: {prediction.mu_static_reason}")
     return lines
 
 
-def runs_away(found: Any) -> str:
-    """Sentence about a contact that accelerates without end."""
-    if found.force < 1.0:
-        return f"it {found.reason}"
-    unit = force_unit(found.friction_force_still_N)
-    still = in_unit(found.friction_force_still_N, 0.0, unit)
-    return f"it runs away: friction holds no more than {still}, mu times the load"
+def runs_away(prediction: Any) -> str:
+    """Sentence about a contact that accelerates without limit."""
+    if prediction.force < 1.0:
+        return f"it {prediction.reason}"
+    unit = force_unit(prediction.friction_force_still_N)
+    still = in_unit(prediction.friction_force_still_N, 0.0, unit)
+    return f"it runs away: friction holds at most {still}, mu times the load"

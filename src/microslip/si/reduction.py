@@ -1,4 +1,4 @@
-"""The amplitude, the speed or the load at which vibration takes a share of friction away."""
+"""Search for the amplitude, the speed or the load with a prescribed reduction of friction."""
 
 from __future__ import annotations
 
@@ -12,31 +12,42 @@ from microslip.si.dimensionless import groups
 from microslip.si.request import Request
 
 LARGEST_AMPLITUDE = 1e4
-"""Largest dimensionless amplitude that is tried."""
+"""Largest dimensionless amplitude of the search."""
 SMALLEST_AMPLITUDE = 1e-6
-"""Smallest dimensionless amplitude that is tried."""
+"""Smallest dimensionless amplitude of the search."""
 SPEEDS = 1e-9, 1e6
-"""Smallest and largest dimensionless velocity that is tried, over 1 and the amplitude."""
+"""Smallest and largest velocity of the search; a rigid contact divides it by the amplitude."""
 STRIDE = 0.05
-"""Step in the logarithm of the sought quantity for the slope of friction."""
+"""Step of the finite difference for the slope of friction, in the logarithm of the quantity."""
 
 
 class NotAttainedError(InputError):
-    """No contact, or every one, has so much of its friction taken away: known by solving alone."""
+    """The requested reduction is outside the range of the search; only a solve can show this."""
 
 
 class _NoAnswerError(Exception):
-    """The solver has no number at an amplitude; its reason is found again there."""
+    """The solver has no result at a place of the search."""
 
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of requests along which friction falls.
+    """A line of requests along which friction decreases; a place on it is a real number.
 
-    at: the request at a place of it; low, start, high: the place to begin from, where one beyond
-    the wanted one is first looked for, and where no longer; size: the sought quantity at a place,
-    in the SI; every, none: in words, the end that takes too much away, and all places; end: where
-    friction is least, if that is known; rate: derivative of the logarithm of the size by the place.
+    Attributes
+    ----------
+    at : callable
+        at(place) -> Request.
+    low, start, high : float
+        First place of the search, first candidate for its upper bound, and last place.
+    size : callable
+        size(place) -> the quantity at this place, in its SI unit.
+    every, none : str
+        Subjects of the messages for a reduction that is too large at `low`, and too small
+        everywhere.
+    end : float or None
+        Place with the least friction; None if it is unknown.
+    rate : float
+        Derivative of the logarithm of the size with respect to the place.
     """
 
     at: Callable[[float], Request]
@@ -51,98 +62,103 @@ class _Line:
 
 
 def reduce_friction(request: Request) -> tuple[Request, float]:
-    """The request with the least amplitude, the largest speed or the largest load at which
-    vibration takes the wanted share of friction away, and the error of that quantity in its SI
-    unit.
+    """Search for the least amplitude, the largest speed or the largest load with a reduction.
 
-    Where the solver has no answer on the way, the request that it has none for, with the error NaN.
+    Returns
+    -------
+    tuple of Request and float
+        The request with this quantity, and the error estimate of the quantity in its SI unit.  If
+        the solver fails, the request at which it failed, and NaN.
 
     Raises
     ------
     NotAttainedError
-        Where none, or every one, takes that much friction away.
+        If the reduction is smaller, or larger, in the whole range of the search.
     InputError
-        For a share that cannot be looked for.
+        For a reduction that no search can determine.
     """
     from scipy.optimize import brentq
 
     share, tolerance = request.share, request.tolerance
     reduction = request.arguments["reduction"]
-    assert share is not None and request.sought is not None  # as of every request with a reduction
-    _refuse_share(request, share)
+    assert share is not None and request.sought is not None  # the request has a reduction
+    _check_share(request, share)
     line = _LINES[request.sought](request, share)
-    last, error, seen = request, 0.0, []
+    last, error, reductions = request, 0.0, []
 
-    def missing(place: float) -> float:
+    def excess(place: float) -> float:
+        """mu_macro minus the requested one."""
         nonlocal last, error
         last = line.at(place)
         answer = last.solve(last.groups[0], tolerance)
-        found, error = answer.mu_macro, answer.mu_macro_error
-        if not math.isfinite(found):
+        friction, error = answer.mu_macro, answer.mu_macro_error
+        if not math.isfinite(friction):
             raise _NoAnswerError
-        if last.motion.speed == 0.0 and found <= error:
-            found = 0.0  # of static friction nothing is left, which no run says to the last digit
-        seen.append((100.0 * (1.0 - found), 100.0 * error))
-        return found - (1.0 - share)
+        if last.motion.speed == 0.0 and friction <= error:
+            friction = 0.0  # the whole contact slides; the remaining digits are errors
+        reductions.append((100.0 * (1.0 - friction), 100.0 * error))
+        return friction - (1.0 - share)
 
     try:
-        if missing(line.low) < 0.0:
-            problem = f"{line.every} takes more away: {number_text(*min(seen))} %"
+        if excess(line.low) < 0.0:
+            problem = f"{line.every} reduces friction by more: {number_text(*min(reductions))} %"
             raise NotAttainedError("reduction", reduction, problem)
         high = line.start
-        if line.end is not None and missing(line.end) > 0.0:
+        if line.end is not None and excess(line.end) > 0.0:
             high = math.inf
-        while high > line.high or missing(high) > 0.0:
+        while high > line.high or excess(high) > 0.0:
             if high >= line.high:
-                problem = f"{line.none} takes more than {number_text(*max(seen))} % away"
+                problem = (
+                    f"{line.none} reduces friction by more than {number_text(*max(reductions))} %"
+                )
                 raise NotAttainedError("reduction", reduction, problem)
             high = min(high + math.log(2.0), line.high)
-        place = brentq(missing, line.low, high, xtol=0.1 * tolerance)
-        here = missing(place)
+        place = brentq(excess, line.low, high, xtol=0.1 * tolerance)
+        here = excess(place)
         error_here = error
-        slopes = [missing(place - STRIDE) - here, here - missing(place + STRIDE)]
+        slopes = [excess(place - STRIDE) - here, here - excess(place + STRIDE)]
     except _NoAnswerError:
         return last, math.nan
     steep = [slope / STRIDE for slope in slopes if slope > 0.0]
-    wrong = (abs(here) + error_here) / min(steep) if steep else math.inf
-    return line.at(place), line.rate * line.size(place) * wrong
+    place_error = (abs(here) + error_here) / min(steep) if steep else math.inf
+    return line.at(place), line.rate * line.size(place) * place_error
 
 
-def _refuse_share(request: Request, share: float) -> None:
-    """Raise InputError for a share that no solve can find."""
+def _check_share(request: Request, share: float) -> None:
+    """Raise InputError for a reduction that no search can determine."""
     allowed, motion, tolerance = "", request.motion, request.tolerance
     if share < tolerance:
         allowed = f"allowed is at least the tolerance, {tolerance:g}"
     elif motion.spins and share == 1.0:
-        allowed = "allowed is less than all of it: the centre of a contact that turns always sticks"
+        allowed = "allowed is less than 100 %: the centre of a contact that spins always sticks"
     elif request.sought != "speed" and motion.speed and share > 1.0 - tolerance:
-        allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % less the tolerance"
-        allowed += ": at a speed some friction is left"
+        allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
+        allowed += ": at a speed some friction remains"
     if allowed:
         raise InputError("reduction", request.arguments["reduction"], allowed)
 
 
 def _amplitudes(request: Request, _share: float) -> _Line:
-    """Places are logarithms of amplitudes."""
+    """The line of amplitudes; a place is the logarithm of the dimensionless amplitude."""
     contact = request.contact
     unit = contact.u_lim / (contact.contact_radius if request.motion.spins else 1.0)
-    slides = "the one that lets the contact slide"
+    slides = "the amplitude at which the whole contact slides"
     return _Line(
         lambda place: request.at(amplitude=unit * math.exp(place)),
         math.log(SMALLEST_AMPLITUDE),
         0.0,
         math.log(LARGEST_AMPLITUDE),
         lambda place: unit * math.exp(place),
-        f"the smallest amplitude tried, {SMALLEST_AMPLITUDE:g} times {slides}, at this speed",
+        f"the smallest amplitude of the search, {SMALLEST_AMPLITUDE:g} times {slides},",
         f"no amplitude up to {LARGEST_AMPLITUDE:g} times {slides}",
     )
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """Places are logarithms of speeds, the fastest first."""
+    """The line of speeds, the fastest first; a place is minus the logarithm of the speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
-        unit *= max(1.0, size)  # a rigid contact compares the speed with that of the vibration
+        unit *= max(1.0, size)  # for a rigid contact the speed of the vibration
     slowest, fastest = SPEEDS
     return _Line(
         lambda place: request.at(speed=unit * math.exp(-place)),
@@ -150,19 +166,22 @@ def _speeds(request: Request, _share: float) -> _Line:
         0.0,
         -math.log(slowest),
         lambda place: unit * math.exp(-place),
-        f"the largest speed tried, {fastest * unit:.2g} m/s,",
+        f"the largest speed of the search, {fastest * unit:.2g} m/s,",
         "no speed",
         math.inf,
     )
 
 
 def _loads(request: Request, share: float) -> _Line:
-    """Places are logarithms of the dimensionless amplitude, which falls by a power of the load."""
+    """The line of loads; a place is the logarithm of the dimensionless amplitude.
+
+    The dimensionless amplitude is a power of the load, with a negative exponent.
+    """
     contact, motion = request.contact, request.motion
 
     def size_at(load: float) -> float:
         size = groups(motion, contact.with_load(load))[1]
-        assert size is not None  # as of all that oscillate
+        assert size is not None  # the motion oscillates
         return size
 
     here = contact.load
@@ -173,8 +192,8 @@ def _loads(request: Request, share: float) -> _Line:
     def load_at(place: float) -> float:
         return here * (size_at(here) / math.exp(place)) ** (1.0 / power)
 
-    # Under a large load nothing slips, and under a small one a bore is fast: what vibration takes
-    # away is largest between, and the first load from above is looked for in small steps.
+    # Under a large load nothing slips, and under a small one a bore is fast.  The reduction is
+    # largest in between, and small steps from large loads find the first load with the reduction.
     low, high = math.log(SMALLEST_AMPLITUDE), math.log(LARGEST_AMPLITUDE)
     return _Line(
         lambda place: request.at(contact=contact.with_load(load_at(place))),
@@ -182,8 +201,8 @@ def _loads(request: Request, share: float) -> _Line:
         math.log(0.01 * share),
         high,
         load_at,
-        f"the largest load tried, {load_at(low):.2g} N,",
-        f"of those tried, down to {load_at(high):.2g} N, no load",
+        f"the largest load of the search, {load_at(low):.2g} N,",
+        f"no load of the search, down to {load_at(high):.2g} N,",
         rate=1.0 / power,
     )
 

@@ -1,4 +1,4 @@
-"""The request for a prediction: read, checked and made dimensionless before anything is solved."""
+"""The request for a prediction: checked and made dimensionless before any solve."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from microslip.si.dimensionless import (
     speed_unit,
 )
 from microslip.si.inputs import (
-    PULLED,
+    DRIVE_FIELDS,
     Arguments,
     Body,
     read_argument,
@@ -38,38 +38,38 @@ from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
 
 LARGEST_TOLERANCE = 0.1
-"""Largest accepted tolerance, absolute for mu_macro and relative for a speed."""
+"""Largest accepted tolerance: absolute for mu_macro, relative for a speed."""
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
-"""Default tolerances: of mu_macro, and under a force of the speed."""
+"""Default tolerances of mu_macro, and of the speed under a force."""
 ANY_LOAD = 1e-12
-"""N; stands for a load that is looked for, small enough for Hertz's theory of all bodies."""
+"""Placeholder for the load of a search, N; small enough for Hertz's theory of all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
-"""Quantities that a reduction can determine."""
-ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in PULLED.items()}
-"""Arguments of predict, by those of microslip.solve that follow from them."""
-BEYOND = "it is beyond the range of floating-point numbers; allowed is what a laboratory can have"
+"""Quantities that a search can determine."""
+ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
+"""Arguments of predict by the corresponding arguments of microslip.solve."""
+NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes of real machines"
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A contact, its motion and its drive, as far as they are given.
+    """A contact, its motion and its drive.
 
     Attributes
     ----------
     arguments : Mapping
-        Arguments of predict, as they were given.
+        Arguments of predict, as the user wrote them.
     bodies : tuple of Body
         Bodies of the contact.
     contact, motion, drive : TwoBodies, RealMotion, RealDrive
         The contact, its motion and the drive of the body, in SI units.
     carriers : several.Carriers
-        The contact, or several like it, of which it carries the mean load.
+        All contacts of the body; `contact` carries their mean load.
     sought, share : str or None, float or None
-        Name of the quantity sought by a reduction, and the reduction of friction, 0 to 1.
+        Name of the quantity of a search, and the requested reduction of friction, 0 to 1.
     tolerance : float
         Accepted error of mu_macro, or relative error of the speed.
     understood : dict of str
-        Texts of what was read.
+        The arguments in words, by name.
     """
 
     arguments: Arguments
@@ -84,13 +84,15 @@ class Request:
     understood: dict[str, str]
 
     def at(self, **changes: Any) -> Request:
-        """The request with another contact, speed or amplitude: fields of a RealMotion, or
-        `contact`."""
+        """A copy with other fields of the motion, or with another `contact`."""
         contact = changes.pop("contact", self.contact)
         return replace(self, contact=contact, motion=replace(self.motion, **changes))
 
     def under(self, load: float) -> Request:
-        """The request under a load that was found, N; raises InputError where it is none."""
+        """A copy under the load of a search, N.
+
+        Raises InputError where Hertz's theory does not hold under this load.
+        """
         try:
             contact, _ = read_contact(self.bodies, self.arguments, load=load)
         except InputError as error:
@@ -105,30 +107,30 @@ class Request:
 
     @property
     def speed_unit(self) -> float:
-        """Forward speed whose dimensionless group is 1, m/s."""
+        """Forward speed whose dimensionless velocity is 1, m/s."""
         return speed_unit(self.motion, self.contact)
 
     @cached_property
     def groups(self) -> tuple[float | None, float | None]:
-        """Velocity and amplitude as microslip.solve takes them; None where there is none."""
+        """Velocity and amplitude of microslip.solve; None for a missing one."""
         return groups(self.motion, self.contact)
 
     @cached_property
     def drive_groups(self) -> dict[str, float]:
-        """force, stiffness, mass and damping of a contact, as microslip.solve takes them."""
+        """Force, stiffness, mass and damping of microslip.solve, for one contact."""
         return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
 
     def problem(self) -> Problem:
-        """The dimensionless Problem at a vanishing speed.
+        """The dimensionless Problem in the limit of vanishing speed.
 
-        Raises InputError about `contacts` where the motion or the pressure excludes them.
+        Raises InputError for several contacts under a motion or a pressure that excludes them.
         """
         settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
         return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
 
     @property
     def solver_motion(self) -> str:
-        """The motion as microslip.solve takes it."""
+        """Text of the motion for microslip.solve."""
         return solver_motion(self.motion, self.contact)
 
     @property
@@ -145,11 +147,24 @@ class Request:
         poisson: float | None = None,
         **drive: float,
     ) -> Result:
-        """The dimensionless answer of microslip.solve.
+        """The dimensionless Result of microslip.solve.
 
-        velocity: None under a force; a velocity above the largest one of the solver is replaced by
-        it, since the vibration has no effect there.  amplitude, poisson: in place of those of the
-        request.  drive: groups of the drive.
+        Parameters
+        ----------
+        velocity : float or None
+            Dimensionless velocity; None under a force.  A velocity above the largest one of the
+            solver is replaced by that one: there the vibration has no effect.
+        tolerance : float
+            Largest accepted error.
+        amplitude, poisson : float, optional
+            Values that replace those of the request.
+        **drive : float
+            Dimensionless force, stiffness, mass and damping.
+
+        Raises
+        ------
+        InputError
+            For an argument of the solver that is out of range; it names the argument of predict.
         """
         settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
@@ -165,41 +180,39 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """An error about an argument of the solver, with the argument of predict and its value."""
+        """The error with the argument of predict in place of that of the solver."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
             return error
         group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
         return InputError(name, self.arguments[name], f"dimensionless {group}: {error.allowed}")
 
-    def refuse_out_of_range(self) -> None:
-        """Raise InputError for a group that the solver cannot take, with the value as it was
-        given."""
+    def check_range(self) -> None:
+        """Raise InputError for an argument whose dimensionless group is out of range."""
         arguments, (velocity, size) = self.arguments, self.groups
         if velocity is not None and not math.isfinite(velocity):
-            raise InputError("speed", arguments["speed"], f"over that of the vibration, {BEYOND}")
+            raise InputError(
+                "speed", arguments["speed"], f"divided by that of the vibration {NOT_FINITE}"
+            )
         most = LARGEST["amplitude"]
         if (self.motion.load_amplitude or 0.0) > most * self.contact.load:
             allowed = f"allowed is at most {most:g} times the load"
             raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
         if size is not None and not size <= most:
-            unit = "the angle that leaves half of the contact sticking"
+            unit = "the angle at which half of the contact radius sticks"
             if not self.motion.spins:
-                unit = f"the {self.contact.u_lim:.3g} m that let the whole contact slide"
+                unit = f"the {self.contact.u_lim:.3g} m at which the whole contact slides"
             allowed = f"{size:.3g} times {unit}; allowed is at most {most:g} times"
             raise InputError("amplitude", arguments["amplitude"], allowed)
         for name, value in self.drive_groups.items():
             if not math.isfinite(value):
                 argument = ARGUMENTS[name]
-                problem = f"over that of the contact, {BEYOND}"
+                problem = f"divided by that of the contact {NOT_FINITE}"
                 raise InputError(argument, arguments[argument], problem)
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The request of the arguments of predict, all of them by their names.
-
-    Raises InputError for each of them that cannot be used.
-    """
+    """The request for the arguments of predict, all of them by name; raises InputError."""
     for name, value in arguments.items():
         if name != "counterbody" and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
@@ -209,42 +222,42 @@ def request_of(motion: str, arguments: Arguments) -> Request:
     if arguments["mu"] is None:
         raise InputError("mu", None, "needed")
     sought = _sought(motion, arguments)
-    real, moved = read_motion(motion, arguments, sought)
-    drive, pulls = read_drive(real, arguments, sought)
+    real, motion_texts = read_motion(motion, arguments, sought)
+    drive, drive_texts = read_drive(real, arguments, sought)
     tolerance = arguments["tolerance"]
     if tolerance is None:
         tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
     accepted = read("tolerance", tolerance, "", low_open=False, **limits)
     bodies = read_bodies(arguments)
-    carriers, several = read_carriers(
+    carriers, carrier_texts = read_carriers(
         arguments["contacts"], reduction=arguments["reduction"], power=arguments["power"]
     )
     load = ANY_LOAD if sought == "load" else arguments["load"]
-    contact, touched = read_contact(bodies, arguments, load=load, contacts=carriers.count)
-    loaded = real.load_amplitude
-    if several and loaded is not None and loaded * carriers.widest > contact.load:
-        allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
+    contact, contact_texts = read_contact(bodies, arguments, load=load, contacts=carriers.count)
+    amplitude = real.load_amplitude
+    if carrier_texts and amplitude is not None and amplitude * carriers.widest > contact.load:
+        allowed = "allowed is at most the load with several contacts: above it the bodies part"
         raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
-    understood, share = touched | moved | pulls | several, None
+    understood, share = contact_texts | motion_texts | drive_texts | carrier_texts, None
     if sought is not None:
-        if pulls:
-            allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
+        if drive_texts:
+            allowed = "allowed only without a force and a drive_stiffness"
             raise InputError("reduction", arguments["reduction"], allowed)
-        wanted = read_argument("reduction", arguments["reduction"])
-        share, understood["reduction"] = wanted.si, wanted.text
+        reduction = read_argument("reduction", arguments["reduction"])
+        share, understood["reduction"] = reduction.si, reduction.text
         understood.pop(sought, None)
     parts = (contact, real, drive, carriers, sought, share, accepted.si, understood)
     request = Request(arguments, bodies, *parts)
     if sought is None:
-        request.refuse_out_of_range()
-    if several:
-        request.problem()  # refuses what does not go with several contacts
+        request.check_range()
+    if carrier_texts:
+        request.problem()  # raises InputError where several contacts are not allowed
     return request
 
 
 def _is_sequence(value: object) -> bool:
-    """Whether a value is an array, a list or a column of a table, with a unit or without."""
+    """True for an array, a list or a column of a table, with or without a unit."""
     values = getattr(value, "magnitude", value)  # of a pint quantity
     if isinstance(values, str | bytes | Mapping):
         return False
@@ -252,9 +265,9 @@ def _is_sequence(value: object) -> bool:
 
 
 def _sought(motion: str, arguments: Arguments) -> str | None:
-    """Name of the quantity to be found for a reduction, the missing one; None without a reduction.
+    """Name of the quantity of a search, which is the missing one; None without a reduction.
 
-    Raises InputError where more than one quantity or none is missing.
+    Raises InputError unless exactly one quantity is missing.
     """
     motions.check_motion(motion)
     reduction = arguments["reduction"]
@@ -267,11 +280,11 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
         missing.remove("speed")
     if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
         what = "several amplitudes" if motion in motions.COMBINED else "no amplitude"
-        raise InputError("reduction", reduction, f"{motion} has {what} to look for")
+        raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:
-        allowed = "allowed without an amplitude, a speed or a load, which is then looked for"
+        allowed = "allowed only without the amplitude, the speed or the load, which it determines"
         raise InputError("reduction", reduction, allowed)
     if len(missing) > 1:
-        allowed = f"one thing can be looked for, and {' and '.join(missing)} are not given"
+        allowed = f"it determines one quantity, but {' and '.join(missing)} are missing"
         raise InputError("reduction", reduction, allowed)
     return missing[0]

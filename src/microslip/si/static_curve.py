@@ -1,4 +1,4 @@
-"""The static limit at many amplitudes, interpolated between a few at which it is solved."""
+"""The static limit at many amplitudes, interpolated between a few solved amplitudes."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ from microslip.si.request import Request
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
 DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
-"""Amplitudes at which the static limit is solved, as quantiles of the drawn amplitudes: standard
-deviations of a normal distribution.  1.96 deviations are the ends of a 95 % interval.
-tests/si/test_outcomes.py checks the result by Monte Carlo."""
+"""Solved amplitudes: quantiles of the drawn amplitudes, in standard deviations of a normal
+distribution.  1.96 deviations are the ends of a 95 % interval."""
 REFINEMENTS = 3
-"""Number of further amplitudes, each in the middle of the draws whose threshold is closest to the
-force; and of those by which the amplitude is bisected above which the limit is 0."""
+"""Number of further solved amplitudes near the force, and of bisections of the smallest amplitude
+whose static limit is 0."""
 CLOSEST = 64
-"""One in so many draws is close to the force."""
+"""One draw in 64 counts as close to the force; a refinement solves their median amplitude."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Range of the amplitude over its central value, and standard deviation of Poisson's ratio, below
-which a change is rounding."""
+"""Relative range of the amplitude, and standard deviation of Poisson's ratio, below which a change
+is a rounding error."""
 
 
 def static_limits(
@@ -34,58 +33,65 @@ def static_limits(
     poisson: np.ndarray,
     forces: tuple[np.ndarray, np.ndarray] | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of many draws, and its error estimate: to first order of Poisson's ratio.
+    """mu_static of many draws, to first order in Poisson's ratio, and its error estimate.
 
     Parameters
     ----------
     request : request.Request
         The request at the central values.
     centre : tuple of float
-        Amplitude and Poisson's ratio there, mu_static and its error.
+        Amplitude, Poisson's ratio, mu_static and its error estimate at the central values, all
+        dimensionless.
     amplitudes, poisson : np.ndarray, shape (draws,)
-        Amplitude as a group, and Poisson's ratio.
+        Dimensionless amplitude and Poisson's ratio of each draw.
     forces : tuple of np.ndarray or None
-        Friction without vibration and the prescribed force, N, for the choice of amplitudes.
+        Friction without vibration and the prescribed force of each draw, N.  More amplitudes are
+        solved where the two are close.
+
+    Returns
+    -------
+    tuple of np.ndarray, shape (draws,)
+        mu_static, and its error estimate.
     """
     from scipy.interpolate import PchipInterpolator
     from scipy.special import ndtr
 
     limit = _limits_of(request)
     amplitude, ratio, *solved = centre
-    # The interpolation variable A / (A + centre) is proportional to small amplitudes A, and its
-    # distance from 1 to 1 / A at large ones: the static limit varies smoothly with it at both ends.
-    known: dict[float, tuple[float, float]] = {0.5: (solved[0], solved[1])}
+    # The interpolation variable x = A / (A + centre) is proportional to a small amplitude A, and
+    # 1 - x to 1 / A at a large one: the static limit is a smooth function of x at both ends.
+    nodes: dict[float, tuple[float, float]] = {0.5: (solved[0], solved[1])}
     where = np.minimum(amplitudes, LARGEST["amplitude"])
     where = where / (where + amplitude)
 
     def solve_at(place: float) -> None:
         if place <= 0.0:
-            known[0.0] = 1.0, 0.0  # friction without vibration
+            nodes[0.0] = 1.0, 0.0  # friction without vibration
             return
         answer = limit(amplitude * place / (1.0 - place), ratio)
         if answer is not None:
-            known[place] = answer
+            nodes[place] = answer
 
     def interpolated() -> tuple[np.ndarray, np.ndarray]:
-        places = np.array(sorted(known))
+        places = np.array(sorted(nodes))
         if places.size == 1:
-            value, error = known[places[0]]
+            value, error = nodes[places[0]]
             return np.full(where.shape, value), np.full(where.shape, error)
         within = np.clip(where, places[0], places[-1])
-        values, errors = np.array([known[place] for place in places]).T
+        values, errors = np.array([nodes[place] for place in places]).T
         return PchipInterpolator(places, values)(within), np.interp(within, places, errors)
 
     if np.ptp(where) > SAME_AMPLITUDE:
         for place in np.quantile(where, ndtr(DEVIATIONS)):
             solve_at(float(place))
     for _ in range(REFINEMENTS):
-        pairs = pairwise(sorted(known.items()))
+        pairs = pairwise(sorted(nodes.items()))
         ends = [
             (a, b) for (a, one), (b, other) in pairs if one[0] > one[1] and other[0] <= other[1]
         ]
         if ends:
             solve_at(0.5 * sum(ends[-1]))
-    for _ in range(REFINEMENTS if len(known) > 1 else 0):
+    for _ in range(REFINEMENTS if len(nodes) > 1 else 0):
         if forces is None:
             break
         value, _ = interpolated()
@@ -98,7 +104,7 @@ def static_limits(
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
-    """Derivative of mu_static by Poisson's ratio."""
+    """Derivative of mu_static with respect to Poisson's ratio; deviation: standard deviation."""
     if deviation < SAME_POISSON:
         return 0.0
     ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]
@@ -109,7 +115,7 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
 
 
 def _limits_of(request: Request) -> Callable[[float, float], tuple[float, float] | None]:
-    """limit(amplitude, poisson) -> (mu_static, error), or None where the solver has no answer."""
+    """The function limit(amplitude, poisson) -> (mu_static, error); None if the solver fails."""
     tolerance = tolerance_of(request, TOLERANCE)
 
     @cache

@@ -1,4 +1,4 @@
-"""The static limit of a real contact, and the constant force from which on it moves."""
+"""The static limit of a real contact, and the smallest constant force that moves it."""
 
 from __future__ import annotations
 
@@ -15,38 +15,42 @@ from microslip.si.motions import COMBINED
 from microslip.si.request import Request
 
 TOLERANCE = 1e-3
-"""Largest accepted error of mu_static, a ratio, under a force."""
+"""Largest accepted error of mu_static under a force, dimensionless."""
 TOLERANCE_OF_COMBINED = 1e-2
-"""Smallest tolerance of mu_static where several oscillations meet: a smaller error takes more than
-a minute."""
+"""Smallest tolerance of mu_static for a motion with several oscillations, dimensionless.  A smaller
+error takes more than a minute."""
 
 
 def static_limit(request: Request) -> Result | None:
-    """Friction at a vanishing speed over that without vibration; None for a steady motion."""
+    """mu_macro in the limit of vanishing speed; None for a steady motion."""
     if request.motion.steady:
         return None
     tolerance = request.tolerance
-    if request.drive.force is not None:  # for which the tolerance is relative to the speed
+    if request.drive.force is not None:  # its tolerance is that of the speed
         tolerance = min(tolerance, TOLERANCE)
     return request.solve(0.0, tolerance_of(request, tolerance))
 
 
 def tolerance_of(request: Request, tolerance: float) -> float:
-    """The tolerance of a static limit: as requested, except where several oscillations meet."""
+    """The tolerance of a static limit; it is larger for a motion with several oscillations."""
     combined = request.motion.name in COMBINED
     return max(tolerance, TOLERANCE_OF_COMBINED) if combined else tolerance
 
 
 def equals_static_limit(request: Request) -> bool | float | None:
-    """The force threshold over mu F_z: True where it equals the static limit, else a number; None
-    where it is not known.
+    """Relation of the force threshold to the static limit.
 
-    The threshold is the friction at vanishing speed where the oscillation exerts no forward force,
-    or where the forces of several contacts cancel.  Otherwise a contact without mass moves along
-    with the oscillation, and all of friction holds it if it does nothing else.
+    The threshold equals the static limit if the oscillation exerts no forward force, or if the
+    forward forces of several contacts cancel.  Otherwise a contact without mass follows the forward
+    oscillation.  If it has no other oscillation, its threshold is mu F_z.
+
+    Returns
+    -------
+    bool, float or None
+        True if the two are equal, else the threshold over mu F_z; None if it is unknown.
     """
     if request.motion.steady:
-        return 0.0  # a steady spin turns all of friction aside
+        return 0.0  # under a steady spin any force moves the contact
     problem = request.problem()
     if not oscillates_forward(problem) or is_even(problem):
         return True
@@ -57,15 +61,24 @@ def equals_static_limit(request: Request) -> bool | float | None:
 def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, over mu F_z.
 
-    None if it is unknown, or if it needs a solve of its own and no force is given.  A contact
-    without mass follows the forward oscillation.  The threshold is then the static limit of the
-    other components, computed here.
+    A contact without mass follows the forward oscillation.  Its threshold is the static limit of
+    the other components; it is computed only under a force.
 
-    limit: the static limit of the motion, None for a steady one.
+    Parameters
+    ----------
+    request : Request
+        The request.
+    limit : Result or None
+        The static limit of the motion; None for a steady one.
+
+    Returns
+    -------
+    Estimate or None
+        The threshold; None if it is unknown or was not computed.
     """
     share = equals_static_limit(request)
     if share is True:
-        assert limit is not None  # as of all that oscillate
+        assert limit is not None  # the motion oscillates
         return limit.friction
     if share is not None:
         return Estimate(share)
@@ -76,9 +89,9 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
 
 
 def largest_force(request: Request) -> float:
-    """Constant force over mu F_z from which on the contact runs away.
+    """Smallest constant force over mu F_z under which the contact runs away.
 
-    It is 1 with a mass; without one it is the least normal load in a period over the mean.
+    It is 1 for a body with a mass, else the least normal load of a period over the mean load.
     """
     if request.drive.mass or request.motion.steady:
         return 1.0

@@ -1,8 +1,9 @@
 """Uncertain inputs: "0.3 +- 0.03", "10 N +- 5 %".
 
-The number behind +- is a standard uncertainty.  Each is propagated by predictions at both of its
-ends: half of their difference is its contribution, and the contributions of independent quantities
-add up in squares (JCGM 100, Guide to the Expression of Uncertainty in Measurement, 5.1).
+The number after +- is a standard uncertainty.  Each one is propagated by two predictions, one
+standard uncertainty below and above the value.  Half their difference is its contribution.  The
+inputs are independent, so the total is the root of the sum of squares (JCGM 100, Guide to the
+Expression of Uncertainty in Measurement, 5.1).
 """
 
 from __future__ import annotations
@@ -16,7 +17,12 @@ from typing import Any
 from microslip.foundation.errors import InputError
 from microslip.si.inputs import QUANTITIES
 from microslip.si.motions import unit_of_amplitude
-from microslip.si.outcomes import Ends, UncertainInput, uncertainty_of_outcomes
+from microslip.si.outcomes import (
+    Ends,
+    UncertainInput,
+    half_difference,
+    uncertainty_of_outcomes,
+)
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import EXCLUDED
 from microslip.si.quantities import read
@@ -24,7 +30,7 @@ from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
 
 EXACT = ("phase", "density", "counter_density", "reduction")
-"""Quantities that have no uncertainty."""
+"""Quantities that are always exact."""
 SPREADS = {
     "mu_macro": "mu_macro_spread",
     "mu_apparent": "mu_apparent_spread",
@@ -32,16 +38,16 @@ SPREADS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Attributes of a Prediction with an uncertainty, and the columns that hold it."""
+"""Columns of the standard uncertainty, by the attribute of a Prediction."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
 def without_uncertainty(
     motion: object, arguments: Mapping[str, Any]
 ) -> tuple[dict[str, Any], list[UncertainInput]]:
-    """Arguments of predict without the uncertainties in them, and the uncertain ones.
+    """Central values of the arguments of predict, and a list of the uncertain inputs.
 
-    Raises InputError for an uncertainty that is none.
+    Raises InputError for a text that is not a valid uncertainty.
     """
     plain, uncertain = dict(arguments), []
     for name, quantity in QUANTITIES.items():
@@ -56,45 +62,56 @@ def without_uncertainty(
 
 
 def refuse_uncertainty(arguments: Mapping[str, object], where: str) -> None:
-    """Raise InputError for the first argument with an uncertainty."""
+    """Raise InputError for the first argument with an uncertainty; where: the command, in words."""
     for name, value in arguments.items():
         if _parts(value) is not None:
             raise InputError(name, value, f"allowed is a quantity without uncertainty for {where}")
 
 
 def _parts(value: object) -> tuple[str, str] | None:
-    """Texts of a value and of its uncertainty; None where there is no uncertainty."""
+    """Texts of a value and of its uncertainty; None for an exact value."""
     match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
     return None if match is None else (match[1], match[2])
 
 
-def _uncertain(name: str, arguments: str, parts: tuple[str, str], unit: str) -> UncertainInput:
-    """An uncertain input in the SI; raises InputError for an uncertainty that is none."""
+def _uncertain(name: str, value: str, parts: tuple[str, str], unit: str) -> UncertainInput:
+    """An uncertain input in SI units; raises InputError for a text that is not valid."""
     text, spread = parts
     try:
-        value = read(name, text, unit, low=QUANTITIES[name].low).si
+        centre = read(name, text, unit, low=QUANTITIES[name].low).si
         if spread.endswith("%") and not text.endswith("%"):
-            size = abs(value) * read(name, spread, "", low_open=False).si
+            size = abs(centre) * read(name, spread, "", low_open=False).si
         else:
             size = read(name, spread, unit, low_open=False).si
     except InputError as error:
         allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
-        raise InputError(name, arguments, allowed) from None
-    if not size < abs(value):
-        raise InputError(name, arguments, "allowed is a spread below the value")
-    return UncertainInput(name, " ".join(arguments.split()), value - size, value + size)
+        raise InputError(name, value, allowed) from None
+    if not size < abs(centre):
+        raise InputError(name, value, "allowed is an uncertainty below the value")
+    return UncertainInput(name, " ".join(value.split()), centre - size, centre + size)
 
 
 def with_uncertainty(
-    found: Prediction,
+    prediction: Prediction,
     motion: str,
     plain: Mapping[str, Any],
     uncertain: list[UncertainInput],
     answer: Callable[[Request], Prediction],
 ) -> Prediction:
-    """A Prediction for central values, with the uncertainty that follows from the inputs.
+    """The Prediction at the central values, with its uncertainty.
 
-    plain: arguments at the central values; answered: answered(request) -> Prediction.
+    Parameters
+    ----------
+    prediction : Prediction
+        The Prediction at the central values.
+    motion : str
+        The motion.
+    plain : mapping
+        Arguments of predict at the central values.
+    uncertain : list of UncertainInput
+        The uncertain arguments.
+    answer : callable
+        answer(request) -> Prediction.
     """
 
     def request_at(changes: Mapping[str, float]) -> Request:
@@ -106,28 +123,19 @@ def with_uncertainty(
         except NotAttainedError:
             return None
         except InputError as error:
-            problem = f"at an end of its spread, {end:.6g}: {error.argument}: {error.allowed}"
+            problem = f"at one standard uncertainty, {end:.6g}: {error.argument}: {error.allowed}"
             raise InputError(name, plain[name], problem) from None
 
     ends: Ends = {
         one.name: (at_end(one.name, one.low), at_end(one.name, one.high)) for one in uncertain
     }
     columns: dict[str, Any] = {
-        column: math.sqrt(sum(_half_of_difference(*pair, name) ** 2 for pair in ends.values()))
+        column: math.sqrt(sum(half_difference(*pair, name) ** 2 for pair in ends.values()))
         for name, column in SPREADS.items()
-        if getattr(found, name, None) is not None
+        if getattr(prediction, name, None) is not None
     }
-    columns |= uncertainty_of_outcomes(found, uncertain, request_at, ends)
+    columns |= uncertainty_of_outcomes(prediction, uncertain, request_at, ends)
     if columns.get("probability_runs_away", 0.0) > EXCLUDED:
         columns["speed_spread_m_s"] = math.inf
     texts = {one.name: one.text for one in uncertain}
-    return replace(found, uncertainty=columns, understood=found.understood | texts)
-
-
-def _half_of_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
-    """Half the difference of a field of both; infinite where one of them has no value, because
-    nothing has the wanted reduction, or the contact runs away."""
-    if low is None or high is None:
-        return math.inf
-    half = 0.5 * (getattr(high, name) - getattr(low, name))
-    return math.inf if math.isnan(half) else half
+    return replace(prediction, uncertainty=columns, understood=prediction.understood | texts)

@@ -1,27 +1,25 @@
-"""Numbers and units of texts: a strict grammar, the names that count, and pint for their values."""
+"""Units as texts: a strict grammar, a short list of units, and pint for their values."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Context, Decimal, localcontext
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 DEFINITIONS = Path(__file__).with_name("units.txt")
-"""Definitions of the units that are known; those of its group `metric` take prefixes."""
+"""Definitions of the accepted units; the units of the group `metric` take prefixes."""
 PREFIXES = ("", "p", "n", "µ", "m", "c", "d", "da", "h", "k", "M", "G", "T")
-"""Symbols of the prefixes, for hints."""
+"""Symbols of the metric prefixes, used in hints."""
 MOST_FACTORS = 12
-"""Units that a text may multiply; pint reads long products by recursion."""
+"""Largest number of factors in a unit; pint parses long products by recursion."""
 PLURALS = frozenset({"lb", "oz"})
-"""Symbols that take a plural; behind all others an s would be a second left without its sign, as in
-Pas for Pa*s."""
+"""Symbols with a plural.  After other symbols an s would be a second without an operator, as in Pas
+for Pa*s."""
 CYCLIC = ("hertz", "counts_per_second")
-"""How names of units end that count periods: 1 Hz is one turn a second."""
-TURN_RATE = {"radian": 1, "second": -1}
-"""Root units of what turns; pint itself takes radians for pure numbers."""
+"""Endings of the names of cyclic frequencies.  1 Hz is one turn per second, here 2 pi rad/s."""
 
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
@@ -35,58 +33,48 @@ _EXACT = Context(prec=40)
 
 
 class UnitError(Exception):
-    """A text that is no unit.
-
-    Attributes
-    ----------
-    reason : str
-        Why not, as the middle of a sentence.
-    """
-
-    def __init__(self, reason: str):
-        self.reason = reason
-        super().__init__(reason)
+    """A text or an object that is not a quantity; the message is the reason, part of a sentence."""
 
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit that has been read.
+    """A product of units.
 
     Attributes
     ----------
     names : dict
-        pint's names of the units it is made of, and their exponents.
+        Exponents of the factors, by pint's names.
     root : dict
-        Names of its root units, and their exponents; radians are one of them.
+        Exponents of the root units, by name.  The radian is a root unit.
     factor : decimal.Decimal
-        The unit over the product of its root units, dimensionless.
+        The unit divided by the product of its root units, dimensionless.
+
+    Raises
+    ------
+    UnitError
+        For a product that contains a cyclic frequency.
     """
 
     names: dict
     root: dict
     factor: Decimal
 
-    @property
-    def counts_periods(self) -> bool:
-        """Whether it is a cyclic frequency: hertz or cycles a second, by name."""
-        return len(self.names) == 1 and self.root.get("second") == -1 and self._has_cyclic
+    def __post_init__(self) -> None:
+        if len(self.names) > 1 and any(name.endswith(CYCLIC) for name in self.names):
+            raise UnitError(f"{self} leaves open whether 2 pi belongs to the hertz")
 
-    @property
-    def _has_cyclic(self) -> bool:
-        return any(name.endswith(CYCLIC) for name in self.names)
-
-    @property
-    def mixes_periods(self) -> bool:
-        """Whether hertz is a part of it: nobody can say whether 2 pi is meant there."""
-        return self._has_cyclic and not self.counts_periods
+    def __str__(self) -> str:
+        """The unit in a message."""
+        if not self.names:
+            return "that of a pure number"
+        return "*".join(name if n == 1 else f"{name}^{n:g}" for name, n in self.names.items())
 
 
 @cache
 def registry() -> Any:
-    """The pint.UnitRegistry in use.
+    """The pint.UnitRegistry of the accepted units.
 
-    It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" are one number, to the last
-    bit.
+    It computes in decimals: "1 um", "1e-3 mm" and "0.000001 m" become equal floats.
     """
     import pint
 
@@ -94,13 +82,12 @@ def registry() -> Any:
 
 
 def factors(text: str) -> list[tuple[str, int]]:
-    """The units that a text multiplies: their names and exponents, in the order of the text.
+    """Names and exponents of the units in a product, in the order of the text.
 
-    Names with whole exponents after ^ or **, or superscripts, and one of * / and the dot between
-    them; division goes from left to right.  Raises UnitError at the first character that does not
-    fit.
+    A whole exponent follows ^ or **, or is a superscript.  One of *, / and the dot separates two
+    units; division is read from left to right.  Raises UnitError at the first other character.
     """
-    found, place, sign = [], 0, 1
+    units, place, sign = [], 0, 1
     while True:
         name = _NAME.match(text, place)
         if name is None:
@@ -108,12 +95,12 @@ def factors(text: str) -> list[tuple[str, int]]:
             raise UnitError(f"stopped {where}, where a unit was expected")
         power = _POWER.match(text, name.end())
         exponent = int((power[1] or power[2]).translate(_RAISED)) if power else 1
-        found.append((name[0], sign * exponent))
-        if len(found) > MOST_FACTORS:
+        units.append((name[0], sign * exponent))
+        if len(units) > MOST_FACTORS:
             raise UnitError(f"found more than {MOST_FACTORS} units in a row")
         place = (power or name).end()
         if place == len(text):
-            return found
+            return units
         between = _SIGN.match(text, place)
         if between is None:
             raise UnitError(f"read {text[:place]!r} and stopped at {text[place:].strip()!r}")
@@ -121,38 +108,52 @@ def factors(text: str) -> list[tuple[str, int]]:
 
 
 def read_unit(text: str) -> Unit:
-    """The unit that a text such as "kg/m^3" names; raises UnitError."""
+    """The unit of a text such as "kg/m^3"; raises UnitError."""
     with localcontext(_EXACT):
         names = [("degree" if name == "°" else name, power) for name, power in factors(text)]
         for name, _ in names:
-            _refuse_strange(name)
+            _check_name(name)
         parsed = registry().parse_units("*".join(f"{name}**({power})" for name, power in names))
         factor, root = registry().get_root_units(parsed)
     return Unit(_exponents(parsed), _exponents(root), Decimal(factor))
 
 
-def _refuse_strange(name: str) -> None:
-    """Raise UnitError unless a name is a known one, with a prefix if it takes one."""
+def pint_unit(quantity: Any) -> Unit:
+    """The unit of a pint quantity from any registry, with the factors of that registry.
+
+    Raises UnitError for a scale with an offset or a logarithm.
+    """
+    zero, one = (type(quantity)(size, quantity.units).to_root_units() for size in (0, 1))
+    if zero.magnitude != 0:
+        raise UnitError(f"{quantity.units} is a scale with an offset or a logarithm, not a factor")
+    factor = Decimal(repr(float(one.magnitude)))  # the shortest decimals, as in the definition
+    unit = Unit(_exponents(quantity.units), _exponents(one.units), factor)
+    if list(unit.names.values()) == [1] and next(iter(unit.names)).endswith(CYCLIC):
+        hertz = si_unit("Hz")  # pint leaves out the turn
+        with localcontext(_EXACT):
+            return replace(unit, root=hertz.root, factor=factor * hertz.factor)
+    return unit
+
+
+def _check_name(name: str) -> None:
+    """Raise UnitError unless a name is an accepted unit, with a prefix only if it takes one."""
     units = registry()
     metric = units.get_group("metric").members
     readings = units.parse_unit_name(name)
     prefix, base = readings[0][:2] if readings else ("", "")
     symbol = units.get_symbol(base) if base else ""
-    # an s behind a symbol is a second left without its sign, as in Pas for Pa*s
     plural = symbol not in {base, *PLURALS} and name.endswith(f"{symbol}s")
     if base and not plural and (base in metric or not prefix):
         return
     hint = " (the mil of workshops is thou)" if name in ("mil", "mils") else ""
-    known = {
+    accepted = {
         f"{prefix}{units.get_symbol(one)}"
         for one in units.get_group("root").members
         for prefix in (PREFIXES if one in metric else [""])
     }
-    meant = sorted(one for one in known if one.lower() == name.lower())
-    remedy = f" (did you mean {' or '.join(meant)}?)" if meant else ", as in MPa and Hz"
-    raise UnitError(
-        f"{name!r} is none of the units that are known here{hint}; capitals count{remedy}"
-    )
+    similar = sorted(one for one in accepted if one.lower() == name.lower())
+    remedy = f" (did you mean {' or '.join(similar)}?)" if similar else ", as in MPa and Hz"
+    raise UnitError(f"{name!r} is none of the units accepted here{hint}; capitals count{remedy}")
 
 
 def _exponents(unit: Any) -> dict[str, Any]:
@@ -162,23 +163,18 @@ def _exponents(unit: Any) -> dict[str, Any]:
 
 @cache
 def si_unit(text: str) -> Unit:
-    """A unit of the SI, by such a text as "kg/m^3"; the empty one is that of pure numbers."""
+    """The SI unit of a text such as "kg/m^3"; the empty text is the unit of pure numbers."""
     return read_unit(text) if text else Unit({}, {}, Decimal(1))
 
 
-def full_turn() -> Decimal:
-    """2 pi, with pint's digits of it."""
-    return read_unit("turn").factor
-
-
 def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
-    """number * ratio / over as a float, rounded once."""
+    """number * ratio / over as a float; only the conversion to a float rounds."""
     with localcontext(_EXACT):
         return float(number * ratio / over)
 
 
 def split_number(text: str) -> tuple[str, str]:
-    """The number at the start of a text, as digits that float takes, and what follows it."""
+    """The number at the start of a text, in digits that float accepts, and the rest of the text."""
     text = text.strip()
     number = _NUMBER.match(text)
     if _NOT_FINITE.match(text):
@@ -192,7 +188,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 
 def stopped(read_so_far: str, rest: str) -> str:
-    """Message with the position where reading stopped, and a hint at the likely meaning."""
+    """A message with the place where reading stopped, and a hint at the likely meaning."""
     hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:
@@ -202,5 +198,5 @@ def stopped(read_so_far: str, rest: str) -> str:
 
 
 def _of_other_digits(text: str) -> str:
-    """A hint if a text begins with a digit of another script than Latin."""
+    """A hint if a text begins with a digit other than 0 to 9."""
     return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""
