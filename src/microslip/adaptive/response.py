@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from microslip.pressures.pressure import Pressure
 from microslip.solver.discretise import build_contact
 from microslip.solver.run import unsolved
 from microslip.solver.snapshots import bounds_at_phases
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Progress = Callable[[int, int], None]
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -86,6 +90,29 @@ class Response:
     angles: int
     problem: Problem = field(repr=False)
     start: str = field(repr=False)
+
+    @property
+    def columns(self) -> dict[str, np.ndarray]:
+        """Forces, energy and stick fraction by name; `force_error` is the larger of the errors of
+        both forces."""
+        return {
+            "force_forward": self.force_forward,
+            "force_lateral": self.force_lateral,
+            "torque": self.torque,
+            "force_error": self.force_error[:, :2].max(axis=1),
+            "torque_error": self.force_error[:, 2],
+            "dissipated_energy": self.dissipated_energy,
+            "dissipated_energy_error": self.dissipated_energy_error,
+            "stick_fraction": self.stick_fraction,
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """The columns as a dataset over `row`; all dimensionless."""
+        import xarray as xr  # only here: it takes a while to load
+
+        variables = {name: ("row", one, {"units": "1"}) for name, one in self.columns.items()}
+        about = {"model": self.model, "tolerance": self.tolerance, "converged": int(self.converged)}
+        return xr.Dataset(variables, attrs=about)
 
 
 def response(
