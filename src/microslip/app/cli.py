@@ -25,6 +25,7 @@ COMMANDS = {
     "predict": "friction of a real contact, in SI units",
     "fit": "coefficient of friction and u_lim from measured friction",
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
+    "response": "forces of a contact that follows the path of a file",
 }
 """Commands with a module of their own in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."

@@ -19,7 +19,7 @@ import numpy as np
 
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import LOOSEST, Ladder
-from microslip.estimate.richardson import WEIGHTS, extrapolate
+from microslip.estimate.richardson import WEIGHTS, Extrapolation, extrapolate
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort
@@ -207,7 +207,7 @@ class _Levels:
     ) -> tuple[float, dict[str, float], float]:
         """Value of a quantity, its errors by resolution and model, and its observed order."""
         values = [float(read(one)) for one in three]
-        limit = extrapolate(values)
+        limit = Extrapolation(*map(float, extrapolate(values)))
         if self.ladder.imposed:
             value, error = values[-1], limit.difference
         else:

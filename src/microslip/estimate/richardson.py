@@ -13,7 +13,7 @@ D / 3, as for a method of first order.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,33 +29,33 @@ WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
 
 
 class Extrapolation(NamedTuple):
-    """Limit of a sequence of levels.
+    """Limit of a sequence of levels; of arrays, element by element.
 
     Attributes
     ----------
-    value : float
+    value : float or np.ndarray
         Limit at infinite n.
-    error : float
+    error : float or np.ndarray
         Its estimated error.
-    difference : float
+    difference : float or np.ndarray
         Difference of the last two levels, or a quarter of the difference before if that is larger.
         It covers the error of the last level at first order.
-    order : float
+    order : float or np.ndarray
         Observed order of convergence; infinite if the last two levels agree, NaN if all do.
     """
 
-    value: float
-    error: float
-    difference: float
-    order: float
+    value: Any
+    error: Any
+    difference: Any
+    order: Any
 
 
-def extrapolate(values: Sequence[float]) -> Extrapolation:
+def extrapolate(values: Sequence[Any]) -> Extrapolation:
     """Richardson extrapolation of the values at levels n/4, n/2 and n."""
     coarse, middle, fine = values
-    before, last = abs(middle - coarse), abs(fine - middle)
-    difference = max(last, before / 2**ORDER)
+    before, last = np.abs(middle - coarse), np.abs(fine - middle)
+    difference = np.maximum(last, before / 2**ORDER)
     with np.errstate(divide="ignore", invalid="ignore"):
-        order = float(np.log2(np.divide(before, last)))
-    error = SAFETY * difference / (2 ** (1 if order < 1.0 else ORDER) - 1)
-    return Extrapolation(float(np.dot(WEIGHTS, values)), error, difference, order)
+        order = np.log2(np.divide(before, last))
+    error = SAFETY * difference / (2 ** np.where(order < 1.0, 1, ORDER) - 1)
+    return Extrapolation(np.tensordot(WEIGHTS, values, 1), error, difference, order)

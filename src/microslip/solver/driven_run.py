@@ -26,8 +26,8 @@ import numpy as np
 
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
-from microslip.models.path import Path
 from microslip.models.driven_body import Body
+from microslip.models.path import Path
 from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each

@@ -1,0 +1,354 @@
+"""Response of a contact to a prescribed path: forces at every row, with their errors.
+
+The path is not periodic.  It begins at rest without tangential tractions, in full slip, or where
+another response ended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from microslip.adaptive.choice import choose_model
+from microslip.contacts.coulomb import project
+from microslip.estimate.ladder import ladder_for
+from microslip.estimate.refine import SMALLEST_SHARE
+from microslip.estimate.richardson import WEIGHTS, extrapolate
+from microslip.foundation.arguments import SMALLEST_TOLERANCE, real
+from microslip.foundation.errors import InputError
+from microslip.models.contact import Contact, March, StepFailure, forward_slip, full_slip
+from microslip.models.path import LONG_STROKE, Path, make_path
+from microslip.motions.problem import Problem
+from microslip.motions.samples import SampledPath
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver.discretise import build_contact
+from microslip.solver.run import unsolved
+from microslip.solver.snapshots import bounds_at_phases
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Progress = Callable[[int, int], None]
+STARTS = ("stress-free", "full-slip", "full-rotation")
+STEP_SHARE = 0.05
+"""Largest sum of the residuals of all steps of a march over the tolerance, as refine.RUN_SHARE."""
+MOST_VALUES = 2e7
+"""Largest number of tractions kept at a time: a path is marched in pieces of so many."""
+STEPS = 2
+"""Time steps per u_lim of the path and level, as ladder.TRANSLATION has for a stroke of u_lim."""
+ON_BOUND = 1.0 - 1e-4
+"""Share of the friction bound from which on a point counts as slipping."""
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Forces along a path, one row each; dimensionless.
+
+    Attributes
+    ----------
+    force_forward, force_lateral : np.ndarray, shape (rows,)
+        Over mu F_z of the reference load, in the direction of the displacement that they resist.
+    torque : np.ndarray, shape (rows,)
+        Over its value at full slip under the reference load.
+    force_error : np.ndarray, shape (rows, 3)
+        Estimated errors of the forward force, the lateral force and the torque.
+    dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
+        Work of friction since the first row, over mu F_z u_lim, and its estimated error.
+    stick_fraction : np.ndarray, shape (rows,)
+        Fraction of the area in contact that sticks in the step that ends at the row; NaN in the
+        first row and without contact.  Its resolution is that of the mesh.
+    tolerance : float
+        Requested largest force error.
+    converged : bool
+        Whether every force error is within the tolerance.
+    reason : str
+        Why the response is not converged, else empty.
+    model : str
+        Name of the model.
+    cells, angles : int
+        Resolution of the finest march.
+    """
+
+    force_forward: np.ndarray
+    force_lateral: np.ndarray
+    torque: np.ndarray
+    force_error: np.ndarray
+    dissipated_energy: np.ndarray
+    dissipated_energy_error: np.ndarray
+    stick_fraction: np.ndarray
+    tolerance: float
+    converged: bool
+    reason: str
+    model: str
+    cells: int
+    angles: int
+    problem: Problem = field(repr=False)
+    start: str = field(repr=False)
+
+    @property
+    def columns(self) -> dict[str, np.ndarray]:
+        """Forces, energy and stick fraction by name; `force_error` is the larger of the errors of
+        both forces."""
+        return {
+            "force_forward": self.force_forward,
+            "force_lateral": self.force_lateral,
+            "torque": self.torque,
+            "force_error": self.force_error[:, :2].max(axis=1),
+            "torque_error": self.force_error[:, 2],
+            "dissipated_energy": self.dissipated_energy,
+            "dissipated_energy_error": self.dissipated_energy_error,
+            "stick_fraction": self.stick_fraction,
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """The columns as a dataset over `row`; all dimensionless."""
+        import xarray as xr  # only here: it takes a while to load
+
+        variables = {name: ("row", one, {"units": "1"}) for name, one in self.columns.items()}
+        about = {"model": self.model, "tolerance": self.tolerance, "converged": int(self.converged)}
+        return xr.Dataset(variables, attrs=about)
+
+
+def response(
+    forward: np.ndarray,
+    lateral: np.ndarray | None = None,
+    angle: np.ndarray | None = None,
+    load: np.ndarray | None = None,
+    *,
+    indentation: np.ndarray | None = None,
+    state: Response | str | None = None,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    tolerance: float = 1e-3,
+    progress: Progress | None = None,
+) -> Response:
+    """Forces of a contact that follows a prescribed path.
+
+    Parameters
+    ----------
+    forward : array_like, shape (rows,)
+        Forward displacement, in u_lim.  Between rows everything changes linearly.
+    lateral : array_like or None, shape (rows,)
+        Lateral displacement, in u_lim.
+    angle : array_like or None, shape (rows,)
+        Rotation about the contact normal, in u_lim / a.
+    load : array_like or None, shape (rows,)
+        Normal load over the reference load, >= 0; None: the reference load.
+    indentation : array_like or None, shape (rows,)
+        In place of the load: indentation over that under the reference load, >= 0.
+    state : Response, str or None
+        State in the first row: the end of another response, "full-slip", "full-rotation", or None
+        for no tangential tractions.
+    pressure : str or Pressure
+        As for `microslip.solve`; a load that changes needs an axisymmetric indenter.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    tolerance : float
+        Largest error of the forces, over mu F_z, and of the torque over its value at full slip.
+    progress : callable or None
+        Called as progress(rows, total) in the course of the marches.
+
+    Returns
+    -------
+    Response
+        Not converged, with the reason, where the finest level does not reach the tolerance.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
+    """
+    columns = {
+        "forward": forward,
+        "lateral": lateral,
+        "angle": angle,
+        "load": load,
+        "indentation": indentation,
+    }
+    path, first, start = SampledPath.of_columns(columns), 0, state or STARTS[0]
+    if isinstance(start, Response):
+        path, first, start = _joined(start, path)
+    if not isinstance(start, str) or start not in STARTS:
+        allowed = f"allowed is a Response or one of {', '.join(STARTS)}"
+        raise InputError("state", state, allowed)
+    if start == "full-rotation" and not path.rotates:
+        raise InputError("state", start, "allowed for paths that rotate")
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 1.0)
+    given = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    problem = Problem(path, poisson=poisson, pressure=given)
+    return _refined(_Marches(problem, start, tolerance, progress), first)
+
+
+def _joined(before: Response, path: SampledPath) -> tuple[SampledPath, int, str]:
+    """The path of a response with another one after it, the number of the row where that begins,
+    and the start of the first."""
+    old = before.problem.motion
+    assert isinstance(old, SampledPath)
+    height = None
+    if old.height is not None or path.height is not None:
+        if old.height is None or path.height is None or old.by_load != path.by_load:
+            allowed = "allowed is a response whose load or indentation is prescribed likewise"
+            raise InputError("state", "a Response", allowed)
+        if not np.isclose(old.height[-1], path.height[0], rtol=1e-9):
+            name = "load" if path.by_load else "indentation"
+            allowed = f"allowed in the first row is where the state ended: {old.height[-1]:.12g}"
+            raise InputError(name, float(path.height[0]), allowed)
+        height = np.concatenate([old.height, path.height[1:]])
+    moved = path.rows - path.rows[0] + old.rows[-1]
+    rows = np.concatenate([old.rows, moved[1:]])
+    return SampledPath(rows, height, path.by_load), len(old.rows) - 1, before.start
+
+
+class _Marches:
+    """Marches along a path at the levels of its ladder, each done once.
+
+    Attributes
+    ----------
+    rows : dict of int to np.ndarray
+        By level: forward force, lateral force, torque, dissipated energy and the sum of the
+        residuals since the start at every row, shape (rows, 5).
+    stick : dict of int to np.ndarray
+        By level: stick fraction at every row.
+    """
+
+    def __init__(self, problem: Problem, start: str, tolerance: float, progress: Progress | None):
+        self.problem, self.start, self.progress = problem, start, progress
+        self.model = choose_model(problem)
+        self.tolerance = tolerance
+        self.ladder = ladder_for(problem, self.model, tolerance)
+        self.rows: dict[int, np.ndarray] = {}
+        self.stick: dict[int, np.ndarray] = {}
+
+    def at(self, level: int) -> np.ndarray:
+        """Values of `rows` at a level."""
+        if level not in self.rows:
+            self.rows[level], self.stick[level] = self._march(level)
+        return self.rows[level]
+
+    def _march(self, level: int) -> tuple[np.ndarray, np.ndarray]:
+        problem = self.problem
+        contact = build_contact(problem, self.model, self.ladder.resolution(level))
+        counts = _steps(problem, level)
+        step_tolerance = STEP_SHARE * self.tolerance / (2 * counts.sum())
+        state = _start(contact, self.start)
+        out, stick = np.zeros((len(counts) + 1, 5)), np.full(len(counts) + 1, np.nan)
+        initial, work = _stored_energy(contact, state), 0.0
+        for first, last in _pieces(counts, state.size):
+            path = make_path(
+                problem.displacement, _phases(first, counts[first:last]), depth=problem.depth
+            )
+            march = contact.march(path, state, step_tolerance)
+            failure = unsolved(march.residual, march.solves, step_tolerance)
+            if failure:
+                raise StepFailure(failure)
+            ends, rows = np.cumsum([0, *counts[first:last]]), slice(first, last + 1)
+            tractions, bounds = _tractions(contact, path, march, ends)
+            mean_forces = 0.5 * (march.forces[1:] + march.forces[:-1])
+            works = np.sum(mean_forces * np.diff(path.positions, axis=0), axis=1)
+            works = work + np.concatenate([[0.0], np.cumsum(works)])[ends]
+            stored = np.array([_stored_energy(contact, one) for one in tractions])
+            out[rows, :3] = march.forces[ends]
+            out[rows, 3] = works - (stored - initial)
+            out[rows, 4] = out[first, 4] + march.residual * ends / ends[-1]
+            stick[first + 1 : last + 1] = _stick_fraction(contact, tractions, bounds)[1:]
+            work, state = works[-1], march.state
+            if self.progress is not None:
+                self.progress(last, len(counts))
+        out[:, 2] /= problem.pressure.torque
+        return out, stick
+
+
+def _refined(marches: _Marches, first: int) -> Response:
+    """The response from row `first` on, refined until the force errors are within the tolerance."""
+    tolerance, reason = marches.tolerance, ""
+    for level in marches.ladder.levels(tolerance):
+        three = [marches.at(one)[first:] for one in (level // 4, level // 2, level)]
+        limit = extrapolate([one[:, :4] for one in three])
+        error = np.maximum(limit.error, SMALLEST_SHARE * tolerance)
+        error += sum(abs(w) * one[:, 4:] for w, one in zip(WEIGHTS, three, strict=True))
+        largest = float(error[:, :3].max())
+        if largest <= tolerance:
+            break
+    else:
+        reason = f"the error is still {largest:.1e} with {level} cells"
+    finest = marches.ladder.resolution(level)
+    return Response(
+        *limit.value[:, :3].T,
+        force_error=error[:, :3],
+        dissipated_energy=limit.value[:, 3] - limit.value[0, 3],
+        dissipated_energy_error=error[:, 3],
+        stick_fraction=marches.stick[level][first:],
+        tolerance=tolerance,
+        converged=not reason,
+        reason=reason,
+        model=marches.model,
+        cells=finest.cells,
+        angles=finest.angles,
+        problem=marches.problem,
+        start=marches.start,
+    )
+
+
+def _steps(problem: Problem, level: int) -> np.ndarray:
+    """Number of time steps between rows, (rows - 1,)."""
+    path = problem.motion
+    assert isinstance(path, SampledPath)
+    lengths = np.minimum(path.lengths(problem.pressure), LONG_STROKE)
+    return np.maximum(np.ceil(STEPS * level * lengths), 1).astype(int)
+
+
+def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
+    """First and last row of the pieces in which a path is marched; size: numbers in a state."""
+    ends, first = np.cumsum(counts), 0
+    while first < len(counts):
+        done = ends[first - 1] if first else 0
+        last = int(np.searchsorted(ends, done + MOST_VALUES / (2 * size)))
+        yield first, min(max(last, first + 1), len(counts))
+        first = min(max(last, first + 1), len(counts))
+
+
+def _phases(row: int, counts: np.ndarray) -> np.ndarray:
+    """Phases of steps from a row on; counts: steps between rows."""
+    parts = [row + k + np.arange(1, count + 1) / count for k, count in enumerate(counts)]
+    return np.concatenate([[row], *parts])
+
+
+def _tractions(
+    contact: Contact, path: Path, march: March, ends: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions after the steps `ends`, and the bounds there."""
+    assert march.fields is not None  # as of all compiled contacts
+    fields = np.moveaxis(march.fields[:: path.stages.shape[1]][ends], 1, 0)
+    bounds = bounds_at_phases(contact, path)
+    bounds = bounds if len(bounds) == 1 else bounds[ends]
+    return np.moveaxis(project(fields, bounds), 1, 0), bounds
+
+
+def _stored_energy(contact: Contact, state: np.ndarray) -> float:
+    """Elastic energy of tractions, over mu F_z u_lim."""
+    return 0.5 * float(np.vdot(contact.weight * state, contact.displacement(state)))
+
+
+def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Fraction of the area in contact whose tractions are below their bounds."""
+    size = np.hypot(tractions[:, 0], tractions[:, 1])
+    bounds = np.broadcast_to(bounds, size.shape)
+    area = np.where(bounds > 0.0, contact.weight, 0.0)
+    sticking = np.where(size < ON_BOUND * bounds, area, 0.0)
+    axes = tuple(range(1, size.ndim))
+    with np.errstate(invalid="ignore"):
+        return sticking.sum(axes) / area.sum(axes)
+
+
+def _start(contact: Contact, start: str) -> np.ndarray:
+    if start == "stress-free":
+        return 0.0 * forward_slip(contact)
+    if start == "full-slip":
+        return forward_slip(contact)
+    return full_slip(contact, contact.lateral_position, -contact.forward_position)

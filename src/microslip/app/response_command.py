@@ -1,0 +1,124 @@
+"""The command `microslip response`: forces of a contact that follows the path of a file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from microslip.app.predict_command import GROUPS
+from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from microslip.adaptive.response import Response
+    from microslip.si.response import RealResponse
+
+OUTPUT = {
+    "output": ("FILE", "write all columns to a .csv or .nc file"),
+    "tolerance": (
+        "T",
+        "largest error of a force over mu times the load, and of the torque over its value at full "
+        "slip (1e-3)",
+    ),
+    "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
+    "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
+}
+ENDINGS = (".csv", ".nc")
+PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
+"""Columns of a path without units."""
+WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
+"""Options that go without a contact in SI units."""
+
+
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `response` to its parser."""
+    parser.description = (
+        "Forces, torque, dissipated energy and stick fraction of a contact that follows a path, "
+        "with error estimates.  The columns of the file are forward, lateral, angle, and load or "
+        "indentation.  With units in the heading, as in forward [um], the options describe the "
+        "contact as for `microslip predict`.  Without units and without a contact all numbers are "
+        "dimensionless: displacements over u_lim, the angle over u_lim / a, the load and the "
+        "indentation over those of the reference state."
+    )
+    parser.add_argument("path", metavar="CSV", help="the path")
+    bodies = parser.add_argument_group("bodies")
+    add_options(bodies, GROUPS["bodies"])
+    load = {"load": ("F", "normal load of the reference state, such as '10 N'")}
+    add_options(bodies, load)
+    output = parser.add_argument_group("output")
+    add_options(output, OUTPUT)
+    add_json(output)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
+    names = [name.replace("-", "_") for name in (*GROUPS["bodies"], "load", *OUTPUT)]
+    return respond("microslip response", options, _answer, {"path": "CSV"}, names)
+
+
+def _answer(options: argparse.Namespace) -> Answer:
+    arguments = typed_options(options)
+    output = arguments.pop("output", None)
+    if output is not None and Path(output).suffix.lower() not in ENDINGS:
+        allowed = f"allowed is a name that ends in {' or '.join(ENDINGS)}"
+        raise InputError("output", output, allowed)
+    if "tolerance" in arguments:
+        arguments["tolerance"] = spec.read("tolerance", arguments["tolerance"])
+    real = arguments.keys() - WITHOUT_CONTACT
+    arguments["progress"] = _progress if sys.stderr.isatty() else None
+    answer = (_real if real else _dimensionless)(options.path, arguments)
+    dataset = answer.to_xarray()
+    if output is not None:
+        _write(dataset, Path(output))
+    plain = {name: one.values.tolist() for name, one in dataset.items()} | dataset.attrs
+    plain |= {"converged": answer.converged, "reason": answer.reason}
+    return Answer(plain, _as_text(dataset, answer), answer.converged)
+
+
+def _real(path: str, arguments: dict[str, Any]) -> RealResponse:
+    from microslip.si.response import predict_response
+
+    return predict_response(path, **arguments)
+
+
+def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
+    from microslip.si.response import read_path, response_to
+
+    file = {name: arguments.pop(name) for name in ("decimal", "encoding") if name in arguments}
+    if "nu" in arguments:
+        arguments["poisson"] = spec.read("nu", arguments.pop("nu"))
+    return response_to(path, read_path(path, PLAIN, **file), **arguments)
+
+
+def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
+    """The columns as CSV, to six digits, after the reason if the response is not converged."""
+    reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
+    return reason + _csv(dataset, "%.6g").rstrip("\n")
+
+
+def _csv(dataset: xr.Dataset, digits: str | None = None) -> str:
+    """The columns of a response as CSV; units other than 1 are part of the headings."""
+    units = {name: one.attrs["units"] for name, one in dataset.items()}
+    headings = {n: f"{n} [{unit}]" for n, unit in units.items() if unit != "1"}
+    frame = dataset.to_dataframe().rename(columns=headings)
+    return frame.to_csv(index=False, float_format=digits, lineterminator="\n")
+
+
+def _write(dataset: xr.Dataset, path: Path) -> None:
+    from microslip.foundation.files import writing_beside
+
+    with writing_beside(path) as beside:
+        if path.suffix.lower() == ".nc":
+            dataset.to_netcdf(beside, engine="netcdf4")
+        else:
+            Path(beside).write_text(_csv(dataset), encoding="utf-8")
+
+
+def _progress(row: int, rows: int) -> None:
+    sys.stderr.write(f"\rmicroslip response: row {row} of {rows}  ")
+    sys.stderr.flush()

@@ -1,0 +1,323 @@
+"""Motions from samples: a path from a first row to a last one, or one period of any shape.
+
+A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
+the indentation.  Along a path all of them change linearly between rows.  A period is interpolated
+by periodic cubic splines through equally spaced rows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from microslip.foundation.errors import InputError
+from microslip.motions.motion import LOOP, Motion, stick_focus, within_rings
+from microslip.pressures.pressure import Pressure
+
+PLANE = ("forward", "lateral", "angle")
+NORMAL = ("load", "indentation")
+
+
+@dataclass(frozen=True, eq=False)
+class SampledPath(Motion):
+    """A motion through rows, which does not repeat; the phase is the number of the row.
+
+    Attributes
+    ----------
+    rows : np.ndarray, shape (rows, 3)
+        Forward and lateral displacement in u_lim, angle in u_lim / a.
+    height : np.ndarray or None, shape (rows,)
+        Normal load or indentation over that of the reference state; None: both are constant.
+    by_load : bool
+        Whether `height` is a load.
+    """
+
+    rows: np.ndarray
+    height: np.ndarray | None
+    by_load: bool
+
+    periodic = False
+    summary = "a path through rows"
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
+        """The path of columns by name: PLANE and NORMAL, None for a quantity that is constant.
+
+        Raises
+        ------
+        InputError
+            For columns that are not finite numbers, columns of different lengths, fewer than two
+            rows, and a load or an indentation below 0, or both of them.
+        """
+        return cls(*_rows_of(columns, 2))
+
+    @property
+    def name(self) -> str:
+        return "path"
+
+    @property
+    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
+        return self.height is not None
+
+    @property
+    def rotates(self) -> bool:
+        return bool(np.ptp(self.rows[:, 2]) > 0.0)
+
+    @property
+    def half_disc(self) -> bool:
+        return not (self.rotates and np.ptp(self.rows[:, 1]) > 0.0)
+
+    def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Values of the rows, interpolated linearly."""
+        return np.interp(phase, np.arange(len(values)), values)
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        forward, lateral, angle = (self.at(phase, column) for column in self.rows.T)
+        return forward, lateral, angle
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        assert self.height is not None  # else the depth is constant
+        height = self.at(phase, self.height)
+        return pressure.of_load(height) if self.by_load else height
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
+
+    def lengths(self, pressure: Pressure) -> np.ndarray:
+        """Largest displacement of any point of the contact between rows, u_lim, (rows - 1,).
+
+        A change of the indentation counts as the change of the local u_lim that goes with it.
+        """
+        forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
+        out = np.hypot(forward, lateral) + angle
+        if self.loads:
+            out += np.abs(np.diff(self.depth(np.arange(len(self.rows)), 0.0, pressure)))
+        return out
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled(Motion):
+    """One period of a motion of any shape, from equally spaced samples.
+
+    With the amplitude A the indenter moves by A times the interpolated displacements.  A load or
+    an indentation h oscillates as 1 + A (h - 1).
+
+    Attributes
+    ----------
+    rows : np.ndarray, shape (rows, 3)
+        Forward and lateral displacement in u_lim, angle in u_lim / a, for A = 1, without the end
+        point of the period.
+    height : np.ndarray or None, shape (rows,)
+        Normal load or indentation over that of the reference state; None: both are constant.
+    by_load : bool
+        Whether `height` is a load.
+    text : str
+        Its name, with a digest of the numbers.
+    """
+
+    rows: np.ndarray
+    height: np.ndarray | None
+    by_load: bool
+    text: str
+
+    summary = "one period of any shape, from samples"
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
+        """The motion of columns by name: PLANE and NORMAL, None for a quantity that is constant.
+
+        Raises
+        ------
+        InputError
+            As for `SampledPath.of_columns`; fewer than FEWEST_SAMPLES rows.
+        """
+        rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
+        if not text:
+            parts = [rows, *([] if height is None else [height])]
+            digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
+            text = f"array:sha256={digest}" + ("" if by_load else ",indentation")
+        return cls(rows, height, by_load, text)
+
+    @property
+    def name(self) -> str:
+        """Name with a digest of the samples."""
+        return self.text
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sampled) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    @cached_property
+    def _plane(self) -> CubicSpline:
+        return _spline(self.rows - self.rows.mean(axis=0))
+
+    @cached_property
+    def _normal(self) -> CubicSpline:
+        height = np.ones(len(self.rows)) if self.height is None else self.height
+        return _spline(height - 1.0)
+
+    @cached_property
+    def _loop(self) -> np.ndarray:
+        """Displacements at the phases LOOP, for A = 1, (phases, 3)."""
+        return self._plane(LOOP)
+
+    @cached_property
+    def half(self) -> Motion:
+        """The motion of every second sample."""
+        height = None if self.height is None else self.height[::2]
+        return Sampled(self.rows[::2], height, self.by_load, f"{self.text} (every second row)")
+
+    @property
+    def readings(self) -> tuple[Motion, ...]:
+        return (self.half,) if len(self.rows) >= 2 * FEWEST_SAMPLES else ()
+
+    @property
+    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
+        return self.height is not None
+
+    @property
+    def rotates(self) -> bool:
+        return self._varies(2)
+
+    @property
+    def half_disc(self) -> bool:
+        return not (self.rotates and self._varies(1))
+
+    def _varies(self, column: int) -> bool:
+        return bool(np.ptp(self.rows[:, column]) > 0.0)
+
+    def _repeats(self, signs: Sequence[float]) -> bool:
+        """Whether half a period later forward, lateral and angle have these signs (0: either), and
+        the load is equal."""
+        if len(self.rows) % 2:
+            return False
+        plane = self.rows - self.rows.mean(axis=0)
+        values = plane if self.height is None else np.column_stack([plane, self.height])
+        factors = np.append(np.asarray(signs, float), 1.0)[: values.shape[1]]
+        later = np.roll(values, len(values) // 2, axis=0)
+        return bool(np.abs(later - factors * values).max() <= ROUNDING * np.abs(values).max())
+
+    @cached_property
+    def half_period_mirror(self) -> bool:
+        return self._repeats((1.0, -1.0, -1.0))
+
+    @property
+    def straight(self) -> bool:
+        return False
+
+    @cached_property
+    def propels(self) -> bool:
+        return self._varies(0) and not self._reverses
+
+    @property
+    def _reverses(self) -> bool:
+        return any(self._repeats((-1.0, a, b)) for a in (1.0, -1.0) for b in (1.0, -1.0))
+
+    @cached_property
+    def cycles(self) -> int:
+        """Root mean square of the cycles in a period, of the column where it is largest."""
+        power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
+        if self.height is not None:
+            height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
+            power = np.column_stack([power, height])
+        power = power[:, power.sum(axis=0) > 0.0]
+        order = np.arange(len(power))[:, None]
+        return int(np.ceil(np.sqrt((order**2 * power).sum(axis=0) / power.sum(axis=0)).max()))
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        forward, lateral, angle = amplitude * np.moveaxis(self._plane(phase), -1, 0)
+        return velocity * phase + forward, lateral, angle
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of a straight oscillation of the same reach; under a load that oscillates
+        the edge of the area that never loses contact, over the largest radius."""
+        if self.loads:
+            least, most = self._extremes(amplitude, pressure)
+            return within_rings(float(pressure.radius(least) / pressure.radius(most)))
+        if self.rotates:
+            return None
+        reach = np.hypot(*(self._loop[:, :2] - 0.5 * (self._loop.max(0) + self._loop.min(0))[:2]).T)
+        return stick_focus(amplitude * float(reach.max()), pressure)
+
+    def stroke(self, amplitude: float, poisson: float) -> float:
+        return 0.5 * amplitude * float(np.ptp(self._loop, axis=0).max())
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        height = np.maximum(1.0 + amplitude * self._normal(phase), 0.0)
+        return pressure.of_load(height) if self.by_load else height
+
+    def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
+        """Least and largest indentation."""
+        turns = self._normal.derivative().roots(extrapolate=False)
+        phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
+        depths = self.depth(phases, amplitude, pressure)
+        return float(depths.min()), float(depths.max())
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        return self._extremes(amplitude, pressure)[1]
+
+    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
+        if not self.loads:
+            return 1.0
+        phases = np.linspace(0.0, 2.0 * np.pi, 64 * len(self.rows), endpoint=False)
+        return float(np.mean(pressure.total(self.depth(phases, amplitude, pressure))))
+
+
+FEWEST_SAMPLES = 4
+"""Least number of rows of a period, and of what a motion of every second row has."""
+ROUNDING = 1e-9
+"""Largest deviation of samples from a symmetry, over their largest value."""
+
+
+def _spline(values: np.ndarray) -> CubicSpline:
+    """Periodic cubic spline through one period of samples (first axis), over the phase."""
+    phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
+    return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
+
+
+def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
+    """Displacements (rows, 3), load or indentation (rows,) or None, and whether it is a load."""
+    given = {name: _column(name, one) for name, one in columns.items() if one is not None}
+    if not given:
+        raise InputError("forward", None, "allowed is a displacement for every row")
+    first, length = next((name, len(one)) for name, one in given.items())
+    if length < fewest:
+        raise InputError(first, length, f"allowed are at least {fewest} rows")
+    for name, one in given.items():
+        if len(one) != length:
+            raise InputError(name, len(one), f"allowed are as many rows as {first}: {length}")
+    heights = [name for name in NORMAL if name in given]
+    if len(heights) > 1:
+        raise InputError("indentation", "with a load", "allowed is one of the two")
+    for name in heights:
+        if given[name].min() < 0.0:
+            raise InputError(name, float(given[name].min()), "allowed are numbers >= 0")
+        if given[name].max() == 0.0:
+            raise InputError(name, 0.0, "allowed is a path that touches the flat")
+    rows = np.stack([given.get(name, np.zeros(length)) for name in PLANE], axis=1)
+    return rows, given[heights[0]] if heights else None, "indentation" not in given
+
+
+def _column(name: str, values: Any) -> np.ndarray:
+    try:
+        out = np.array(values, float)
+    except (TypeError, ValueError):
+        raise InputError(name, values, "allowed is an array of numbers") from None
+    if out.ndim != 1:
+        raise InputError(name, out.shape, "allowed is an array of one dimension")
+    if not np.isfinite(out).all():
+        row = int(np.argmin(np.isfinite(out)))
+        raise InputError(name, float(out[row]), f"allowed are finite numbers; this is row {row}")
+    return out

@@ -1,0 +1,275 @@
+"""Response of a real contact to a measured path: columns with units to forces in newtons.
+
+forward [um],lateral [um],load [N]
+0,0,10
+0.2,0.1,11
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from microslip.adaptive.response import Response, response
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError, shown
+from microslip.si.bodies import TwoBodies
+from microslip.si.fitting.measured import named
+from microslip.si.inputs import read_bodies, read_contact
+from microslip.si.quantities import read
+from microslip.si.tables import LABELS, table_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
+"""SI units of the columns of a path."""
+ARGUMENTS = (
+    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
+    *("young", "nu", "material", "counterbody", "hardness", "density"),
+    *("counter_hardness", "counter_density"),
+)
+"""Arguments of predict that describe a contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class RealResponse:
+    """Forces of a real contact along a path, one row each, in SI units.
+
+    Attributes
+    ----------
+    path : dict of str to np.ndarray
+        Columns of the path in SI units, by name.
+    force_forward_N, force_lateral_N, torque_N_m : np.ndarray, shape (rows,)
+        Forces and torque, in the direction of the displacement that they resist.
+    force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
+        Estimated error of either force, the larger of both, and of the torque.
+    dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
+        Work of friction since the first row, and its estimated error.
+    stick_fraction : np.ndarray, shape (rows,)
+        Fraction of the area in contact that sticks, see adaptive.response.Response.
+    u_lim_m, contact_radius_m, load_N, mu : float
+        Displacement at which the whole contact slides, contact radius, load of the reference state
+        and coefficient of friction.
+    tolerance : float
+        Requested largest error of a force over mu times the load.
+    converged : bool
+        Whether every error is within the tolerance.
+    reason : str
+        Why the response is not converged, else empty.
+    """
+
+    path: dict[str, np.ndarray]
+    force_forward_N: np.ndarray
+    force_lateral_N: np.ndarray
+    torque_N_m: np.ndarray
+    force_error_N: np.ndarray
+    torque_error_N_m: np.ndarray
+    dissipated_energy_J: np.ndarray
+    dissipated_energy_error_J: np.ndarray
+    stick_fraction: np.ndarray
+    u_lim_m: float
+    contact_radius_m: float
+    load_N: float
+    mu: float
+    tolerance: float
+    converged: bool
+    reason: str
+
+    @property
+    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Unit and values of every column, by name."""
+        path = {name: (UNITS[name], values) for name, values in self.path.items()}
+        return path | {
+            "force_forward": ("N", self.force_forward_N),
+            "force_lateral": ("N", self.force_lateral_N),
+            "torque": ("N m", self.torque_N_m),
+            "force_error": ("N", self.force_error_N),
+            "torque_error": ("N m", self.torque_error_N_m),
+            "dissipated_energy": ("J", self.dissipated_energy_J),
+            "dissipated_energy_error": ("J", self.dissipated_energy_error_J),
+            "stick_fraction": ("1", self.stick_fraction),
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """The columns as a dataset over `row`, with units."""
+        import xarray as xr  # only here: it takes a while to load
+
+        variables = {
+            name: ("row", values, {"units": unit}) for name, (unit, values) in self.columns.items()
+        }
+        names = ("u_lim_m", "contact_radius_m", "load_N", "mu", "tolerance")
+        about = {name: getattr(self, name) for name in names}
+        return xr.Dataset(variables, attrs=about | {"converged": int(self.converged)})
+
+
+def predict_response(
+    path: Any,
+    *,
+    tolerance: float = 1e-3,
+    decimal: str = ".",
+    encoding: str = "utf-8",
+    progress: Callable[[int, int], None] | None = None,
+    **contact: object,
+) -> RealResponse:
+    """Forces of a contact of two bodies that follows a measured path, in SI units.
+
+    Parameters
+    ----------
+    path : path of a CSV file, mapping or pandas DataFrame
+        Columns `forward`, `lateral`, `angle`, and `load` or `indentation`, with units as in
+        "forward [um]"; numbers without a unit are in the SI unit.
+    tolerance : float
+        Largest error of the forces over mu times the load, and of the torque over its value at full
+        slip.
+    decimal, encoding : str
+        Decimal mark and encoding of a file.
+    progress : callable or None
+        As for `microslip.response`.
+    **contact : quantity
+        mu, load, radius, material and the other arguments of `microslip.predict` that describe a
+        contact.  The load is that of the reference state.
+
+    Returns
+    -------
+    RealResponse
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument or the column.
+    """
+    strange = sorted(contact.keys() - set(ARGUMENTS))
+    if strange:
+        allowed = f"allowed are {', '.join(ARGUMENTS)}"
+        raise InputError(strange[0], contact[strange[0]], allowed)
+    arguments = dict.fromkeys(ARGUMENTS) | contact
+    for name in ("mu", "load"):
+        if arguments[name] is None:
+            raise InputError(name, None, "needed")
+    columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
+    real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
+    scales = _scales(real, columns)
+    answer = response_to(
+        path,
+        {name: columns[name] / scales[name] for name in columns},
+        pressure=real.pressure,
+        poisson=real.poisson,
+        tolerance=tolerance,
+        progress=progress,
+    )
+    force = real.mu * real.load
+    torque = force * real.contact_radius * answer.problem.pressure.torque
+    energy = force * real.u_lim
+    return RealResponse(
+        path=columns,
+        force_forward_N=force * answer.force_forward,
+        force_lateral_N=force * answer.force_lateral,
+        torque_N_m=torque * answer.torque,
+        force_error_N=force * answer.force_error[:, :2].max(axis=1),
+        torque_error_N_m=torque * answer.force_error[:, 2],
+        dissipated_energy_J=energy * answer.dissipated_energy,
+        dissipated_energy_error_J=energy * answer.dissipated_energy_error,
+        stick_fraction=answer.stick_fraction,
+        u_lim_m=real.u_lim,
+        contact_radius_m=real.contact_radius,
+        load_N=real.load,
+        mu=real.mu,
+        tolerance=answer.tolerance,
+        converged=answer.converged,
+        reason=answer.reason,
+    )
+
+
+def response_to(path: Any, columns: dict[str, np.ndarray], **settings: Any) -> Response:
+    """`microslip.response` to the columns of a table, which messages name as `path`."""
+    try:
+        return response(**columns, **settings)
+    except InputError as error:
+        if error.argument not in UNITS:
+            raise
+        problem = f"{error.argument} = {shown(error.value)}: {error.allowed}"
+        raise InputError("path", named(path), problem) from None
+
+
+def _scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
+    """Units of `microslip.response` in SI units, by column."""
+    if "indentation" in columns and not math.isfinite(contact.indentation):
+        allowed = "allowed is a load: the indentation under this pressure is not known"
+        raise InputError("indentation", None, allowed)
+    return {
+        "forward": contact.u_lim,
+        "lateral": contact.u_lim,
+        "angle": contact.u_lim / contact.contact_radius,
+        "load": contact.load,
+        "indentation": contact.indentation,
+    }
+
+
+def read_path(
+    path: Any, units: dict[str, str], *, decimal: str = ".", encoding: str = "utf-8"
+) -> dict[str, np.ndarray]:
+    """Columns of a path in SI units.
+
+    Parameters
+    ----------
+    path : path of a CSV file, mapping or pandas DataFrame
+        The table.
+    units : dict of str
+        SI units of the allowed columns; "" for pure numbers.
+    decimal, encoding : str
+        Decimal mark and encoding of a file.
+
+    Raises
+    ------
+    InputError
+        For a column or a line that cannot be read: a path has no gaps.
+    """
+    needed = {name: bool(unit) for name, unit in units.items()}
+    table = table_of("path", path, needed, decimal=decimal, encoding=encoding)
+    if table.errors:
+        raise InputError("path", named(path), next(iter(table.errors.values())))
+    columns = {}
+    for name, cells in table.columns.items():
+        if name in LABELS:
+            continue
+        if name not in units:
+            raise InputError(
+                "path", named(path), f"a column {name!r}; allowed are {', '.join(units)}"
+            )
+        where = table.lines or range(1, len(cells) + 1)
+        try:
+            numbers = [_number(*one, name, units[name]) for one in zip(where, cells, strict=True)]
+        except ValueError as error:
+            raise InputError("path", named(path), str(error)) from None
+        columns[name] = np.array(numbers)
+    if not columns:
+        raise InputError("path", named(path), f"allowed are some of {', '.join(units)}")
+    return {"forward": np.zeros(len(cells))} | columns
+
+
+def _number(where: int, cell: object, name: str, unit: str) -> float:
+    """A cell in the SI unit; raises ValueError with its line."""
+    try:
+        if isinstance(cell, str):
+            number, space, written = cell.partition(" ")
+            if space and not unit:
+                allowed = "allowed with a contact: --mu, --load, --radius and --material"
+                raise ValueError(f"line {where}: {name} is in {written}; {allowed}")
+            if space:
+                return spec.read(name, number) * _factor(name, written, unit)
+        return read(name, cell, unit, low=-math.inf).si
+    except InputError as error:
+        problem = "empty" if cell is None else f"{cell!r}: {error.allowed}"
+        raise ValueError(f"line {where}: {name} is {problem}") from None
+
+
+@lru_cache
+def _factor(name: str, written: str, unit: str) -> float:
+    """A unit over the SI unit."""
+    return read(name, f"1 {written}", unit).si
