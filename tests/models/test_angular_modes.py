@@ -6,6 +6,8 @@ import pytest
 
 from microslip.contacts.operators import multiply
 from microslip.contacts.splitting import PENALTIES
+from microslip.models.contact import energy_norm
+from microslip.models.path import EULER, SDIRK2, make_path
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
@@ -125,3 +127,41 @@ def test_resolvents_undo_the_shifted_operator(cells, angles, rotates, nu, focus,
 def contact_penalty(contact):
     """Penalty of the solver at every point of a state."""
     return contact.layout.unpack(contact.system().solver.penalty)
+
+
+MOTIONS = {
+    True: [(0, 0, 0), (0, 0, 0.7), (0.2, 0, 0.4), (0.5, 0, -0.9), (0.5, 0, -0.8)],
+    False: [(0, 0, 0), (0, 0.6, 0), (0.2, 0.3, 0), (0.4, -0.5, 0), (0.45, -0.45, 0)],
+}
+"""Paths with and without rotation: rows of forward, lateral and angle."""
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize(("rotates", "nu"), [(True, 0.0), (True, 0.3), (False, 0.3)])
+def test_a_previous_march_saves_work_and_changes_nothing(rotates, nu, integrator, rng):
+    contact = PolarContact(8, 6, rotates, nu, 0.5)
+    rows = np.array(MOTIONS[rotates], dtype=float)
+
+    def displacement(phase, sign=1.0):
+        return tuple(sign * np.interp(phase, np.arange(len(rows)), column) for column in rows.T)
+
+    path = make_path(displacement, np.arange(len(rows)), integrator)
+    ones = np.ones((6, 8))
+    state = 0.5 * contact.bound * np.stack([ones, 0.0 * ones])
+    near_by = state + 1e-3 * contact.bound * rng.normal(size=state.shape)
+    exact = contact.march(path, state, 1e-12)
+    for tolerance in (1e-4, 1e-7):
+        previous = contact.march(path, near_by, tolerance)
+        fields = previous.fields.copy()
+        plain = contact.march(path, state, tolerance)
+        warm = contact.march(path, state, tolerance, previous=previous)
+        assert np.array_equal(previous.fields, fields)
+        assert warm.iterations < 0.8 * plain.iterations
+        for march in (plain, warm):
+            assert march.residual <= march.solves * tolerance
+            assert energy_norm(contact, march.state - exact.state) < 10 * march.solves * tolerance
+            assert march.forces == pytest.approx(exact.forces, abs=10 * march.solves * tolerance)
+    # a far initial guess leads to the same state
+    path_back = make_path(lambda t: displacement(t, -1.0), np.arange(len(rows)), integrator)
+    misled = contact.march(path, state, 1e-7, previous=contact.march(path_back, -state, 1e-7))
+    assert energy_norm(contact, misled.state - exact.state) < 10 * misled.solves * 1e-7

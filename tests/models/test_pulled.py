@@ -138,3 +138,19 @@ def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
         ends.append(np.hypot(*(found.body[-1] / unit - swung)))
     assert ends[1] < 0.2
     assert np.log2(ends[0] / ends[1]) == pytest.approx(integrator.order, abs=0.35)
+
+
+@pytest.mark.parametrize("large", ["stiffness", "mass"])
+@pytest.mark.parametrize("name", CONTACTS)
+def test_a_very_stiff_or_heavy_body_follows_the_path(name, large):
+    """x is at most the force over the stiffness, or over the mass times half the time squared."""
+    build, motion, poisson = CONTACTS[name]
+    contact, label = build(), motion_named(motion)
+    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
+    start, heavy = 0.5 * forward_slip(contact), 1e7
+    numbers = {"stiffness": 0.0, "damping": 0.0, "mass": 0.0, "load": 0.0} | {large: heavy}
+    found = contact.march(path, start, 1e-11, body=Body(**numbers))
+    told = contact.march(path, start, 1e-11)
+    assert np.abs(found.body[:, 0]).max() <= (0.5 * np.pi**2 if large == "mass" else 1.0) / heavy
+    # the contact follows a displacement by no more than its stiffness
+    assert found.forces[:, 0] == pytest.approx(told.forces[:, 0], abs=1e-5)

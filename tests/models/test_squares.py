@@ -207,3 +207,22 @@ def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, r
     assert guided.residual <= guided.solves * tolerance
     again = contact.march(path, near, tolerance, previous=plain)
     assert again.iterations < 0.2 * plain.iterations
+
+
+@pytest.mark.parametrize("nu", NUS)
+def test_the_mirrored_march_is_the_march_of_the_mirror_image(nu, rng):
+    """lateral -> -lateral turns lateral displacement and angle over."""
+    contact, tolerance = CartesianContact(8, nu), 1e-10
+    start = project(rng.normal(size=(2, 8, 8)) * contact.bound, contact.bound)
+
+    def displacement(phase, sign):
+        lateral, angle = 0.4 * np.sin(phase), np.cos(phase)
+        return 0.3 * phase, sign * lateral, sign * angle
+
+    phase = np.linspace(0.0, 3.0, 13)
+    march, image = (
+        contact.march(make_path(lambda t, s=sign: displacement(t, s), phase), state, tolerance)
+        for sign, state in [(1, start), (-1, contact.mirrored(start))]
+    )
+    assert force_between(contact, image.state, contact.mirrored(march.state)) < 1e3 * tolerance
+    assert image.forces == pytest.approx(march.forces * [1, -1, -1], abs=1e3 * tolerance)

@@ -130,3 +130,15 @@ def test_friction_never_falls_with_velocity(motion):
     found = [microslip.solve(motion, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
     for slow, fast in zip(found, found[1:], strict=False):
         assert fast.mu_macro >= slow.mu_macro - slow.mu_macro_error - fast.mu_macro_error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("velocity", "amplitude"),
+    [(0.05, 0.4), (0.5, 2.0), pytest.param(0.01, 0.8, marks=pytest.mark.long)],
+)
+def test_errors_are_within_their_estimates_by_finer_runs(velocity, amplitude):
+    answer = microslip.solve(CIRCLE, velocity, amplitude)
+    finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=2e-4)
+    assert answer.converged and finer.converged
+    assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import microslip
+from microslip.models.path import make_path
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
-from microslip.solver.discretise import Resolution
+from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz, paper
@@ -115,3 +116,39 @@ def test_squares_do_not_know_such_a_load():
         microslip.solve("normal:angle=1,lateral=1", 0.1, 0.5, pressure="ellipse:ratio=0.5")
     with pytest.raises(ValueError, match="angle = 2: allowed is a share in 0..1"):
         microslip.solve("normal:angle=2", 0.1, 0.5)
+
+
+@pytest.mark.long
+def test_half_a_period_suffices_where_it_is_mirrored():
+    name = motion_named("normal:angle=1,normal_cycles=2")
+    assert name.half_period_mirror and name.half_disc
+    assert not motion_named(TURNING).half_period_mirror
+    motion = Problem(name, 0.1, 0.8, 0.2)
+    contact = build_contact(motion, "polar", Resolution(12, 8, 64))
+    path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
+    state = np.zeros((2, 8, 12))
+    for _ in range(12):
+        march = contact.march(path, state, 1e-8)
+        state = march.state
+    half = run(name.name, 0.1, 0.8, poisson=0.2, resolution=(12, 8, 128))
+    assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("motion", "finer"),
+    [
+        ("normal", 1e-3),
+        *(
+            pytest.param(*p, marks=pytest.mark.long)
+            for p in (("normal:lateral=1", 1e-3), (TURNING, 3e-3))
+        ),
+    ],
+)
+def test_errors_are_within_their_estimates_by_finer_runs(motion, finer):
+    loose, tight = (
+        microslip.solve(motion, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, finer)
+    )
+    assert loose.model == "polar"
+    within(loose, tight)
+    assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= finer

@@ -278,8 +278,11 @@ def _refined(marches: _Marches, first: int) -> Response:
     else:
         reason = f"the error is still {largest:.1e} with {level} cells"
     finest = marches.ladder.resolution(level)
+    forward, lateral, torque = limit.value[:, :3].T
     return Response(
-        *limit.value[:, :3].T,
+        force_forward=forward,
+        force_lateral=lateral,
+        torque=torque,
         force_error=error[:, :3],
         dissipated_energy=limit.value[:, 3] - limit.value[0, 3],
         dissipated_energy_error=error[:, 3],

@@ -9,7 +9,7 @@ import xarray as xr
 
 from microslip.adaptive.history import History
 from microslip.adaptive.period import Period
-from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.propulsion import PropulsionLine
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.si.prediction import Prediction

@@ -186,7 +186,7 @@ def predict_response(
     )
 
 
-def response_to(path: Any, columns: dict[str, np.ndarray], **settings: Any) -> Response:
+def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response:
     """`microslip.response` to the columns of a table, which messages name as `path`."""
     try:
         return response(**columns, **settings)

@@ -5,9 +5,9 @@ the far end of the spring, or an approximate velocity under the force.  The numb
 search does not depend on the number of steps, so a run with many steps starts from the result of a
 run with few steps.
 
-The state is an array of one dimension: the tractions, and for bodies with a memory (models/driven_body.py)
-the position x of the body ahead of the path and its rate x'.  The mirror image half a period later
-leaves x and x' as they are.
+The state is an array of one dimension: the tractions, and for bodies with a memory
+(models/driven_body.py) the position x of the body ahead of the path and its rate x'.  The mirror
+image half a period later leaves x and x' as they are.
 
 During one period unbalanced forces hardly move a heavy body, and a soft spring hardly changes its
 force.  So the map multiplies the change of x and x', as if the body were no heavier and the spring
