@@ -184,7 +184,7 @@ def test_conventions_and_provenance(name, tmp_path, solver):
                 assert variable.attrs["units"] in ("1", "rad")
                 assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
         assert data.Conventions == "CF-1.11"
-        assert data.source.startswith(f"microslip {microslip.__version__}")
+        assert data.source.startswith(f"microslip {microslip.__version__}") and data.institution
         assert data.mu_macro.ancillary_variables == "mu_macro_error"
         assert data.microslip_version == microslip.__version__
         assert len(data.source_digest) == 64

@@ -61,7 +61,7 @@ def test_conventions_and_provenance(file):
         if f"{name}_error" in data.variables:
             assert variable.attrs["ancillary_variables"] == f"{name}_error"
     assert data.Conventions == "CF-1.11"
-    assert data.source
+    assert data.source and data.institution
     assert len(data.source_digest) == len(data.results_digest) == 64
     settings = getattr(STUDIES[study][0](), study)
     assert type(settings).model_validate(json.loads(data.configuration)) == settings

@@ -134,6 +134,7 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     return {
         "Conventions": CONVENTIONS,
         "title": title,
+        "institution": "not stated",  # for the publisher of a dataset to fill in
         "source": f"microslip {microslip.__version__}: {METHOD}",
         "references": PAPER,
         "microslip_version": microslip.__version__,
