@@ -333,10 +333,7 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
             request.progress(resolution)
         return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
 
-    readings = [
-        partial(run, problem=replace(problem, pressure=other))
-        for other in problem.pressure.readings
-    ]
+    readings = [partial(run, problem=other) for other in problem.readings]
     read = attrgetter("mu" if drive.force is None else "velocity")
     refined = refine(run, ladder, tolerance, readings, read)
     if unresolved and refined.converged:

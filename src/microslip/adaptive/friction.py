@@ -73,10 +73,7 @@ def plan_for(request: Request) -> Plan:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
-    readings: list[Callable] = [
-        partial(run, problem=replace(problem, pressure=other))
-        for other in problem.pressure.readings
-    ]
+    readings: list[Callable] = [partial(run, problem=other) for other in problem.readings]
     return Plan(run, ladder, readings)
 
 

@@ -61,6 +61,8 @@ class Motion:
         together with a lateral motion has neither symmetry.
     loads : bool
         Whether the normal load oscillates, as described by `depth`, `deepest` and `mean_load`.
+    readings : tuple of Motion
+        Other motions with the same samples: the change of friction between them is an error.
     """
 
     summary: ClassVar[str] = ""
@@ -69,6 +71,7 @@ class Motion:
     amplitude_label: ClassVar[str] = "A"
     periodic: ClassVar[bool] = True
     loads: ClassVar[bool] = False
+    readings: ClassVar[tuple[Motion, ...]] = ()
     closed_form: ClassVar[Callable | None] = None
     """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None where no
     closed form is known; velocity 0 is the static limit.  None for motions without a closed

@@ -196,6 +196,15 @@ class Problem:
         """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
         return self.motion.stroke(self.size, self.poisson)
 
+    # Numbers from files
+
+    @property
+    def readings(self) -> tuple[Problem, ...]:
+        """Problems with the other readings of the same numbers, see Motion and Pressure."""
+        motions = (replace(self, motion=other) for other in self.motion.readings)
+        pressures = (replace(self, pressure=other) for other in self.pressure.readings)
+        return (*motions, *pressures)
+
     # Normal load
 
     @property
