@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +30,6 @@ from microslip.pressures.pressure import Pressure
 from microslip.solver.discretise import build_contact
 from microslip.solver.run import unsolved
 from microslip.solver.snapshots import bounds_at_phases
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Progress = Callable[[int, int], None]
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -91,10 +89,10 @@ class Response:
     start: str = field(repr=False)
 
     @property
-    def columns(self) -> dict[str, np.ndarray]:
-        """Forces, energy and stick fraction by name; `force_error` is the larger of the errors of
-        both forces."""
-        return {
+    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Unit and values of every column, by name; `force_error` is the larger error of the two
+        forces."""
+        columns = {
             "force_forward": self.force_forward,
             "force_lateral": self.force_lateral,
             "torque": self.torque,
@@ -104,14 +102,17 @@ class Response:
             "dissipated_energy_error": self.dissipated_energy_error,
             "stick_fraction": self.stick_fraction,
         }
+        return {name: ("1", values) for name, values in columns.items()}
 
-    def to_xarray(self) -> xr.Dataset:
-        """The columns as a dataset over `row`; all dimensionless."""
-        import xarray as xr  # only here: it takes a while to load
+    @property
+    def attributes(self) -> dict[str, object]:
+        """Attributes of the dataset."""
+        names = ("model", "tolerance", "reason")
+        return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
-        variables = {name: ("row", one, {"units": "1"}) for name, one in self.columns.items()}
-        about = {"model": self.model, "tolerance": self.tolerance, "converged": int(self.converged)}
-        return xr.Dataset(variables, attrs=about)
+    def to_xarray(self) -> Any:
+        """The columns as an xarray.Dataset over `row`, as `microslip.to_xarray` returns it."""
+        return import_module("microslip.datasets.of_records").to_xarray(self)
 
 
 def response(

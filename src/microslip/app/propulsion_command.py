@@ -37,8 +37,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Some motions propel a body by themselves: a loop that is not symmetric under a shift by "
         "half a period, or a normal load that is larger on the way back.  The answer is the line "
         "from the stall force, which stops the body, to the no-load velocity.  Forces are divided "
-        "by mu times the mean normal load, powers by that force, u_lim and omega.  A negative "
-        "velocity is backward."
+        "by mu times the mean normal load, powers by that force, u_lim and omega.  A heavy "
+        "body moves at a constant velocity; a negative one is backward."
     )
     parser.add_argument(
         "motion",

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from microslip.app.predict_command import GROUPS
 from microslip.app.question import Answer, add_json, add_options, respond, typed_options
 from microslip.foundation import spec
@@ -29,6 +31,8 @@ OUTPUT = {
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
 }
 ENDINGS = (".csv", ".nc")
+ROUNDING = 1e-9
+"""Largest force over its error estimate that is printed as 0."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a path without units."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
@@ -75,8 +79,8 @@ def _answer(options: argparse.Namespace) -> Answer:
     dataset = answer.to_xarray()
     if output is not None:
         _write(dataset, Path(output))
-    plain = {name: one.values.tolist() for name, one in dataset.items()} | dataset.attrs
-    plain |= {"converged": answer.converged, "reason": answer.reason}
+    plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
+    plain |= answer.attributes | {"converged": answer.converged}
     return Answer(plain, _as_text(dataset, answer), answer.converged)
 
 
@@ -98,7 +102,12 @@ def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
 def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
     """The columns as CSV, to six digits, after the reason if the response is not converged."""
     reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
-    return reason + _csv(dataset, "%.6g").rstrip("\n")
+    size = np.abs(dataset.force_error)
+    forces = {
+        name: dataset[name].where(np.abs(dataset[name]) > ROUNDING * size, 0.0)
+        for name in ("force_forward", "force_lateral", "torque")
+    }
+    return reason + _csv(dataset.assign(forces), "%.6g").rstrip("\n")
 
 
 def _csv(dataset: xr.Dataset, digits: str | None = None) -> str:

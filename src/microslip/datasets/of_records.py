@@ -10,9 +10,11 @@ import xarray as xr
 from microslip.adaptive.history import History
 from microslip.adaptive.period import Period
 from microslip.adaptive.propulsion import PropulsionLine
+from microslip.adaptive.response import Response
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.si.prediction import Prediction
+from microslip.si.response import RealResponse
 
 AXES: dict[type, tuple[str, ...]] = {
     Result: (),
@@ -31,20 +33,26 @@ def to_xarray(record: object) -> xr.Dataset:
 
     Parameters
     ----------
-    record : Result, Prediction, History, Period or PropulsionLine
-        Result of solve, predict, history, propulsion or period.
+    record : Result, Prediction, History, Period, PropulsionLine, Response or RealResponse
+        Result of solve, predict, history, period, propulsion, response or predict_response.
 
     Returns
     -------
     xarray.Dataset
-        History has the dimension `phase`, PropulsionLine `velocity`, and Period `phase` and
-        `point`; the others have none.  Fields that are None are left out.
+        History has the dimension `phase`, PropulsionLine `velocity`, Period `phase` and `point`,
+        and a response `row`; the others have none.  Fields that are None are left out.
 
     Raises
     ------
     InputError
         For another type.
     """
+    if isinstance(record, Response | RealResponse):
+        columns = {
+            name: ("row", values, {"units": unit})
+            for name, (unit, values) in record.columns.items()
+        }
+        return xr.Dataset(columns, attrs=record.attributes)
     kind = next((kind for kind in AXES if isinstance(record, kind)), None)
     if kind is None:
         names = ", ".join(kind.__name__ for kind in AXES)

@@ -180,7 +180,7 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
 def _content(name: str, place: Path) -> bytes:
     try:
         if place.is_file():
-            return content_of(place)
+            return content_of(place, MOST_BYTES)
         reason = "a folder" if place.is_dir() else "not a regular file"  # a pipe might never end
     except OSError as error:
         reason = str(error.strerror)

@@ -11,14 +11,16 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import LOOP, Motion, stick_focus, within_rings
 from microslip.pressures.pressure import Pressure
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 PLANE = ("forward", "lateral", "angle")
 NORMAL = ("load", "indentation")
@@ -283,6 +285,8 @@ ROUNDING = 1e-9
 
 def _spline(values: np.ndarray) -> CubicSpline:
     """Periodic cubic spline through one period of samples (first axis), over the phase."""
+    from scipy.interpolate import CubicSpline  # only here: it takes a while to load
+
     phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
     return CubicSpline(phase, np.concatenate([values, values[:1]]), bc_type="periodic")
 

@@ -11,7 +11,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -23,9 +24,6 @@ from microslip.si.fitting.measured import named
 from microslip.si.inputs import read_bodies, read_contact
 from microslip.si.quantities import read
 from microslip.si.tables import LABELS, table_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path."""
@@ -96,16 +94,15 @@ class RealResponse:
             "stick_fraction": ("1", self.stick_fraction),
         }
 
-    def to_xarray(self) -> xr.Dataset:
-        """The columns as a dataset over `row`, with units."""
-        import xarray as xr  # only here: it takes a while to load
+    @property
+    def attributes(self) -> dict[str, object]:
+        """Attributes of the dataset."""
+        names = ("u_lim_m", "contact_radius_m", "load_N", "mu", "tolerance", "reason")
+        return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
-        variables = {
-            name: ("row", values, {"units": unit}) for name, (unit, values) in self.columns.items()
-        }
-        names = ("u_lim_m", "contact_radius_m", "load_N", "mu", "tolerance")
-        about = {name: getattr(self, name) for name in names}
-        return xr.Dataset(variables, attrs=about | {"converged": int(self.converged)})
+    def to_xarray(self) -> Any:
+        """The columns as an xarray.Dataset over `row`, with units."""
+        return import_module("microslip.datasets.of_records").to_xarray(self)
 
 
 def predict_response(
