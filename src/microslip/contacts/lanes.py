@@ -1,8 +1,8 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
 The compiler turns operations on tuples of four numbers into vector instructions, if indices are
-unsigned.  No kernel is compiled with fastmath, which allows the compiler to reorder and fuse
-operations.  The last bits of a result would then depend on which kernels were compiled before.
+unsigned.  No kernel is compiled with fastmath.  It would allow the compiler to reorder and fuse
+operations, and the last bits of a result would depend on which kernels were compiled earlier.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 16
-"""Number of neighbouring values that are accumulated at once.  Two times four vectors are as many
-sums as the processor can accumulate in parallel."""
+"""Number of neighbouring values that are accumulated at once.  The processor can accumulate two
+times four vectors in parallel."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
 @kernel(inline="always")
 def four(values: np.ndarray, first: int) -> tuple:
-    """Four numbers of a row from the index `first` >= 0 on."""
+    """Return four numbers of a row, starting at the index `first` >= 0."""
     i = np.uint64(first)
     return values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)]
 

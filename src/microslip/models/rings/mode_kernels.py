@@ -7,7 +7,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 ACCURACY = 1e-10
-"""Relative accuracy of the kernels, much better than that of averages over rings."""
+"""Relative accuracy of the kernels, much better than the accuracy of their averages over rings."""
 MOST_GROWTH = np.log(ACCURACY / np.finfo(float).eps)
 """Logarithm of the largest growth of rounding errors in an upward recurrence."""
 DECAY = -np.log(ACCURACY)
