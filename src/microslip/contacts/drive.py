@@ -58,7 +58,7 @@ def starting_place(drive: Drive, force: float) -> float:
 def stage_balance(drive: Drive, step: int, place: float, rate: float) -> tuple[float, float]:
     """Return the stiffness and the load in the equation of a stage.
 
-    place, rate: x and x' extrapolated from the start of the step and earlier stages.
+    place, rate: parts of x and x' that follow from the start of the step and earlier stages.
     """
     length = drive.lengths[step]
     stiffness = drive.stiffness + (drive.damping + drive.mass / length) / length

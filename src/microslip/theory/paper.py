@@ -25,8 +25,8 @@ def large_amplitude_transverse(
 ) -> np.ndarray | float:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
-    It is (2/pi) K(m = -(amplitude/velocity)^2); 1 at amplitude 0, else 0 at velocity 0.
-    velocity >= 0, amplitude >= 0 (broadcast), else ValueError.
+    It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0, and 0 at velocity 0 and any
+    other amplitude. velocity >= 0, amplitude >= 0 (broadcast), else ValueError.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), accurate for every ratio v/A.
@@ -90,7 +90,7 @@ def steady_bore_traction(
     """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
     The traction has the size hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral); it is 0 in the centre of rotation. One sign in the paper's pair
+    (-forward, velocity + lateral); it is 0 at the centre of rotation. One sign in the paper's pair
     is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position from the contact
     centre; velocity >= 0 (all broadcast), else ValueError.
     """
@@ -103,7 +103,8 @@ def steady_bore_traction(
 
 
 def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity over its bound (Eq 19).
+    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity, divided by its bound (Eq
+    19).
 
     ratio >= 0 (any shape), else ValueError. The kernel is 4 E(k) at the modulus k = ratio for
     ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at 0 through 4 at 1 to
@@ -114,7 +115,7 @@ def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
 
 
 def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Kernel Q_M: torque of a ring of radius ratio*velocity over bound and radius (Eq 20).
+    """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
     ratio >= 0 (any shape), else ValueError. The kernel is 4 (E - (1 - k^2) K)/k at the modulus
     k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from pi*ratio through 4 at 1
@@ -155,7 +156,8 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 
 
 def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Torque of the steady continuous bore over its value at rest, Hertz's pressure (Eq 22).
+    """Torque of the steady continuous bore under Hertz's pressure, divided by its value at rest (Eq
+    22).
 
     It is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1.
     velocity >= 0 (any shape), else ValueError.
@@ -205,7 +207,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 
 
 def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Bore amplitude with this stick radius, D(c)/D(1/2) (Eqs 30, 31).
+    """Bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
 
     0 < stick_radius <= 1 (any shape), else ValueError.
     """
@@ -233,7 +235,7 @@ def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
 def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square of Eq 10.
 
-    amplitude >= 0 (any shape), else ValueError. For comparison only.
+    amplitude >= 0 (any shape), else ValueError. This function is for comparison only.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -256,8 +258,8 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
 
-    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. Exact
-    for Poisson's ratio 0. amplitude >= 0 in u_lim (any shape), else ValueError.
+    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. It is
+    exact for Poisson's ratio 0. amplitude >= 0 in u_lim (any shape), else ValueError.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -280,7 +282,8 @@ def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
 def _stick_zone_rule(
     c: np.ndarray, complement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Quadrature over r < c: weights for d(eta), and sqrt(1 - r^2), sqrt(c^2 - r^2) at the nodes.
+    """Quadrature over r < c: weights for d(eta), and the roots sqrt(1 - r^2) and sqrt(c^2 - r^2) at
+    the nodes.
 
     The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
     r dr is minus the product of the roots times d(eta). The substitution resolves the edge layer of
