@@ -30,7 +30,7 @@ def four(values: np.ndarray, first: int) -> tuple:
 
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """a b + c of floats, rounded once."""
+    """Return a b + c of floats with a single rounding."""
     if (a, b, c) != (types.float64,) * 3:
         return None
 
@@ -66,7 +66,7 @@ def sum_of(a: tuple) -> float:
 
 @kernel(inline="always")
 def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
-    """total + factor numbers."""
+    """Return total + factor times numbers."""
     return (
         fused(numbers[0], factor, total[0]),
         fused(numbers[1], factor, total[1]),

@@ -64,7 +64,7 @@ class Fields(NamedTuple):
     y : np.ndarray, field
         Unknown of the solver: initial guess on entry, solution on return.
     q : np.ndarray, field
-        Tractions, within the bound.
+        Tractions, which are within the friction bound.
     slip : np.ndarray, field
         Slip of the points.
     scratch : tuple of np.ndarray, field

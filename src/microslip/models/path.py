@@ -85,7 +85,7 @@ def turning_point_grading(drift: float, stroke: float) -> float:
     """Grading g of the steps, 0 to 0.8: steps at the turning points are 1 - g times the mean step.
 
     If drift and stroke are small, most forward slip of a half period occurs near the turning
-    points. If the stroke is long, the contact slides fully soon after them.
+    points.  If the stroke is long, the whole contact slides soon after a turning point.
 
     Parameters
     ----------

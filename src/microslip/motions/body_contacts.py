@@ -19,9 +19,9 @@ UNITS = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
 """Largest number of contacts of a body."""
 LIGHTEST, HEAVIEST = 1e-3, 1e3
-"""Range of the load of a contact in a text.  Other values are probably typing errors."""
+"""Allowed range of the load of a contact in a text.  Other values are probably typing errors."""
 LARGEST_SHARE = 1e3
-"""Largest amplitude of a contact in a text.  Larger values are probably typing errors."""
+"""Largest allowed amplitude of a contact in a text.  Larger values are probably typing errors."""
 
 
 @dataclass(frozen=True)

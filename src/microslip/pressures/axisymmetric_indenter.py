@@ -2,7 +2,8 @@
 
 By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
 plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c) the
-contact radius is c.  With h = D / D(1), and the friction bound as a sum of flat punches,
+contact radius is c.  With h = D / D(1), and the friction bound written as a superposition of flat
+punches,
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx

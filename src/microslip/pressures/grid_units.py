@@ -41,8 +41,8 @@ def factors(units: list[str | None]) -> list[float]:
 
 
 def _factor(name: str, text: str) -> float | None:
-    """Return the factor that converts a unit to SI units; the unit is None for a dimensionless
-    column."""
+    """Return the factor that converts a unit to SI units, or None if the column is
+    dimensionless."""
     if text in ("", "1", "-"):
         return None
     import pint  # only here, because it takes a while to load

@@ -69,7 +69,7 @@ class PointRequests:
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
-        if pressure != "hertz":  # the default is left out: names of older results stay
+        if pressure != "hertz":  # omitted if default, so that names of older results remain valid
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
             self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))

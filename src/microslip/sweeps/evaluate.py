@@ -1,4 +1,4 @@
-"""Computation of the result of a request, as plain values.
+"""Computation of the result of a request as plain values for JSON.
 
 microslip.sweeps.batches defines requests.  Functions of this module import the solver only when
 they need it.

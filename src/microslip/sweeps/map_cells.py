@@ -35,8 +35,8 @@ LOW_DEGREE = 2.0
 """Factor of second differences in the surplus: polynomials of degree 2 have a larger error relative
 to the surplus."""
 RESOLVED = 0.05
-"""A cell with a larger surplus than this is always halved, because its error can be a multiple of
-SHARE times the surplus."""
+"""A cell whose surplus exceeds this value is halved even if its error bound is small, because its
+error can then be a multiple of SHARE times the surplus."""
 SMALLEST = 2.0**-9
 """Smallest width of a cell, as a fraction of the width of a patch."""
 

@@ -7,7 +7,7 @@ it follows that:
 
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
-- bore (forward v phi t, angle phi sin t): the work of the torque replaces that of the lateral
+- bore (forward v phi t, angle phi sin t): the work of the torque replaces the work of the lateral
   force. Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
   1/5 is the second moment of Hertz's pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
   v > 1.

@@ -90,8 +90,8 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     Returns
     -------
     float
-        Stick radius divided by the contact radius. It is 0 if it would be below
-        SMALLEST_STICK_RADIUS.
+        Stick radius divided by the contact radius. Values below SMALLEST_STICK_RADIUS are replaced
+        by 0.
     """
     from scipy.optimize import brentq  # takes long to import
 

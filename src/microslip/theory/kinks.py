@@ -52,8 +52,8 @@ UNDER_ANY = {
     # 0.5, 1, 2 and 3. It passes a little above them, because this deforms the neighbouring cells
     # less. Under other pressures it saves a tenth to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
-    # Friction is full at velocities above A, because the contact never moves backward. From the
-    # amplitude 1 on the whole contact slides backward, too.
+    # Friction is full at velocities above A, because the contact never moves backward. Above the
+    # amplitude 1 the whole contact also slides backward.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
     # Springs that are pressed deeper have the same velocity. Contact is lost at the amplitude 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),

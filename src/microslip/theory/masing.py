@@ -1,10 +1,10 @@
 """Friction under longitudinal oscillation in closed form, by Masing's rules.
 
-If the sphere moves along one line, the tangential force depends on its displacement only. The force
-of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere it is 1 - (1 - d)^(3/2)
-(Cattaneo and Mindlin). After each turn the force follows the same curve at twice the scale until it
-reaches the previous turn, and then the older branch. This is exact for Poisson's ratio 0.
-Quantities are dimensionless as in `paper`.
+If the sphere moves along a line, the tangential force depends only on the history of its
+displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
+it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn the force follows the same curve at
+twice the scale until it reaches the previous turn, and then the older branch. This is exact for
+Poisson's ratio 0. Quantities are dimensionless as in `paper`.
 """
 
 from collections.abc import Callable

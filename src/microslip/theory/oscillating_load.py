@@ -76,8 +76,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
-        # springs that are always in contact, or come into contact while phi falls, have the lack of
-        # those that come into contact at the next minimum of phi
+        # springs that are always in contact, or come into contact while phi falls, have the same
+        # lack as those that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
@@ -132,7 +132,8 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Contact radii at which phi equals one of its later minima, at `later`."""
+        """Contact radii at which phi equals one of its later minima, which are at the times
+        `later`."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 level = self.phi(np.array([other]))

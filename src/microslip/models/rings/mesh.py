@@ -116,7 +116,7 @@ def _as_focus(focus: Focus | float) -> Focus:
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     """Edges (count + 1,) as angles psi, graded towards `places`; each of the places is an edge.
 
-    Between two places the widest rings are in the middle.
+    Between two places, the rings in the middle are the widest.
     """
     edge = np.pi / 2
 
