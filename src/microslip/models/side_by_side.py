@@ -7,8 +7,8 @@ carries the fraction `share` of the load, has
 
     influence extent A,   weights share w,   stiffness k share / extent.
 
-Its tractions and bounds are the same numbers as in its own units.  A rotation given in the units of
-the contact moves its points `extent` times as far in the units of the body.
+The values of its tractions and bounds are the same in both systems of units.  A rotation given in
+the units of the contact moves its points `extent` times as far in the units of the body.
 """
 
 from __future__ import annotations

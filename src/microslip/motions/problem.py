@@ -257,7 +257,7 @@ class Problem:
 
     @cached_property
     def is_balanced(self) -> bool:
-        """Whether the contacts form pairs, each of which exerts no mean forward force.
+        """Whether the contacts form pairs such that each pair exerts no mean forward force.
 
         The oscillation of each contact is then the reverse of that of its partner: the oscillation
         changes its sign after half a period, and phases in a pair differ by half a period.

@@ -1,9 +1,9 @@
 """Requests of a configuration, batches of requests, and the records of their results.
 
 A request is a plain dict of physical and numerical settings, with numbers as canonical strings.
-The name of its result is a hash of the request and the digest of the solver.  A job gets a batch of
-requests and computes only the results that are not yet in the store, regardless of which batch
-computed the others.
+The name of the result of a request is a hash of the request and of the digest of the solver.  A job
+gets a batch of requests and computes only the results that are not yet in the store, regardless of
+which batch computed the others.
 """
 
 import functools

@@ -5,8 +5,8 @@ limit has no velocity.  It is divided into patches at the known kinks of its mot
 Patches are boxes in scaled coordinates.  Below the kink of the velocity, the scaled velocity is
 proportional to the velocity to the power 1/3, which is half the power with which friction
 approaches its static limit.  There the range of amplitudes is divided at its kinks, and nodes are
-clustered at the kinks.  Above the kink of the velocity, the scaled velocity is a logarithm.
-Amplitudes without kinks are scaled by log(1 + 2 A).
+clustered at the kinks.  Above the kink of the velocity, the scaled velocity is logarithmic in the
+velocity.  Amplitudes without kinks are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations

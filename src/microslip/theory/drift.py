@@ -76,10 +76,10 @@ def antiphase_drift(force: np.ndarray | float, amplitude: np.ndarray | float) ->
     While one sphere slides at its friction bound, the other sphere sticks under 2 P - 1 of its
     bound, and the body moves with the sticking sphere. When the oscillation turns, the two spheres
     change roles and the force of each changes by 2 - 2 P. By Masing's rule each contact deforms by
-    2 (1 - P^(2/3)), twice the displacement of a first loading to 1 - P, one forward and one
-    backward. Meanwhile the body does not move. The body travels during the rest of the stroke. The
-    body moves if P > (1 - A)^(3/2), the static limit of one sphere. A body on rigid spheres has the
-    velocity (2/pi) A under any force.
+    2 (1 - P^(2/3)), twice the displacement of a first loading to 1 - P, one contact forward and the
+    other backward. Meanwhile the body does not move. The body travels during the rest of the
+    stroke. The body moves if P > (1 - A)^(3/2), the static limit of one sphere. A body on rigid
+    spheres has the velocity (2/pi) A under any force.
 
     Arguments, result and errors are those of `transverse_drift`. P = 0 gives the limit of a small
     force.

@@ -1,9 +1,9 @@
 """Closed forms of the paper, and exact static limits (v -> 0).
 
 All quantities are dimensionless. Lengths are in the contact radius a, and friction is in mu*F_z.
-Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in
-omega u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is
-the direction of the macroscopic velocity, lateral is perpendicular to it.
+Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in omega
+u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
+direction of the macroscopic velocity, and lateral is perpendicular to it.
 
 Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
 finite or outside its range.
