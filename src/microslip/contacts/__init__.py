@@ -1,1 +1,1 @@
-"""Compiled Coulomb step and march in time, which all discretised contacts share."""
+"""Compiled Coulomb step and march in time, used by all discretised contacts."""

@@ -5,7 +5,7 @@ operator and b the displacement imposed by the rigid motion and the history.  Th
 everywhere; slip occurs only where |q| = g, in the direction of q.  This is the optimality condition
 of a convex problem, and is equivalent to the fixed point
 
-    q = P_g(q + s / d)      for any d > 0;  P_g projects on the disc |q| <= g.
+    q = P_g(q + s / d) for any d > 0; P_g projects onto the disc |q| <= g.
 
 All quantities are dimensionless.
 """
@@ -19,7 +19,8 @@ from microslip.foundation.compiled import kernel
 
 @kernel(inline="always")
 def shrink(forward: float, lateral: float, bound: float) -> float:
-    """Factor in 0..1 that projects the traction (forward, lateral) on the disc |q| <= bound."""
+    """Factor between 0 and 1 that projects the traction (forward, lateral) onto the disc |q| <=
+    bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
     return min(
         1.0, bound / max(size, 1e-300)
@@ -28,8 +29,8 @@ def shrink(forward: float, lateral: float, bound: float) -> float:
 
 @kernel(inline="always")
 def extended(start: float, stage: float, end: float) -> float:
-    """Value at the end of a step, extrapolated from its start and from a stage at the share
-    `end`."""
+    """Value at the end of a step, extrapolated from its start and from a stage at the fraction
+    `end` of the step."""
     return stage if end == 1.0 else start + (stage - start) / end
 
 
@@ -37,14 +38,16 @@ def extended(start: float, stage: float, end: float) -> float:
 def coulomb_residual(
     q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
 ) -> float:
-    """Residual of Coulomb's law as a force over mu F_z: Sum weight |P_g(q + slip/scale) - q|.
+    """Residual of Coulomb's law, Sum weight |P_g(q + slip/scale) - q|, as a force divided by mu
+    F_z.
 
     Parameters
     ----------
     q, slip : np.ndarray, shape (2, n, m)
         Forward and lateral components of tractions and slip.
     bound, weight, scale : np.ndarray, shape (m,)
-        Friction bound, area of a point, and diagonal of the influence operator, equal for all n.
+        Friction bound, area of a point, and diagonal of the influence operator; they are equal for
+        all n.
     """
     rows = np.zeros(q.shape[2])  # separate sums for each ring, which the compiler can vectorise
     for j in range(q.shape[1]):
@@ -59,6 +62,6 @@ def coulomb_residual(
 
 
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Project tractions q (2, ...) on |q| <= bound; bound broadcasts to q[0]."""
+    """Project tractions q (2, ...) onto |q| <= bound; bound broadcasts to the shape of q[0]."""
     size = np.hypot(q[0], q[1])
     return q * np.where(size > bound, bound / np.maximum(size, 1e-300), 1.0)

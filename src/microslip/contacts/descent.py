@@ -1,11 +1,11 @@
 """Spectral projected gradient for a Coulomb step of contacts without a cheap resolvent (squares).
 
-Gradient steps have the lengths of Barzilai and Borwein, without a line search, because rounding
-errors of the energy are much larger than those of the tractions.  If the residual does not fall for
-a number of iterations, steps that are short enough to lower the energy are used until it falls.
+Gradient steps have Barzilai-Borwein lengths without a line search, because rounding errors of the
+energy are much larger than those of the tractions.  If the residual does not decrease for a number
+of iterations, shorter steps that always lower the energy are used until it decreases.
 
 For a driven body, the secant method finds the displacement d at which its forces balance.  The
-forward force never decreases with d, and its slope is at most the stiffness of the contact.
+forward force never decreases as d increases, and its slope is at most the stiffness of the contact.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ SHORT_STEP_BELOW = 0.3
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in a step."""
 FLATTEST = 1e-3
-"""Smallest slope of a secant over the largest possible slope."""
+"""Smallest slope of a secant divided by the largest possible slope."""
 INNER = 0.3
-"""Residual of a step at a trial displacement, over the tolerance of the driven step."""
+"""Allowed residual of a step at a trial displacement, divided by the tolerance of the driven
+step."""
 
 
 class Descent(NamedTuple):
@@ -54,9 +55,10 @@ class Descent(NamedTuple):
     patience : int
         Number of iterations in which Barzilai-Borwein steps must halve the residual.
     length : np.ndarray, shape (1,)
-        Length of the last gradient step, with which the next Coulomb step begins.
+        Length of the last gradient step.  The next Coulomb step begins with the same length.
     sums : np.ndarray, shape (3, columns)
-        Scratch array of separate sums for each column, which the compiler can vectorise.
+        Scratch array with a separate sum for each column, so that the compiler can vectorise the
+        sums.
     """
 
     largest: float
@@ -65,7 +67,7 @@ class Descent(NamedTuple):
     sums: np.ndarray
 
     def own(self) -> Descent:
-        """A copy of this solver with its own scratch arrays."""
+        """Return a copy of this solver with separate scratch arrays."""
         return self._replace(length=self.length.copy(), sums=np.empty_like(self.sums))
 
     @staticmethod
@@ -78,7 +80,7 @@ class Descent(NamedTuple):
 
 @kernel
 def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
-    """Fill the slope with its upper bound, the stiffness; there is no response."""
+    """Fill the slope with its upper bound, the stiffness.  The response is not used."""
     slope[0] = system.stiffness
 
 

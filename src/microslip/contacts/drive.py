@@ -1,17 +1,17 @@
-"""Equation of a body that a force or a spring drives forward, for compiled code.
+"""Equation of motion of a body driven by a force or a spring, for compiled code.
 
-Let x be the displacement of the contact ahead of its path.  A body of mass m with a dashpot c,
-which a constant force or a spring k drives, obeys
+Let x be the displacement of the contact relative to its path.  A body of mass m with a dashpot c,
+driven by a constant force or a spring k, obeys
 
     m x'' + c x' + k x + f = load,    f: forward force of the contact,
 
-in working units, where primes are derivatives by the phase.  The far end of the spring follows the
-path.  The integrator of the contact integrates the body as well.  With the increment d = g x' of a
-stage, where g is the implicit part of the stage, each stage adds the equation
+in working units, where primes are derivatives with respect to the phase.  The far end of the spring
+follows the path.  The integrator of the contact integrates the body as well.  With the increment d
+= g x' of a stage, where g is the implicit part of the stage, each stage adds the equation
 
     stiffness d + f(q) = load,    stiffness = k + c / g + m / g^2,
 
-to the Coulomb step.  The solution is unique, because f never decreases with d.
+to the Coulomb step.  The solution is unique, because f never decreases as d increases.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from microslip.foundation.compiled import kernel
 
 
 class Drive(NamedTuple):
-    """The equation of a driven body.
+    """The equation of motion of a driven body.
 
     Attributes
     ----------
     stiffness, damping, mass : float
         k, c and m.
     load : float
-        Constant force, over mu F_z.
+        Constant force divided by mu F_z.
     lengths : np.ndarray, shape (steps,)
         g of each step, in radians.
     start : np.ndarray, shape (2,)
-        x and x' at the start of the path; ignored without mass and dashpot.
+        x and x' at the start of the path.  They are ignored if both mass and damping are 0.
     """
 
     stiffness: float
@@ -48,7 +48,7 @@ class Drive(NamedTuple):
 
 @kernel
 def starting_place(drive: Drive, force: float) -> float:
-    """x at the start of the path, if the forward force of the contact is `force`."""
+    """Return x at the start of the path if the forward force of the contact is `force`."""
     if drive.mass > 0.0 or drive.damping > 0.0:
         return drive.start[0]
     return (drive.load - force) / drive.stiffness if drive.stiffness > 0.0 else 0.0
@@ -56,9 +56,9 @@ def starting_place(drive: Drive, force: float) -> float:
 
 @kernel
 def stage_balance(drive: Drive, step: int, place: float, rate: float) -> tuple[float, float]:
-    """Stiffness and load of the equation of a stage.
+    """Return the stiffness and the load in the equation of a stage.
 
-    place, rate: x and x' from earlier stages and the start of the step.
+    place, rate: parts of x and x' that follow from the start of the step and earlier stages.
     """
     length = drive.lengths[step]
     stiffness = drive.stiffness + (drive.damping + drive.mass / length) / length

@@ -1,7 +1,7 @@
 """Check for Ctrl-C in compiled code, which can run for minutes.
 
-Python handles a signal between two of its instructions, which compiled code does not have.  So
-compiled code calls `interrupted` from time to time and ends early after Ctrl-C.  Its caller raises
+Python handles signals only between its own instructions, so not while compiled code runs.  Compiled
+code therefore calls `interrupted` from time to time and ends early after Ctrl-C.  Its caller raises
 the signal again in Python.
 """
 
@@ -16,8 +16,9 @@ _release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
 _occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
 
 BETWEEN_LOOKS = 2e7
-"""Approximate number of multiplications between two calls of `interrupted`, some hundredths of a
-second.  A call waits for the other threads of the interpreter, so calls should be rare."""
+"""Approximate number of multiplications between two calls of `interrupted`, which corresponds to a
+few hundredths of a second.  A call waits for the other threads of the interpreter, so calls should
+be rare."""
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
 The compiler turns operations on tuples of four numbers into vector instructions, if indices are
-unsigned.  No kernel is compiled with fastmath, which allows the compiler to reorder and fuse
-operations.  The last bits of a result would then depend on which kernels were compiled before.
+unsigned.  No kernel is compiled with fastmath.  It would allow the compiler to reorder and fuse
+operations, and the last bits of a result would depend on which kernels were compiled earlier.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from numba.extending import intrinsic
 from microslip.foundation.compiled import kernel
 
 LANES = 16
-"""Number of neighbouring values that are accumulated at once.  Two times four vectors are as many
-sums as the processor can accumulate in parallel."""
+"""Number of neighbouring values that are accumulated at once.  The processor can accumulate two
+times four vectors in parallel."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
 @kernel(inline="always")
 def four(values: np.ndarray, first: int) -> tuple:
-    """Four numbers of a row from the index `first` >= 0 on."""
+    """Return four numbers of a row, starting at the index `first` >= 0."""
     i = np.uint64(first)
     return values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)]
 
 
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """a b + c of floats, rounded once."""
+    """Return a b + c of floats with a single rounding."""
     if (a, b, c) != (types.float64,) * 3:
         return None
 
@@ -66,7 +66,7 @@ def sum_of(a: tuple) -> float:
 
 @kernel(inline="always")
 def plus_multiple(total: tuple, numbers: tuple, factor: float) -> tuple:
-    """total + factor numbers."""
+    """Return total + factor times numbers."""
     return (
         fused(numbers[0], factor, total[0]),
         fused(numbers[1], factor, total[1]),

@@ -1,4 +1,4 @@
-"""The march in time along a path, for all contacts and drives.
+"""Time integration along a path (the march), for all contacts and drives.
 
 With the rigid displacement w and z = A q - w, stage i of a step is a Coulomb step (step.py) for
 tractions q_i and slip r_i,
@@ -40,7 +40,7 @@ from microslip.foundation.compiled import kernel
 
 
 class Loading(NamedTuple):
-    """Motion and friction bounds imposed on contacts along a path, and the integrator.
+    """Motion and friction bounds that are imposed on the contacts along a path, and the integrator.
 
     Attributes
     ----------
@@ -51,7 +51,8 @@ class Loading(NamedTuple):
     carry : np.ndarray, shape (stages, stages)
         Factors a_ij / gamma of the slips of earlier stages.
     end : float
-        Time of the last stage over the length of the step; below 1 the end is extrapolated.
+        Time of the last stage divided by the length of the step.  If it is below 1, the state at
+        the end of the step is extrapolated.
     """
 
     motion: np.ndarray
@@ -66,16 +67,16 @@ class Trace(NamedTuple):
     Attributes
     ----------
     state : np.ndarray, field
-        Tractions at the end.
+        Tractions at the end of the path.
     fields : np.ndarray, shape (1 + steps stages, *field)
         Unknown of the step solver at the start and after every stage.  Its projection on the bound
         is the traction.
     forces : np.ndarray, shape (1 + steps, 3)
-        Forward force, lateral force, torque at the start and after every step.
+        Forward force, lateral force and torque at the start and after every step.
     body : np.ndarray, shape (1 + steps, 2)
         x and x' of the driven body; 0 without a drive.
     residual : float
-        Residual force over mu F_z, summed over the stages.
+        Sum of the residual forces of all stages, divided by mu F_z.
     iterations : int
         Number of iterations of the step solver.
     broken : bool
@@ -111,11 +112,12 @@ def march(
     drive : drive.Drive or None
         Equation of the driven body; None if the contact follows the path.
     state : np.ndarray, field
-        Tractions at the start.
+        Tractions at the start of the path.
     guess : np.ndarray
-        Trace.fields of a march from a similar state, or an array of shape (0, ...).
+        Trace.fields of a march from a similar state, or an array of shape (0, ...) if there is
+        none.
     tolerance : float
-        Largest residual of every stage, a force over mu F_z.
+        Largest allowed residual of a stage, as a force divided by mu F_z.
 
     Returns
     -------

@@ -2,7 +2,8 @@
 
 A field has the shape (2, points), with a forward and a lateral component.  A module registers a
 class of operators with `operator`.  An object of such a class contains several operators: number 0
-is A, from tractions to displacements, and the others are the resolvents for the step solver."""
+is A, which maps tractions to displacements, and the others are the resolvents for the step
+solver."""
 
 from __future__ import annotations
 
@@ -45,7 +46,7 @@ def _multiply(operators, number, field, image):  # type: ignore[no-untyped-def]
 
 
 class Matrices(NamedTuple):
-    """Matrices that act on the rows of a field, which have equal width.
+    """Matrices that act on the rows of a field; all rows have the same width.
 
     Attributes
     ----------
@@ -68,7 +69,8 @@ class Matrices(NamedTuple):
 
 
 def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
-    """Blocks (operators, ...) for an A that is larger by a factor; resolvents are smaller by it."""
+    """Return the blocks (operators, ...) for factor times A; the resolvents are divided by the
+    factor."""
     factors = np.full(len(blocks), 1.0 / factor)
     factors[0] = factor
     return blocks * factors.reshape(-1, *(1,) * (blocks.ndim - 1))
@@ -76,7 +78,7 @@ def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
 
 @kernel(inline="always")
 def start(chunk: int, width: int) -> int:
-    """First row of a chunk; the last chunk can overlap the one before."""
+    """First row of a chunk; the last chunk can overlap the previous one."""
     return min(LANES * chunk, width - LANES)
 
 
@@ -93,7 +95,7 @@ def packed(matrices: np.ndarray, width: int) -> np.ndarray:
 @operator(Matrices)
 @kernel
 def multiply_rows(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image[c, row] = matrix[row] field[c, row]."""
+    """Set image[c, row] = matrix[row] field[c, row]."""
     _, rows, chunks, columns, _ = operators.blocks.shape
     width = field.shape[1] // rows
     for row in range(rows):

@@ -4,10 +4,10 @@ With one field y as its state, P the projection on the discs |q| <= g and s the 
 
     q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q),
 
-until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v = s (v - t), so
-that A is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
+until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v = s (v - t), so A
+itself is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
 1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a driven body is d
-times a constant field, so that the equation of the body is a division.  After every
+times a constant field, so the equation of the body is solved by a division.  After every
 BETWEEN_BALANCES iterations `rebalance` solves the equation of the body for the tractions P(y).
 
 A small penalty is best for points that stick, and a large penalty for points that slip.  Let D be
@@ -35,16 +35,16 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Number of iterations of a driven step between calls of `rebalance`.  It is above the means
-printed by benchmarks/splitting.py, so that few steps need a call."""
+"""Number of iterations of a driven step between calls of `rebalance`.  It is above the mean numbers
+of iterations printed by benchmarks/splitting.py, so few steps need a call."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
-"""Search for the balanced displacement: first and largest trial in u_lim, each four times the last,
-and number of bisections."""
+"""Search for the displacement at which the forces balance: first and largest trial in u_lim (each
+trial is four times the previous one), and number of bisections."""
 BALANCED_RINGS = 12
-"""Number of rings for which the best penalty is the self-influence of a ring if half of the points
-stick; calibrated by benchmarks/splitting.py."""
+"""Number of rings for which the best penalty equals the self-influence of a ring if half of the
+points stick; calibrated by benchmarks/splitting.py."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
-"""Possible penalties of a step over `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
+"""Possible penalties of a step divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
 
 
 class Resolvent(NamedTuple):
@@ -55,7 +55,8 @@ class Resolvent(NamedTuple):
     Attributes
     ----------
     penalty : np.ndarray, shape (points,)
-        Penalty s, displacement over traction, if half of the points stick.
+        Penalty s (displacement divided by traction) for a contact in which half of the points
+        stick.
     factors : np.ndarray, shape (levels,)
         Copy of PENALTIES.
     area : float
@@ -81,7 +82,7 @@ class Resolvent(NamedTuple):
 
 
 def resolvent(penalty: np.ndarray, weight: np.ndarray) -> Resolvent:
-    """Create the Resolvent of points with penalties and areas (points,)."""
+    """Create the Resolvent for points with these penalties and areas, shape (points,)."""
     return Resolvent(penalty, PENALTIES, float(weight.sum()), float(np.count_nonzero(weight)))
 
 
@@ -89,8 +90,8 @@ def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
     """Best penalty of each ring if half of the points stick.
 
     The splitting converges fastest if the penalty is the geometric mean of the smallest and the
-    largest eigenvalue of A.  These belong to a narrow ring and to the whole contact, and their
-    ratio is proportional to the number of rings.
+    largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring and the largest to
+    the whole contact.  Their ratio is proportional to the number of rings.
 
     Parameters
     ----------
@@ -104,7 +105,7 @@ def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
 
 @kernel
 def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
-    """Sum weight |a - b|^2 of two fields."""
+    """Return Sum weight |a - b|^2 for two fields a and b."""
     totals, points = NOTHING, len(weight)
     forward, lateral, other_forward, other_lateral = a[0], a[1], b[0], b[1]
     for group in range(points // 4):
@@ -156,7 +157,8 @@ def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.nda
 def _imbalance(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float, advance: float
 ) -> float:
-    """Residual stiffness d + forward force - load of the body, at d = displacement + advance.
+    """Residual of the equation of the body, stiffness d + forward force - load, at the displacement
+    d = displacement + advance.
 
     The advance is added to the slip of points that slip.
     """
@@ -174,8 +176,8 @@ def rebalance(
 ) -> None:
     """Shift y in place to the displacement at which the forces on the body balance.
 
-    The splitting alone converges slowly if nearly all points slip and the drive is soft.  y does
-    not change if this displacement is above LONGEST_ADVANCE."""
+    The splitting alone converges slowly if nearly all points slip and the drive is soft. y does not
+    change if the shift would exceed LONGEST_ADVANCE."""
     imbalance = _imbalance(system, balance, step, y, displacement, 0.0)
     if not abs(imbalance) > step.tolerance:
         return
@@ -200,7 +202,8 @@ def _iterate(
 ) -> tuple[int, float, float]:
     """Solve a Coulomb step from the initial guess fields.y, with at most `most` iterations.
 
-    fields.y is always the y for the penalty `Resolvent.penalty`, even if another one is used.
+    On entry and return, fields.y belongs to the penalty `Resolvent.penalty`, even if the iteration
+    uses another penalty.
     """
     guess, q, slip, b, bound = fields.y, fields.q, fields.slip, step.imposed, step.bound
     right, v, y = fields.scratch

@@ -15,7 +15,7 @@ from numba.extending import overload
 from microslip.foundation.compiled import OPTIONS
 
 LEVELS = 4
-"""Number of penalties with a resolvent."""
+"""Number of penalties for which a resolvent is available."""
 
 
 class Step(NamedTuple):
@@ -24,11 +24,11 @@ class Step(NamedTuple):
     Attributes
     ----------
     imposed : np.ndarray, field
-        Imposed displacement b, at d = 0.
+        Imposed displacement b for d = 0.
     bound : np.ndarray, shape (points,)
         Friction bound g.
     tolerance : float
-        Largest residual, a force over mu F_z.
+        Largest allowed residual, as a force divided by mu F_z.
     """
 
     imposed: np.ndarray
@@ -44,10 +44,10 @@ class Balance(NamedTuple):
     stiffness, load : float
         Coefficients of stiffness d + forward force = load.
     response : np.ndarray, shape (levels, *field)
-        Response of the resolvent of each penalty to d = 1, tractions.
+        Tractions in response to d = 1, computed with the resolvent of each penalty.
     slope : np.ndarray, shape (levels,)
-        Forward force of each response, or the stiffness of a contact without resolvents; empty
-        without a driven body.
+        Forward force of each response, or the stiffness of a contact without resolvents.  The array
+        is empty if there is no driven body.
     """
 
     stiffness: float
@@ -64,7 +64,7 @@ class Fields(NamedTuple):
     y : np.ndarray, field
         Unknown of the solver: initial guess on entry, solution on return.
     q : np.ndarray, field
-        Tractions, within the bound.
+        Tractions, which are within the friction bound.
     slip : np.ndarray, field
         Slip of the points.
     scratch : tuple of np.ndarray, field
@@ -85,9 +85,9 @@ _SOLVERS: dict[type, tuple[Callable, Callable, Callable]] = {}
 
 
 def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable:
-    """Decorator that registers the kernel behind `solve_step` for solvers of the class `of`.
+    """Decorator that registers the kernel called by `solve_step` for solvers of the class `of`.
 
-    solve_driven, respond: kernels behind `solve_driven_step` and `response_to_drive`.
+    solve_driven, respond: kernels called by `solve_driven_step` and `response_to_drive`.
     """
 
     def register(function: Callable) -> Callable:
@@ -109,7 +109,7 @@ def solve_step(
     iterations : int
         Number of iterations; -1 after an interrupt.
     residual : float
-        Residual force over mu F_z.
+        Residual force divided by mu F_z.
     displacement : float
         Always 0.
     """
@@ -121,7 +121,7 @@ def solve_driven_step(
 ) -> tuple[int, float, float]:
     """Solve a Coulomb step of a driven contact, in compiled code.
 
-    Returns the values of `solve_step`; the third one is the displacement d of the body.
+    Returns the same values as `solve_step`, with the displacement d of the body as the third value.
     """
     raise NotImplementedError("solve_driven_step is for compiled code")
 

@@ -1,6 +1,6 @@
 """Contacts in compiled code: points, elastic operators, and sums over the points.
 
-A field has the shape (2, points), with the forward and lateral component at every point of one
+A field has the shape (2, points): forward and lateral components at the points of all contacts, one
 contact after the other.  Additional points with area 0 and friction bound 0 are allowed.
 """
 
@@ -15,7 +15,7 @@ from microslip.contacts.operators import multiply
 from microslip.foundation.compiled import kernel
 
 COMPLIANCE = 0
-"""Number of the operator A."""
+"""Index of the operator A among the operators of a contact."""
 
 
 class System(NamedTuple):
@@ -24,23 +24,26 @@ class System(NamedTuple):
     Attributes
     ----------
     operators : NamedTuple
-        A, from tractions to displacements, and the resolvents of the solver; see operators.py.
+        The operator A, which maps tractions to displacements, and the resolvents of the solver; see
+        operators.py.
     solver : Resolvent or Descent
         Solver of Coulomb steps: splitting.Resolvent or descent.Descent.
     scale : np.ndarray, shape (points,)
-        Displacement of each point under a unit traction on itself.
+        Displacement of each point under a unit traction on the same point.
     weight : np.ndarray, shape (points,)
         Area of each point.
     positions : np.ndarray, shape (2, points)
-        Forward and lateral position of the points, over the contact radius.
+        Forward and lateral coordinate of the points divided by the contact radius.
     first : np.ndarray of int, shape (contacts + 1,)
-        Index of the first point of each contact, and the number of all points.
+        Index of the first point of each contact, followed by the total number of points.
     mirror : np.ndarray of int, shape (points,)
         Index of the mirror image of each point, under lateral -> -lateral.
     resultants : np.ndarray, shape (3,)
-        1 for each of forward force, lateral force and torque, or 0 if symmetry cancels it.
+        Factors of the forward force, the lateral force and the torque: 0 if symmetry cancels this
+        component, otherwise 1.
     stiffness : float
-        Force over mu F_z for a uniform displacement u_lim without slip, or an upper bound on it.
+        Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
+        this value.
     """
 
     operators: Any  # of a class that is registered with operators.operator
@@ -78,7 +81,7 @@ def move_forward(factor: float, out: np.ndarray) -> None:
 
 @kernel(inline="always")
 def sum_forces(system: System, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill out (3,) with forward force, lateral force and torque of tractions."""
+    """Fill out (3,) with the forward force, the lateral force and the torque due to tractions."""
     positions, resultants = system.positions, system.resultants
     ahead, aside, torque = 0.0, 0.0, 0.0
     for i in range(q.shape[1]):
@@ -91,7 +94,7 @@ def sum_forces(system: System, q: np.ndarray, out: np.ndarray) -> None:
 
 @kernel(inline="always")
 def forward_force(system: System, q: np.ndarray) -> float:
-    """Forward force of tractions."""
+    """Return the forward force due to tractions."""
     force = 0.0
     for i in range(q.shape[1]):
         force += system.weight[i] * q[0, i]
@@ -108,7 +111,8 @@ def mirrored(system: System, state: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def force_norm(system: System, change: np.ndarray, scratch: np.ndarray) -> float:
-    """Upper bound on the force of a change of tractions: |dF|^2 <= stiffness <dq, A dq>."""
+    """Upper bound on the change of force due to a change of tractions: |dF|^2 <= stiffness <dq, A
+    dq>."""
     multiply(system.operators, COMPLIANCE, change, scratch)
     energy = 0.0
     for c in range(2):
@@ -119,7 +123,7 @@ def force_norm(system: System, change: np.ndarray, scratch: np.ndarray) -> float
 
 @kernel(inline="always")
 def project(q: np.ndarray, bound: np.ndarray) -> None:
-    """Project tractions on the friction bound, in place."""
+    """Project tractions onto the friction bound, in place."""
     for i in range(q.shape[1]):
         f = shrink(q[0, i], q[1, i], bound[i])
         q[0, i], q[1, i] = f * q[0, i], f * q[1, i]
@@ -127,7 +131,7 @@ def project(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel(inline="always")
 def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
-    """out += factor values, for fields."""
+    """Add factor times values to the field `out`."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] += factor * values[c, i]

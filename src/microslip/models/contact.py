@@ -26,17 +26,18 @@ class March:
     state : np.ndarray, shape (2, n_angles, n_radii) or (2, n, n)
         Forward and lateral tractions at the end of the path.
     forces : np.ndarray, shape (steps + 1, 3)
-        Forward force, lateral force, torque at each phase, over mu F_z and mu F_z a.
+        Forward force, lateral force and torque at each phase.  Forces are divided by mu F_z, and
+        the torque by mu F_z a.
     residual : float
-        Residual force of the step solver over mu F_z, summed over the stages.
+        Sum of the residual forces of the step solver at all stages, divided by mu F_z.
     iterations, solves : int
-        Step-solver iterations and stages.
+        Number of iterations of the step solver, and number of stages.
     fields : np.ndarray or None, shape (1 + steps stages, shape of state)
-        Unknown of the step solver at the start and after every stage.  It is the initial guess of a
-        march along the same path from a similar state.
+        Unknown of the step solver at the start and after every stage.  A march along the same path
+        from a similar state can use it as its initial guess.
     body : np.ndarray, shape (steps + 1, 2)
-        Displacement x of a driven body ahead of the path, and its derivative x' by the phase; empty
-        for models without drives.
+        Displacement x of a driven body relative to the path, and its derivative x' with respect to
+        the phase.  The array is empty for models without drives.
     """
 
     state: np.ndarray
@@ -53,13 +54,13 @@ class Guess(Protocol):
 
     @property
     def fields(self) -> np.ndarray | None:
-        """See March."""
+        """Unknown of the step solver, see `March.fields`."""
 
 
 class StepFailure(SolverError):
-    """Error of a march whose tractions are not finite, or whose step cannot be solved.
+    """Raised if the tractions of a march are not finite, or if a step cannot be solved.
 
-    The message becomes the reason in the result.
+    The error message is stored as the reason in the result.
     """
 
 
@@ -72,26 +73,28 @@ class Contact(Protocol):
     Attributes
     ----------
     angles : int
-        Number of angular points of a ring; 1 for contacts without them.
+        Number of angular points on a ring; 1 for contacts without angular points.
     bound, weight : np.ndarray
-        Friction bound and area of each point; they broadcast to state[0].
+        Friction bound and area of each point; both arrays broadcast to the shape of state[0].
     compliance : np.ndarray
-        Displacement of each point under a unit traction on itself; broadcasts to state[0].
+        Displacement of each point under a unit traction on the same point; broadcasts to the shape
+        of state[0].
     forward_position, lateral_position : np.ndarray
-        Coordinates of the points over a, with the shape of state[0].
+        Coordinates of the points divided by a, with the shape of state[0].
     compiled : bool
-        Whether compiled code searches for the periodic state.  The contact then has a `system`.
+        Whether compiled code searches for the periodic state.  If so, the contact has a `system`.
     stiffness : float
-        Force over mu F_z for a uniform displacement u_lim without slip, or an upper bound on it.
+        Force for a uniform displacement u_lim without slip, divided by mu F_z, or an upper bound on
+        this value.
     sticks : bool
         Whether points can stick, so that the static limit of friction is not 0.
     grading : float or None
-        Grading of the steps towards the turning points; None for that of the problem.
+        Grading of the steps towards the turning points; None to use the grading of the problem.
     edges : np.ndarray or None, shape (cells + 1,)
         Radii between the rings; None for contacts without rings.
     radius : float
-        Largest contact radius over the reference radius, if the normal load changes.  `bound` is
-        then the friction bound at the start of a period.
+        If the normal load changes: largest contact radius divided by the reference radius.  In this
+        case `bound` is the friction bound at the start of a period.
     """
 
     angles: int
@@ -110,12 +113,13 @@ class Contact(Protocol):
         """Elastic displacement A q of each point under tractions q, with the shape of the state."""
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions of a coarser contact to the points of this one; None if
-        impossible."""
+        """Interpolate tractions from a coarser mesh to the points of this contact.  Returns None if
+        this is not possible."""
         return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """The state after lateral -> -lateral (lateral traction negated)."""
+        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        tractions."""
 
     def march(
         self,
@@ -124,18 +128,18 @@ class Contact(Protocol):
         tolerance: float,
         previous: Guess | None = None,
     ) -> March:
-        """March along a path.
+        """Integrate the contact along a path.
 
         Parameters
         ----------
         path : Path
-            The motion, cut into steps.
+            The motion, divided into time steps.
         state : np.ndarray
-            Tractions at the start.
+            Tractions at the start of the path.
         tolerance : float
-            Largest residual of every stage, a force over mu F_z.
+            Largest allowed residual of a stage, as a force divided by mu F_z.
         previous : Guess or None
-            March along the same path from a similar state, for initial guesses.
+            Earlier march along the same path from a similar state, which provides initial guesses.
         """
 
 
@@ -143,9 +147,10 @@ class DirectContact(Contact, Protocol):
     """A contact that computes its periodic state directly, without a search."""
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Tractions of the periodic state at the start of the path.
+        """Return the tractions of the periodic state at the start of the path.
 
-        mirror: whether the path is half a period, and the other half is its mirror image.
+        mirror: True if the path is half a period and the other half of the period is its mirror
+        image.
         """
 
 
@@ -153,21 +158,23 @@ class GrowingContact(Contact, Protocol):
     """A contact whose normal load can change."""
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
-        """Friction bounds at depths (n,), one row for each."""
+        """Friction bounds at the depths (n,), one row for each depth."""
 
     def bounds_along(self, path: Path) -> np.ndarray:
-        """Friction bounds at the start and at every stage of a path, one row for each."""
+        """Friction bounds at the start and at every stage of a path, one row for each of these
+        times."""
 
 
 def energy_norm(contact: Contact, change: np.ndarray) -> float:
-    """Upper bound on the force (over mu F_z) of a change of tractions, from its elastic energy:
-    |dF| <= sqrt(stiffness <dq, A dq>)."""
+    """Upper bound on the change of force due to a change of tractions, divided by mu F_z.  It
+    follows from the elastic energy: |dF| <= sqrt(stiffness <dq, A dq>)."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
     return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
 
 
 def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
-    """Tractions on the friction bound in the direction of a field; 0 where the field is 0."""
+    """Tractions equal to the friction bound in the direction of a vector field; 0 where the field
+    is 0."""
     size = np.hypot(forward, lateral)
     with np.errstate(invalid="ignore", divide="ignore"):
         unit = np.where(size > 0, np.stack([forward, lateral]) / size, 0.0)
@@ -175,14 +182,15 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
-    """Forward tractions on the friction bound: the state after sliding forward only."""
+    """Forward tractions equal to the friction bound, which is the state after forward sliding."""
     out = np.zeros((2, *contact.forward_position.shape))
     out[FORWARD] = contact.bound
     return out
 
 
 def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
-    """Forward force, lateral force (mu F_z) and torque (mu F_z a) of tractions, shape (3,)."""
+    """Forward force and lateral force (in mu F_z) and torque (in mu F_z a) due to tractions, shape
+    (3,)."""
     forward, lateral = loads = contact.weight * state
     torque = np.vdot(contact.lateral_position, forward) - np.vdot(contact.forward_position, lateral)
     return np.array([*loads.sum(axis=(1, 2)), torque])

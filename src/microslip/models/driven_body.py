@@ -1,4 +1,5 @@
-"""A body that a force or a spring drives, and its equation along a path (contacts/drive.py)."""
+"""A body driven by a force or a spring, and its equation of motion along a path
+(contacts/drive.py)."""
 
 from __future__ import annotations
 
@@ -17,10 +18,10 @@ class Body:
     Attributes
     ----------
     stiffness, damping, mass : float
-        k over mu F_z / u_lim, and c and m in the same units with the phase as time; all are 0 if a
-        constant force alone drives a body without mass.
+        Stiffness k divided by mu F_z / u_lim, and damping c and mass m in the same units with the
+        phase as time. All are 0 for a massless body driven by a constant force.
     load : float
-        Constant force, over mu F_z.
+        Constant force divided by mu F_z.
     """
 
     stiffness: float
@@ -30,11 +31,11 @@ class Body:
 
     @property
     def remembers(self) -> bool:
-        """Whether x and x' belong to the state; otherwise x follows from the tractions."""
+        """Whether x and x' are part of the state. Otherwise x is computed from the tractions."""
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray) -> Drive:
-        """The Drive along a path, from x and x' at its start, shape (2,)."""
+        """Return the Drive for a path, given x and x' at the start of the path, shape (2,)."""
         share = 1.0 / (1.0 + path.carry[-1].sum())  # a stiffly accurate method carries the rest
         lengths = share * np.diff(path.phase)
         return Drive(

@@ -1,4 +1,4 @@
-"""Paths in time: phases, stages of the integrator, and the rigid displacement at each of them.
+"""Paths in time: phases, stages of the integrator, and the rigid displacement at each stage.
 
 With the elastic displacement A q, the rigid displacement w and z = A q - w, the contact obeys dz =
 -(slip), where Coulomb's law connects slip and traction.  This is a rate-independent differential
@@ -8,8 +8,9 @@ every stage is one Coulomb step,
     A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
 
 with r_i = gamma h (slip rate).  The last stage is the end of the step, so that tractions at the end
-of a step are within the friction bound.  Backward Euler has a single stage.  A theta method has its
-stage before the end of the step and extrapolates to the end, where tractions can exceed the bound.
+of a step are within the friction bound.  Backward Euler has a single stage.  In a theta method the
+single stage is before the end of the step.  The state is extrapolated to the end, where tractions
+can exceed the bound.
 """
 
 from __future__ import annotations
@@ -38,12 +39,13 @@ class Integrator:
     order : int
         Order of convergence.
     times : tuple of float
-        Stage times c over the length of the step.
+        Stage times c divided by the length of the step.
     carried : tuple of tuple of float
         Carried slips a_ij / gamma, (stages, stages), zero on and above the diagonal.
     end : float
-        Time of the last stage over the length of the step.  Below 1, for a single stage, the state
-        at the end is extrapolated, and its tractions can exceed the friction bound.
+        Time of the last stage divided by the length of the step.  If it is below 1 (methods with a
+        single stage), the state at the end of the step is extrapolated, and its tractions can
+        exceed the friction bound.
     """
 
     name: str
@@ -55,41 +57,41 @@ class Integrator:
 
 EULER = Integrator("euler", 1, (1.0,), ((0.0,),))
 SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((0.0, 0.0), ((1.0 - _GAMMA) / _GAMMA, 0.0)))
-"""The default: two stages, L-stable, second order; far more accurate than backward Euler for the
-same work."""
+"""Default integrator: L-stable, second order, with two stages.  It is far more accurate than
+backward Euler for the same work."""
 
 
 def theta_method(theta: float) -> Integrator:
-    """The integrator with one stage at the share `theta` of the step.
+    """Return the integrator with one stage, at the fraction `theta` of the step.
 
-    theta is from 0.5 (midpoint rule, second order) to 1 (backward Euler, first order as all
-    others). Raises ValueError for another theta."""
+    theta is between 0.5 (midpoint rule, second order) and 1 (backward Euler); the order is 1 for
+    every theta above 0.5.  Raises ValueError for another theta."""
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
     return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((0.0,),), theta)
 
 
 LONG_STROKE = 16.0
-"""Stroke in u_lim above which the number of steps is constant.  On a line, the steps are then
-graded towards the turning points."""
+"""Stroke in u_lim above which the number of steps is constant.  For motion along a line, the steps
+are then graded towards the turning points."""
 STRONGEST_GRADING = 0.8
 """Largest grading of the steps."""
 GRADED_DRIFT = 0.02
-"""Drift in a radian, in u_lim, at which the grading is half of the largest."""
+"""Drift per radian of phase, in u_lim, at which the grading is half its largest value."""
 GRADED_STROKE = 2.0
-"""Stroke in u_lim at which the grading is half of the largest."""
+"""Stroke in u_lim at which the grading is half its largest value."""
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """Grading g of the steps, 0 to 0.8: steps at the turning points are 1 - g of the mean step.
+    """Grading g of the steps, 0 to 0.8: steps at the turning points are 1 - g times the mean step.
 
     If drift and stroke are small, most forward slip of a half period occurs near the turning
-    points. If the stroke is long, the contact slides fully soon after them.
+    points.  If the stroke is long, the whole contact slides soon after a turning point.
 
     Parameters
     ----------
     drift : float
-        Mean forward displacement in a radian of phase, in u_lim.
+        Mean forward displacement per radian of phase, in u_lim.
     stroke : float
         Amplitude of the oscillation, in u_lim.
     """
@@ -103,9 +105,9 @@ def turning_point_width(drift: float, stroke: float) -> float:
 
     Outside the zone, steps are proportional to the distance from the turning point.  The width is
     infinite for short strokes, to which the grading alone applies.  The slip reverses within the
-    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim in a
-    radian or below the drift.  The term LONG_STROKE**2 / stroke shrinks the zone gradually from
-    LONG_STROKE on, where the longest step is twice the shortest."""
+    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian
+    or below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
+    zone gradually.  At the stroke LONG_STROKE the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
@@ -113,7 +115,7 @@ def turning_point_width(drift: float, stroke: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A stretch of rigid motion cut into steps.
+    """A rigid motion over an interval of phase, divided into steps.
 
     Attributes
     ----------
@@ -126,10 +128,10 @@ class Path:
     carry : np.ndarray, shape (stages, stages)
         Carried slips, see Integrator.
     end : float
-        Time of the last stage over the length of the step, see Integrator.
+        Time of the last stage divided by the length of the step, see Integrator.
     depth : np.ndarray or None, shape (1 + steps * stages,)
-        Indentation depth over the reference depth at the start and at every stage; None if it is
-        constant.
+        Indentation depth divided by the reference depth, at the start and at every stage; None if
+        the depth is constant.
     """
 
     phase: np.ndarray
@@ -155,7 +157,7 @@ class Path:
 
     @cached_property
     def share(self) -> np.ndarray:
-        """Duration of each step over that of the path, (steps,)."""
+        """Duration of each step divided by the duration of the path, shape (steps,)."""
         return np.diff(self.phase) / (self.phase[-1] - self.phase[0])
 
     def mean(self, values: np.ndarray) -> np.ndarray:
@@ -170,8 +172,8 @@ class BodyPath(Path):
     Attributes
     ----------
     each : tuple of path.Path
-        Path of each contact relative to that of the body, cut into the same steps.  Only these
-        paths have a `depth`.
+        Path of each contact relative to the path of the body, divided into the same steps.  Only
+        these paths have a `depth`.
     """
 
     each: tuple[Path, ...] = ()
@@ -189,7 +191,7 @@ def make_path(
     integrator: Integrator = SDIRK2,
     depth: Callable | None = None,
 ) -> Path:
-    """Create the path of a motion, cut into steps at phases.
+    """Create the path of a motion, divided into steps at the given phases.
 
     Parameters
     ----------
@@ -200,7 +202,8 @@ def make_path(
     integrator : Integrator
         Method that determines the stages.
     depth : callable or None
-        depth(phase) -> indentation depth over the reference depth; None if it is constant.
+        depth(phase) -> indentation depth divided by the reference depth; None if the depth is
+        constant.
     """
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]

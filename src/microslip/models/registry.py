@@ -17,9 +17,9 @@ An exact model converges to the solution of the contact problem as cells and ste
 approximate model neglects elasticity, partial slip or the interaction of points, whatever its
 resolution.
 
-Every model has the interface `models.contact.Contact`.  A new model is a file beside these and a
-row in `MODELS`.  A model is imported when its first contact is built, because compiled code takes a
-while to load and closed forms do not need it."""
+Every model has the interface `models.contact.Contact`.  To add a model, add a file to this folder
+and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
+code takes a while to load and closed forms do not need it."""
 
 from __future__ import annotations
 
@@ -46,9 +46,10 @@ class Model:
     exact : callable
         exact(problem) -> whether the model converges to the solution of the contact problem.
     axes : callable
-        axes(problem) -> the axes of its mesh that can be refined: "cells", "angles".
+        axes(problem) -> names of the mesh axes that can be refined: "cells", "angles".
     drivable : bool
-        Whether a force or a spring can drive its contact, and a body can rest on several of them.
+        Whether the contact can be driven by a force or a spring, and whether a body can rest on
+        several such contacts.
     """
 
     build: Callable
@@ -76,7 +77,7 @@ def _refuse_other_loads(problem: Problem) -> str:
 
 
 def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
-    """Combine checks to one that returns the first reason that is not empty, or ""."""
+    """Combine checks into one that returns the first non-empty reason, or ""."""
     return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 

@@ -1,13 +1,14 @@
-"""Several contacts that carry one body and share its displacement; they are far apart otherwise.
+"""Several contacts that carry one body.  They share its displacement and do not interact
+elastically.
 
-Units are those of the body: u_lim of a contact under the mean load, and mu times the load of all
-contacts.  A contact whose u_lim is `extent` times larger, and which carries a `share` of the load,
-has
+Units are those of the body: displacements are in u_lim of a contact under the mean load, and forces
+in mu times the load of all contacts.  A contact whose u_lim is `extent` times larger, and which
+carries the fraction `share` of the load, has
 
     influence extent A,   weights share w,   stiffness k share / extent.
 
-Its tractions and bounds are the same numbers as in its own units.  An angle in its own units moves
-its points by `extent` times as much in units of the body.
+The values of its tractions and bounds are the same in both systems of units.  A rotation given in
+the units of the contact moves its points `extent` times as far in the units of the body.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ from microslip.models.system_contact import SystemContact
 
 
 class SideBySide(SystemContact):
-    """Contacts of equal shape on one body; their states are joined along axis 2.
+    """Contacts of equal shape on one body, whose states are concatenated along axis 2.
 
     Parameters
     ----------
     contacts : sequence of SystemContact
         The contacts, each in its own units.
     shares, extents : sequence of float
-        Fraction of the load of the body that each contact carries (sum 1), and u_lim of each
-        contact over that of the body.
+        Fraction of the load of the body that each contact carries (the sum is 1), and u_lim of each
+        contact divided by u_lim of the body.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class SideBySide(SystemContact):
         self.resultants = first.resultants
 
     def solver(self, weight: np.ndarray) -> Any:
-        """Solver of a Coulomb step for points with the areas `weight`."""
+        """Create the solver of a Coulomb step for points with the areas `weight`."""
         each = [one.system().solver for one in self._contacts]
         return each[0].joined(each, self._extents, weight)
 

@@ -1,4 +1,4 @@
-"""Base class of contacts that march in compiled code (microslip.contacts)."""
+"""Base class of contacts whose march runs in compiled code (microslip.contacts)."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ from microslip.models.path import Path
 class Layout(NamedTuple):
     """Conversion between states (2, rows, columns) and the fields (2, points) of compiled code.
 
-    In a state the contacts of a body are joined along the columns; in a field they follow one
-    another.
+    In a state, the contacts of a body are concatenated along the columns. In a field, the points of
+    one contact follow those of the other.
 
     Attributes
     ----------
     contacts, rows, columns : int
-        Number of contacts, and rows and columns of each.
+        Number of contacts, and number of rows and columns of each contact.
     width : int
-        Columns of each contact in a field; the additional points have neither area nor bound.
+        Number of columns of each contact in a field. The additional points have area 0 and friction
+        bound 0.
     """
 
     contacts: int
@@ -59,27 +60,28 @@ class Layout(NamedTuple):
         return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
 
     def images(self, mirror: np.ndarray) -> np.ndarray:
-        """Indices of the mirror images of the points of a field, from those of a state (flat)."""
+        """Convert flat indices of mirror images from the points of a state to the points of a
+        field."""
         place = self.pack(np.arange(mirror.size).reshape(self.rows, -1), -1)
         point = np.argsort(place, kind="stable")[np.count_nonzero(place < 0) :]
         return np.where(place < 0, np.arange(place.size), point[mirror[place]])
 
 
 class SystemContact(Contact):
-    """A contact with a System for compiled code (see models.contact.Contact).
+    """A contact with a System for compiled code; see models.contact.Contact.
 
     Attributes
     ----------
     compiled : bool
         True, because compiled code searches for the periodic state.
     layout : Layout
-        Conversion between states and fields.
+        Converter between states and fields.
     mirror : np.ndarray of int
         Flat index of the mirror image of each point of a state, under lateral -> -lateral.
     operators : NamedTuple
         The operator A and the resolvents, see contacts/operators.py.
     resultants : np.ndarray, shape (3,)
-        See system.System.
+        Forces that symmetry does not cancel; see system.System.
     """
 
     compiled = True
@@ -122,7 +124,8 @@ class SystemContact(Contact):
         return out
 
     def solver(self, weight: np.ndarray) -> Any:
-        """Solver of a Coulomb step for points with the areas `weight`, by resolvents of rings."""
+        """Create the solver of a Coulomb step for points with the areas `weight`; it uses
+        resolvents of rings."""
         penalty = best_penalty(self.compliance, self.layout.columns)
         return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
 
@@ -141,11 +144,12 @@ class SystemContact(Contact):
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def affordable(self, work: float) -> float:
-        """Number of marches, of `work` each, until the budget must be checked; infinite here."""
+        """Number of marches, each of the cost `work`, until the budget must be checked; infinite in
+        this base class."""
         return np.inf
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Subtract marches of compiled code from the budget; does nothing here."""
+        """Subtract marches of compiled code from the budget; does nothing in this base class."""
         return
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
@@ -156,7 +160,8 @@ class SystemContact(Contact):
         return self.layout.unpack(image)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """The state after lateral -> -lateral (lateral traction negated)."""
+        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        tractions."""
         return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 
     def march(
@@ -171,8 +176,8 @@ class SystemContact(Contact):
     ) -> March:
         """March along a path; see models.contact.Contact.
 
-        body: driven body that the contact carries; None if the contact follows the path.  start: x
-        and x' of the body at the start of the path, shape (2,); None for zeros.
+        body: driven body on the contact; None if the contact follows the path. start: x and x' of
+        the body at the start of the path, shape (2,); None for zeros.
         """
         drive = None if body is None else body.along(path, np.zeros(2) if start is None else start)
         loading, pack, unpack = self.loading(path), self.layout.pack, self.layout.unpack

@@ -1,7 +1,8 @@
-"""Load on each part of the contact of an axisymmetric indenter, as functions of the depth.
+"""Load on each part of the contact of an axisymmetric indenter, as a function of the depth.
 
-The depth is the indentation over that of the reference state, which has the radius a and the load
-F_z.  Everything else is in working units (see pressures/pressure.py).
+The depth is the indentation divided by its value in the reference state, in which the contact
+radius is a and the load is F_z.  All other quantities are in working units (see
+pressures/pressure.py).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> n
 
 
 def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Load of the springs of dimensionality reduction within |x| < edges, shape (k, n + 1).
+    """Load of the springs within |x| < edges in the method of dimensionality reduction, (k, n + 1).
 
     The spring at x carries G* (d - h(x)) per length at the depth d, where h(x) is the depth for the
     contact radius x.  The integral of x h' is the load of a contact of this radius.

@@ -1,4 +1,5 @@
-"""Contacts that carry one body, and their text "load=1,phase=0,amplitude=1;load=1,phase=180".
+"""Contacts that carry one body, and their text format
+"load=1,phase=0,amplitude=1;load=1,phase=180".
 
 Each contact has its own load, phase and amplitude of the oscillation.  All contacts move forward
 with the body.
@@ -18,9 +19,9 @@ UNITS = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
 """Largest number of contacts of a body."""
 LIGHTEST, HEAVIEST = 1e-3, 1e3
-"""Range of the load of a contact in a text; other values are probably typing errors."""
+"""Allowed range of the load of a contact in a text.  Other values are probably typing errors."""
 LARGEST_SHARE = 1e3
-"""Largest amplitude of a contact in a text; larger values are probably typing errors."""
+"""Largest allowed amplitude of a contact in a text.  Larger values are probably typing errors."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,11 @@ class BodyContact:
     Parameters
     ----------
     load : float
-        Normal load over the mean load of the contacts, above 0.
+        Normal load divided by the mean load of the contacts, above 0.
     phase : float
-        Phase lead of its oscillation over the oscillation of the motion, in degrees.
+        Phase lead of the oscillation of this contact relative to that of the motion, in degrees.
     amplitude : float
-        Amplitude of its oscillation over that of the motion, at least 0.
+        Amplitude of the oscillation of this contact divided by that of the motion, at least 0.
 
     Raises
     ------
@@ -54,7 +55,7 @@ class BodyContact:
 
 
 def contacts_of(text: str) -> tuple[BodyContact, ...]:
-    """Parse the text of several contacts; loads are divided by their mean.
+    """Parse the text that describes several contacts.  The loads are divided by their mean.
 
     Raises InputError about `contacts` if the text cannot be parsed.
     """
@@ -75,7 +76,7 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
 
 
 def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
-    """Text of contacts, with 12 digits; the inverse of `contacts_of`."""
+    """Return the text that describes contacts, with 12 digits; the inverse of `contacts_of`."""
     return ";".join(
         f"load={one.load:.12g},phase={one.phase:.12g},amplitude={one.amplitude:.12g}"
         for one in contacts
@@ -83,7 +84,8 @@ def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
 
 
 def _numbers(number: int, part: str, text: str) -> dict[str, float]:
-    """Parse the numbers of one contact, a part of `text`; error messages contain its `number`."""
+    """Parse `part`, the numbers of one contact in `text`.  Error messages contain the `number` of
+    the contact."""
     try:
         words = spec.numbers_in(part, text, "contacts", EXAMPLE)
         spec.refuse_unknown(text, "contacts", words, asdict(BodyContact()))

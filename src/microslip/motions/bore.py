@@ -24,13 +24,13 @@ class Bore(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ phi_0 t and angle phi_0 sin t (Eqs 23, 27 and 28)."""
+        """Forward displacement v~ phi_0 t and angle phi_0 sin t (Eqs 23, 27 and 28)."""
         angle = hertz.bore_angle(amplitude, poisson)
         return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Lubkin's stick radius of the oscillation alone (Eq 30).
 
-        The same radius is used under other pressures, where this grading does no harm.
+        The same radius is used for other pressures, for which this grading does no harm.
         """
         return within_rings(float(paper.bore_stick_radius(amplitude)))

@@ -1,8 +1,8 @@
 """Registry of motions by name.
 
 A motion is a class in a file of the folder `motions`: the class `AMotion` in the file "a_motion.py"
-has the name "a-motion" (see motion.py).  Closed forms of a motion are in theory/exact.py; no other
-file of the package depends on its name.
+has the name "a-motion" (see motion.py).  Closed forms of motions are in theory/exact.py.  No other
+file of the package depends on the name of a motion.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _REGISTRY = Registry(
 MOTIONS = _REGISTRY.classes
 """Name -> subclass of Motion."""
 BROKEN = _REGISTRY.broken
-"""Name of a file that cannot be used -> its path and the error."""
+"""Name of a file that cannot be used -> path of the file and error."""
 find = _REGISTRY.find
 
 
@@ -30,6 +30,6 @@ def motion_named(text: str) -> Motion:
     Raises
     ------
     InputError
-        If the text does not name a motion; the message lists the known names.
+        If the text does not name a motion.  The message lists the known names.
     """
     return _REGISTRY.parse(text)

@@ -23,7 +23,8 @@ class ContinuousBore(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t and angle t, with the angle in u_lim / a as phase t (Eqs 12 and 13)."""
+        """Forward displacement v~ t and angle t; the phase t is the angle in u_lim / a (Eqs 12 and
+        13)."""
         return velocity * phase, np.zeros_like(phase), phase + 0.0
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:

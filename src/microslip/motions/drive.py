@@ -1,4 +1,4 @@
-"""Drives other than a prescribed velocity: a prescribed force, or a spring that pulls a body.
+"""Drives other than a prescribed velocity: a prescribed force, or a spring attached to a body.
 
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
@@ -22,9 +22,10 @@ class Drive:
     Attributes
     ----------
     force : float or None
-        Prescribed force P over mu times the mean normal load; None for a spring.
+        Prescribed force P divided by mu times the mean normal load; None for a spring.
     stiffness, mass, damping : float
-        k over mu F_z / u_lim, m over mu F_z / (u_lim omega^2) and c over mu F_z / (u_lim omega).
+        Stiffness k in mu F_z / u_lim, mass m in mu F_z / (u_lim omega^2) and damping c in mu F_z /
+        (u_lim omega).
     """
 
     force: float | None
@@ -43,9 +44,9 @@ class Force(Drive):
     Parameters
     ----------
     force : float
-        Force over mu times the mean normal load.
+        Force divided by mu times the mean normal load.
     mass : float
-        Mass of the body over mu F_z / (u_lim omega^2).
+        Mass of the body in mu F_z / (u_lim omega^2).
 
     Raises
     ------
@@ -66,16 +67,17 @@ class Force(Drive):
 
 @dataclass(frozen=True)
 class Spring(Drive):
-    """A spring whose far end has the velocity of the problem, and the body that it pulls.
+    """A spring whose far end moves at the velocity of the problem, and the body attached to the
+    spring.
 
     Parameters
     ----------
     stiffness : float
-        Stiffness of the spring over mu F_z / u_lim.
+        Stiffness of the spring in mu F_z / u_lim.
     mass : float
-        Mass of the body over mu F_z / (u_lim omega^2).
+        Mass of the body in mu F_z / (u_lim omega^2).
     damping : float
-        Damping of a dashpot parallel to the spring over mu F_z / (u_lim omega).
+        Damping constant of a dashpot parallel to the spring, in mu F_z / (u_lim omega).
 
     Raises
     ------

@@ -3,8 +3,8 @@
     elliptic:forward=F,lateral=L,phase=P,forward_cycles=M,lateral_cycles=N
 
 The displacement is v~ t + A F sin(M t + P) forward and A L sin(N t) lateral, in u_lim, with the
-amplitude A and the phase P in degrees.  The defaults are a circle.  F = 0 is the transverse motion,
-and L = 0 the longitudinal motion.
+amplitude A and the phase P in degrees.  The default path is a circle.  F = 0 gives the transverse
+motion, and L = 0 the longitudinal motion.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ class Elliptic(Motion):
     Parameters
     ----------
     forward, lateral : float
-        Amplitudes in each direction over the amplitude of the motion, 0 to 1.
+        Amplitude in each direction divided by the amplitude of the motion, 0 to 1.
     phase : float
-        Phase of the forward oscillation, degrees.
+        Phase of the forward oscillation, in degrees.
     forward_cycles, lateral_cycles : int
-        Cycles in a period, 1 to 20.
+        Number of cycles in a period, 1 to 20.
 
     Raises
     ------
     InputError
-        If a share is outside 0..1, if both are 0, or if a number of cycles is not a whole number
-        from 1 to 20.
+        If an amplitude is outside 0 to 1, if both amplitudes are 0, or if a number of cycles is not
+        an integer from 1 to 20.
     """
 
     forward: float = 1.0
@@ -68,12 +68,12 @@ class Elliptic(Motion):
 
     @property
     def lead(self) -> float:
-        """Phase of the forward oscillation, radians."""
+        """Phase of the forward oscillation, in radians."""
         return float(np.deg2rad(self.phase % 360.0))
 
     @cached_property
     def reach(self) -> float:
-        """Largest distance from the mean position, over the amplitude."""
+        """Largest distance from the mean position, divided by the amplitude."""
         ahead, aside, _ = self.displacement(LOOP, 0.0, 1.0, 0.0)
         return float(np.hypot(ahead, aside).max())
 
@@ -101,7 +101,7 @@ class Elliptic(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t + A F sin(M t + P) and lateral A L sin(N t)."""
+        """Forward displacement v~ t + A F sin(M t + P) and lateral displacement A L sin(N t)."""
         ahead = amplitude * self.forward * np.sin(self.forward_cycles * phase + self.lead)
         aside = amplitude * self.lateral * np.sin(self.lateral_cycles * phase)
         return velocity * phase + ahead, aside, np.zeros_like(phase)

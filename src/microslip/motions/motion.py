@@ -22,23 +22,23 @@ FOCUS_RANGE = (0.05, 0.9995)
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 """Phases of a period at which the extremes of an oscillation are evaluated."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
-"""Phases of a turning point of a sine and of the next one."""
+"""Phases of two consecutive turning points of a sine."""
 WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
-"""Phases of three turning points of a sine, a whole period."""
+"""Phases of three consecutive turning points of a sine, which span a whole period."""
 
 
 @dataclass(frozen=True)
 class Motion:
     """A prescribed motion.
 
-    Each motion is a subclass in its own file.  Its fields are the numbers that may follow its name
-    in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this text.  The name follows
-    from that of the class: ContinuousBore has the name "continuous-bore".
+    Each motion is a subclass in its own file.  The fields of the class are the numbers that may
+    follow its name in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this text.  The
+    name is derived from the name of the class: ContinuousBore has the name "continuous-bore".
 
     Attributes
     ----------
     summary, numbers : str
-        Description of the motion in one line, and of its numbers.
+        Description of the motion in one line, and description of its numbers.
     velocity_label, amplitude_label : str
         Formulas of the dimensionless groups.
     periodic : bool
@@ -47,22 +47,24 @@ class Motion:
         Whether the contact rotates.  Tractions then depend on the polar angle.
     half_period_mirror : bool
         Whether the second half of a period is the image of the first half under lateral ->
-        -lateral, angle -> -angle.  Otherwise a march takes a whole period.
+        -lateral, angle -> -angle.  If False, a march covers a whole period.
     straight : bool
-        Whether the oscillation alone is along one line, between its ends at -pi/2 and pi/2.
+        Whether the oscillation alone is along a straight line, with its ends at the phases -pi/2
+        and pi/2.
     propels : bool
         Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative; see `symmetry.reverses_forward`.
     cycles : int
         Largest number of cycles of a component in a period.
     half_disc : bool
-        Whether symmetry gives the tractions of one half of a round contact from those of the other
-        half: a mirror across the lateral axis for rotations, else point symmetry.  A rotation
-        together with a lateral motion has neither symmetry.
+        Whether the tractions on one half of a round contact follow by symmetry from those on the
+        other half: a mirror across the lateral axis for rotations, else point symmetry.  A rotation
+        combined with a lateral motion has neither symmetry.
     loads : bool
         Whether the normal load oscillates, as described by `depth`, `deepest` and `mean_load`.
     readings : tuple of Motion
-        Other motions with the same samples: the change of friction between them is an error.
+        Alternative motions through the same samples.  The change of friction between these motions
+        is used as an error estimate.
     """
 
     summary: ClassVar[str] = ""
@@ -73,9 +75,9 @@ class Motion:
     loads: ClassVar[bool] = False
     readings: ClassVar[tuple[Motion, ...]] = ()
     closed_form: ClassVar[Callable | None] = None
-    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None where no
-    closed form is known; velocity 0 is the static limit.  None for motions without a closed
-    form."""
+    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None if no closed
+    form is known for these arguments; velocity 0 is the static limit.  The attribute is None for
+    motions without a closed form."""
 
     @property
     def rotates(self) -> bool:
@@ -119,16 +121,17 @@ class Motion:
         raise NotImplementedError
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius of the kink of the traction, towards which rings are graded; None without one."""
+        """Radius at which the traction has a kink, towards which rings are graded; None if there is
+        none."""
         return None
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases of the turning points, from the start of a march to its end half a period or a
-        period later."""
+        """Phases of the turning points, from the start of a march to its end, which is half a
+        period or a period later."""
         return HALF_PERIOD if self.half_period_mirror else WHOLE_PERIOD
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation depth over that of the reference state, >= 0; 0 without contact."""
+        """Indentation depth divided by its reference value, >= 0; 0 if there is no contact."""
         return np.ones_like(phase)
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
@@ -136,14 +139,14 @@ class Motion:
         return 1.0
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
-        """Mean of the normal load over that of the reference state."""
+        """Mean normal load divided by its reference value."""
         return 1.0
 
     def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
-        """Mean forward displacement in one radian of phase, in u_lim.
+        """Mean forward displacement per radian of phase, in u_lim.
 
-        It is proportional to the velocity, and computed at velocity 1, since the rounding error of
-        the oscillation would exceed it at small velocities.
+        The drift is proportional to the velocity.  It is computed at velocity 1 and scaled, because
+        at small velocities the rounding error of the oscillation would exceed the drift.
         """
         ends = np.array([0.0, 2.0 * np.pi])
         fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
@@ -168,7 +171,7 @@ def within_rings(radius: float) -> float:
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Stick radius of an oscillation along a line with the amplitude `reach`, in u_lim.
 
-    For a sphere it is Eq 8.  None at full slip, or if the stick zone is not a circle.
+    For a sphere it is Eq 8.  The result is None at full slip, or if the stick zone is not a circle.
     """
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

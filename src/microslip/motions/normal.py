@@ -1,13 +1,13 @@
-"""Oscillation of the normal load or of the indentation, with or without one in the plane.
+"""Oscillation of the normal load or of the indentation, with or without an in-plane oscillation.
 
     normal:load=1,indentation=0,lateral=L,forward=F,angle=B,phase=P,normal_cycles=K,...
 
-With the amplitude A, the normal load over its reference is 1 + A load sin(K t).  If `indentation`
-is above 0, the indentation depth over its reference is 1 + A indentation sin(K t) instead.  Contact
-is lost where this is below 0.  In the plane the displacement is v~ t + A F sin(M t + P) forward and
-A L sin(N t + P) lateral, in u_lim; the angle is the bore angle of the amplitude A B times sin(Q t +
-P).  P is in degrees.  The units u_lim, a and mu F_z are those of the state without oscillation.
-Friction is over mu times the actual mean load."""
+With the amplitude A, the normal load divided by its reference value is 1 + A load sin(K t).  If
+`indentation` is above 0, the indentation depth divided by its reference value is 1 + A indentation
+sin(K t) instead.  Contact is lost while this value is below 0.  In the plane the displacement is v~
+t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim; the angle is the bore angle of
+the amplitude A B times sin(Q t + P).  P is in degrees.  The units u_lim, a and mu F_z are those of
+the state without oscillation.  Friction is divided by mu times the actual mean load."""
 
 from __future__ import annotations
 
@@ -31,20 +31,21 @@ class Normal(Motion):
     Parameters
     ----------
     load, indentation : float
-        Amplitude of the load or of the indentation over that of the motion, 0 to 1.  `load` must
-        keep its default of 1 if `indentation` is above 0.
+        Amplitude of the load or of the indentation, divided by the amplitude of the motion, 0 to 1.
+        `load` must keep its default of 1 if `indentation` is above 0.
     lateral, forward, angle : float
-        Amplitudes over that of the motion, 0 to 1, in units of u_lim, u_lim and phi_lk(a/2).
+        In-plane amplitudes in units of u_lim, u_lim and phi_lk(a/2), divided by the amplitude of
+        the motion, 0 to 1.
     phase : float
         Phase of the oscillation in the plane, in degrees.
     normal_cycles, lateral_cycles, forward_cycles, angle_cycles : int
-        Cycles in a period, 1 to 20.
+        Number of cycles in a period, 1 to 20.
 
     Raises
     ------
     InputError
-        If a share is outside 0..1, if neither load nor indentation oscillates, if both are set, or
-        if a number of cycles is not a whole number from 1 to 20.
+        If an amplitude is outside 0 to 1, if neither the load nor the indentation oscillates, if
+        both are set, or if a number of cycles is not an integer from 1 to 20.
     """
 
     load: float = 1.0
@@ -93,12 +94,12 @@ class Normal(Motion):
 
     @property
     def share(self) -> float:
-        """Amplitude of the load or of the indentation, over that of the motion."""
+        """Amplitude of the load or of the indentation, divided by the amplitude of the motion."""
         return self.load if self.by_load else self.indentation
 
     @property
     def in_plane(self) -> dict[str, int]:
-        """Component in the plane that oscillates -> its number of cycles."""
+        """Name of each in-plane component that oscillates -> number of its cycles."""
         components = {
             "lateral": (self.lateral, self.lateral_cycles),
             "forward": (self.forward, self.forward_cycles),
@@ -137,7 +138,8 @@ class Normal(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t + A F sin(M t + P), lateral A L sin(N t + P), angle ~ sin(Q t + P)."""
+        """Forward displacement v~ t + A F sin(M t + P), lateral displacement A L sin(N t + P), and
+        an angle proportional to sin(Q t + P)."""
         ahead = amplitude * self.forward * np.sin(self.forward_cycles * phase + self.lead)
         aside = amplitude * self.lateral * np.sin(self.lateral_cycles * phase + self.lead)
         turn = np.sin(self.angle_cycles * phase + self.lead)
@@ -148,12 +150,12 @@ class Normal(Motion):
         )
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases at distances of pi, from the smallest load of the first cycle on."""
+        """Phases at intervals of pi, starting at the smallest load of the first cycle."""
         least = -0.5 * np.pi / self.normal_cycles
         return tuple(least + np.pi * np.arange(2 if self.half_period_mirror else 3))
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        """Indentation depth over that of the reference state, >= 0."""
+        """Indentation depth divided by its reference value, >= 0."""
         height = 1.0 + amplitude * self.share * np.sin(self.normal_cycles * phase)
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if self.by_load else height
@@ -164,20 +166,20 @@ class Normal(Motion):
         return float(pressure.of_load(height)) if self.by_load else height
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
-        """Largest indentation depth over that of the reference state."""
+        """Largest indentation depth divided by its reference value."""
         return self._extreme(1.0, amplitude, pressure)
 
     def mean_load(self, amplitude: float, pressure: Pressure) -> float:
-        """Mean of the normal load over that of the reference state."""
+        """Mean normal load divided by its reference value."""
         return oscillating_load.mean_load(amplitude * self.share, self.by_load, pressure)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Smallest contact radius in a period over the largest one."""
+        """Smallest contact radius in a period divided by the largest contact radius."""
         least = pressure.radius(self._extreme(-1.0, amplitude, pressure))
         return within_rings(least / pressure.radius(self.deepest(amplitude, pressure)))
 
     def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Mean friction without an oscillation in the plane, for axisymmetric indenters."""
+        """Mean friction for axisymmetric indenters if there is no in-plane oscillation."""
         if self.in_plane or not pressure.is_indenter:
             return None
         slow = velocity / self.normal_cycles

@@ -1,10 +1,11 @@
 """A problem: a motion at one velocity and amplitude, its drive, pressure and contacts.
 
 A body can rest on several contacts of the same shape.  The units of the body are those of a contact
-under the mean load: forces are over mu times the load of all contacts, and displacements over u_lim
-of this contact.  Under another load a contact has an indentation and a u_lim that are `extent`
-times larger.  Its radius and its stiffness change as well, but by less.  Amplitude and velocity of
-the body are lengths, so that they are divided by `extent` in the units of a contact.
+under the mean load: forces are divided by mu times the load of all contacts, and displacements by
+u_lim of this contact.  A contact under another load has an indentation and a u_lim that are
+`extent` times larger.  Its radius and its stiffness change as well, but by less.  The amplitude and
+the velocity of the body are lengths, so they are divided by `extent` to convert them to the units
+of a contact.
 
 All contacts move forward with the body.  At a prescribed velocity the contacts are independent, and
 their phases have no effect.
@@ -27,22 +28,24 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 SMALLEST_OSCILLATION = 1e-12
-"""Share of the amplitude below which a difference of oscillations is rounding error."""
+"""A difference of oscillations below this fraction of the amplitude counts as rounding error."""
 ROUNDING = 1e-9
-"""Largest deviation of the mean load of several contacts from 1; their texts have 12 digits."""
+"""Largest accepted deviation of the mean load of several contacts from 1.  Loads in texts have 12
+digits."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A motion at one velocity and amplitude; dimensionless, hashable.
+    """A motion at one velocity and amplitude.  All quantities are dimensionless, and the object is
+    hashable.
 
     Parameters
     ----------
     motion : Motion
-        Such as `Transverse()` or `Elliptic(forward=0.5)`.
+        The motion, such as `Transverse()` or `Elliptic(forward=0.5)`.
     velocity : float
-        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force it is
-        part of the result; leave it at 0.
+        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force the
+        velocity is part of the result; leave this argument at 0.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
     poisson : float
@@ -57,8 +60,8 @@ class Problem:
         Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
         velocity v is then minus that of the original motion at -v.
     follows : bool
-        Whether the body follows the mean forward oscillation of its contacts, as a body without
-        mass under a constant force does.  This oscillation is then subtracted from that of each
+        Whether the body follows the mean forward oscillation of its contacts, as a massless body
+        under a constant force does.  The mean oscillation is then subtracted from that of each
         contact.
 
     Raises
@@ -123,7 +126,7 @@ class Problem:
 
     @property
     def straight(self) -> bool:
-        """Whether the oscillation alone is along one line, see Motion."""
+        """Whether the oscillation alone is along a straight line, see Motion."""
         return self.motion.straight and not self.follows
 
     @property
@@ -163,8 +166,8 @@ class Problem:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Phases of the turning points, see Motion; of a whole period if the pressure is not
-        symmetric."""
+        """Phases of the turning points, see Motion.  They cover a whole period if the pressure is
+        not symmetric."""
         velocity = 0.0 if self.follows else self._sign * self.velocity
         first = self.motion.turns(velocity, self.size)
         if self.motion.half_period_mirror and not self.half_period_mirror:
@@ -183,12 +186,12 @@ class Problem:
 
     @property
     def unit_drift(self) -> float:
-        """Mean forward displacement in one radian of phase at velocity 1, in u_lim."""
+        """Mean forward displacement per radian of phase at velocity 1, in u_lim."""
         return self.motion.drift(1.0, self.size, self.poisson)
 
     @cached_property
     def drift(self) -> float:
-        """Mean forward displacement in one radian of phase, in u_lim."""
+        """Mean forward displacement per radian of phase, in u_lim."""
         return self.motion.drift(self.velocity, self.size, self.poisson)
 
     @property
@@ -200,7 +203,8 @@ class Problem:
 
     @property
     def readings(self) -> tuple[Problem, ...]:
-        """Problems with the other readings of the same numbers, see Motion and Pressure."""
+        """Problems with alternative interpretations of the same data, see `readings` of Motion and
+        Pressure."""
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
         return (*motions, *pressures)
@@ -209,10 +213,10 @@ class Problem:
 
     @property
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Function of the phase that returns the indentation depth over that of the reference
-        state.
+        """Function of the phase that returns the indentation depth divided by its reference value.
 
-        For several contacts it returns one row for each.  None if the load is constant.
+        For several contacts the function returns one row for each contact.  The attribute is None
+        if the load is constant.
         """
         if not self.motion.loads:
             return None
@@ -222,12 +226,12 @@ class Problem:
 
     @property
     def deepest(self) -> float:
-        """Largest indentation depth over that of the reference state."""
+        """Largest indentation depth divided by its reference value."""
         return self.motion.deepest(self.size, self.pressure)
 
     @cached_property
     def mean_load(self) -> float:
-        """Mean of the normal load over a period, over that of the reference state."""
+        """Mean normal load in a period divided by its reference value."""
         if self.contacts:
             return sum(part.share * part.problem.mean_load for part in self.parts)
         return float(self.motion.mean_load(self.size, self.pressure))
@@ -253,7 +257,7 @@ class Problem:
 
     @cached_property
     def is_balanced(self) -> bool:
-        """Whether the contacts form pairs that exert no mean forward force together.
+        """Whether the contacts form pairs such that each pair exerts no mean forward force.
 
         The oscillation of each contact is then the reverse of that of its partner: the oscillation
         changes its sign after half a period, and phases in a pair differ by half a period.
@@ -270,18 +274,18 @@ class Problem:
 
 @dataclass(frozen=True)
 class Part:
-    """One of several contacts as a problem of its own.
+    """One of several contacts, treated as a separate problem.
 
     Attributes
     ----------
     problem : Problem
-        Problem of the contact alone, in its own units.
+        Problem of the single contact, in the units of this contact.
     share : float
-        Fraction of the load of the body that the contact carries, without oscillation.
+        Fraction of the load of the body that the contact carries when nothing oscillates.
     extent : float
-        u_lim of the contact over that of the body.
+        u_lim of the contact divided by u_lim of the body.
     lead : float
-        Phase lead of its oscillation, in radians.
+        Phase lead of the oscillation of the contact, in radians.
     """
 
     problem: Problem
@@ -292,8 +296,8 @@ class Part:
     def oscillation(self, phase: np.ndarray) -> np.ndarray:
         """Forward, lateral and angular oscillation at a phase of the body, shape (3, ...).
 
-        Displacements are over u_lim of the body.  The angle is multiplied by the contact radius of
-        this contact, so that it is over u_lim as well.
+        Displacements are in u_lim of the body.  The angle is multiplied by the radius of this
+        contact, so it is also in u_lim of the body.
         """
         return self.extent * np.array(self.problem.oscillation(phase + self.lead))
 
@@ -303,7 +307,7 @@ class Part:
         return problem.motion.depth(phase + self.lead, problem.size, problem.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
-        """Phases of the body at the turning points of the contact; `still`: at velocity 0."""
+        """Phases of the body at the turning points of the contact; `still`: True for velocity 0."""
         problem = replace(self.problem, velocity=0.0) if still else self.problem
         return np.array(problem.turns) - self.lead
 
@@ -315,7 +319,7 @@ def _move_together(parts: Sequence[Part], amplitude: float) -> bool:
 
 
 def _part(body: Problem, one: BodyContact) -> Part:
-    """The Part of a contact of a body."""
+    """Return the Part for one contact of a body."""
     motion, pressure = body.motion, body.pressure
     extent = radius = 1.0
     if one.load != 1.0:
@@ -332,7 +336,8 @@ def _part(body: Problem, one: BodyContact) -> Part:
 
 
 def contacts_refusal(problem: Problem) -> str:
-    """Text of the allowed contacts if the motion or the pressure excludes these, otherwise ""."""
+    """Return a text with the allowed contacts if these contacts cannot be combined with the motion
+    or the pressure, otherwise ""."""
     motion = problem.motion
     if not motion.periodic:
         return f"allowed is none: {motion.name} does not oscillate"

@@ -1,8 +1,8 @@
-"""Motions from samples: a path from a first row to a last one, or one period of any shape.
+"""Motions from samples: a path from the first row to the last one, or one period of any shape.
 
 A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
-the indentation.  Along a path all of them change linearly between rows.  A period is interpolated
-by periodic cubic splines through equally spaced rows.
+the indentation.  Along a path all of these quantities change linearly between rows.  A period is
+interpolated by periodic cubic splines through equally spaced rows.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ NORMAL = ("load", "indentation")
 
 @dataclass(frozen=True, eq=False)
 class SampledPath(Motion):
-    """A motion through rows, which does not repeat; the phase is the number of the row.
+    """A motion through a sequence of rows, which does not repeat.  The phase is the row number.
 
     Attributes
     ----------
     rows : np.ndarray, shape (rows, 3)
         Forward and lateral displacement in u_lim, angle in u_lim / a.
     height : np.ndarray or None, shape (rows,)
-        Normal load or indentation over that of the reference state; None: both are constant.
+        Normal load or indentation divided by its reference value; None if both are constant.
     by_load : bool
         Whether `height` is a load.
     """
@@ -49,13 +49,15 @@ class SampledPath(Motion):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
-        """The path of columns by name: PLANE and NORMAL, None for a quantity that is constant.
+        """Create the path from columns by name, see PLANE and NORMAL; None stands for a constant
+        quantity.
 
         Raises
         ------
         InputError
-            For columns that are not finite numbers, columns of different lengths, fewer than two
-            rows, and a load or an indentation below 0, or both of them.
+            If a column contains values that are not finite numbers, if columns have different
+            lengths, if there are fewer than two rows, if a load or an indentation is below 0, or if
+            both are given.
         """
         return cls(*_rows_of(columns, 2))
 
@@ -76,7 +78,7 @@ class SampledPath(Motion):
         return not (self.rotates and np.ptp(self.rows[:, 1]) > 0.0)
 
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values of the rows, interpolated linearly."""
+        """Interpolate the values of the rows linearly."""
         return np.interp(phase, np.arange(len(values)), values)
 
     def displacement(
@@ -94,9 +96,10 @@ class SampledPath(Motion):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Largest displacement of any point of the contact between rows, u_lim, (rows - 1,).
+        """Largest displacement of any point of the contact between consecutive rows, in u_lim,
+        (rows - 1,).
 
-        A change of the indentation counts as the change of the local u_lim that goes with it.
+        A change of the indentation counts as the corresponding change of the local u_lim.
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
         out = np.hypot(forward, lateral) + angle
@@ -118,11 +121,11 @@ class Sampled(Motion):
         Forward and lateral displacement in u_lim, angle in u_lim / a, for A = 1, without the end
         point of the period.
     height : np.ndarray or None, shape (rows,)
-        Normal load or indentation over that of the reference state; None: both are constant.
+        Normal load or indentation divided by its reference value; None if both are constant.
     by_load : bool
         Whether `height` is a load.
     text : str
-        Its name, with a digest of the numbers.
+        Name of the motion, with a digest of the numbers.
     """
 
     rows: np.ndarray
@@ -134,12 +137,14 @@ class Sampled(Motion):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
-        """The motion of columns by name: PLANE and NORMAL, None for a quantity that is constant.
+        """Create the motion from columns by name, see PLANE and NORMAL; None stands for a constant
+        quantity.
 
         Raises
         ------
         InputError
-            As for `SampledPath.of_columns`; fewer than FEWEST_SAMPLES rows.
+            In the same cases as `SampledPath.of_columns`, and if there are fewer than
+            FEWEST_SAMPLES rows.
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
         if not text:
@@ -150,7 +155,7 @@ class Sampled(Motion):
 
     @property
     def name(self) -> str:
-        """Name with a digest of the samples."""
+        """Name of the motion, with a digest of the samples."""
         return self.text
 
     def __eq__(self, other: object) -> bool:
@@ -175,7 +180,7 @@ class Sampled(Motion):
 
     @cached_property
     def half(self) -> Motion:
-        """The motion of every second sample."""
+        """The motion through every second sample."""
         height = None if self.height is None else self.height[::2]
         return Sampled(self.rows[::2], height, self.by_load, f"{self.text} (every second row)")
 
@@ -199,8 +204,8 @@ class Sampled(Motion):
         return bool(np.ptp(self.rows[:, column]) > 0.0)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
-        """Whether half a period later forward, lateral and angle have these signs (0: either), and
-        the load is equal."""
+        """Whether half a period later the forward, lateral and angular displacements are multiplied
+        by these signs and the load is equal."""
         if len(self.rows) % 2:
             return False
         plane = self.rows - self.rows.mean(axis=0)
@@ -227,7 +232,7 @@ class Sampled(Motion):
 
     @cached_property
     def cycles(self) -> int:
-        """Root mean square of the cycles in a period, of the column where it is largest."""
+        """Largest root-mean-square number of cycles in a period among the columns."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
@@ -243,8 +248,9 @@ class Sampled(Motion):
         return velocity * phase + forward, lateral, angle
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation of the same reach; under a load that oscillates
-        the edge of the area that never loses contact, over the largest radius."""
+        """Stick radius of a straight oscillation with the same largest distance.  Under an
+        oscillating load: radius of the area that never loses contact, divided by the largest
+        radius."""
         if self.loads:
             least, most = self._extremes(amplitude, pressure)
             return within_rings(float(pressure.radius(least) / pressure.radius(most)))
@@ -261,7 +267,7 @@ class Sampled(Motion):
         return pressure.of_load(height) if self.by_load else height
 
     def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
-        """Least and largest indentation."""
+        """Smallest and largest indentation."""
         turns = self._normal.derivative().roots(extrapolate=False)
         phases = np.concatenate([[0.0], turns[np.isfinite(turns)]])
         depths = self.depth(phases, amplitude, pressure)
@@ -278,13 +284,14 @@ class Sampled(Motion):
 
 
 FEWEST_SAMPLES = 4
-"""Least number of rows of a period, and of what a motion of every second row has."""
+"""Smallest number of rows of a period, also for the motion through every second row."""
 ROUNDING = 1e-9
-"""Largest deviation of samples from a symmetry, over their largest value."""
+"""Largest deviation of samples from a symmetry, divided by the largest sample."""
 
 
 def _spline(values: np.ndarray) -> CubicSpline:
-    """Periodic cubic spline through one period of samples (first axis), over the phase."""
+    """Periodic cubic spline through one period of samples (along the first axis) as a function of
+    the phase."""
     from scipy.interpolate import CubicSpline  # only here: it takes a while to load
 
     phase = np.linspace(0.0, 2.0 * np.pi, len(values) + 1)
@@ -292,7 +299,8 @@ def _spline(values: np.ndarray) -> CubicSpline:
 
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
-    """Displacements (rows, 3), load or indentation (rows,) or None, and whether it is a load."""
+    """Return displacements (rows, 3), the load or indentation (rows,) or None, and whether a load
+    is given."""
     given = {name: _column(name, one) for name, one in columns.items() if one is not None}
     if not given:
         raise InputError("forward", None, "allowed is a displacement for every row")

@@ -21,7 +21,7 @@ class Transverse(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t and lateral y~ sin t (Eqs 1, 2 and 4)."""
+        """Forward displacement v~ t and lateral displacement y~ sin t (Eqs 1, 2 and 4)."""
         return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:

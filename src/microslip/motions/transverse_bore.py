@@ -3,8 +3,8 @@
     transverse-bore:lateral=L,angle=B,phase=P
 
 With the amplitude A, the lateral displacement is A L sin(t), and the angle is the bore angle of the
-amplitude A B times sin(t + P), with P in degrees.  B = 0 is the transverse motion.  L = 0 is the
-bore, except that the velocity is over omega u_lim.
+amplitude A B times sin(t + P), with P in degrees.  B = 0 gives the transverse motion.  L = 0 gives
+the bore, except that the velocity is divided by omega u_lim.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ class TransverseBore(Motion):
     Parameters
     ----------
     lateral, angle : float
-        Amplitudes over that of the motion, 0 to 1, in units of u_lim and phi_lk(a/2).
+        Amplitudes in units of u_lim and phi_lk(a/2), divided by the amplitude of the motion, 0 to
+        1.
     phase : float
         Phase of the rotation, in degrees.
 
     Raises
     ------
     InputError
-        If a share is outside 0..1, or if both are 0.
+        If an amplitude is outside 0 to 1, or if both are 0.
     """
 
     lateral: float = 1.0
@@ -74,7 +75,8 @@ class TransverseBore(Motion):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t, lateral A L sin t, angle ~ sin(t + P)."""
+        """Forward displacement v~ t, lateral displacement A L sin t, and an angle proportional to
+        sin(t + P)."""
         angle = hertz.bore_angle(amplitude * self.angle, poisson) * np.sin(phase + self.lead)
         return velocity * phase, amplitude * self.lateral * np.sin(phase), angle
 

@@ -18,6 +18,6 @@ class Zigzag(Transverse):
     def displacement(
         self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forward v~ t and lateral y~ times a triangular wave."""
+        """Forward displacement v~ t, and lateral displacement y~ times a triangular wave."""
         lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
         return velocity * phase, lateral, np.zeros_like(phase)

@@ -2,7 +2,8 @@
 
 By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
 plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c) the
-contact radius is c.  With h = D / D(1), and the friction bound as a sum of flat punches,
+contact radius is c.  With h = D / D(1), and the friction bound written as a superposition of flat
+punches,
 
     G* = 1 / (2 Integral_0^1 x h'(x) dx)
     bound(r, c) = (G*/pi) Integral_r^c h'(x) / sqrt(x^2 - r^2) dx
@@ -23,25 +24,26 @@ from microslip.pressures.pressure import RoundPressure
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_RADIUS = 1e-7
-"""Smallest radius over the contact radius; smaller ones are replaced by it, because the bound of
-some indenters is infinite at the centre."""
+"""Smallest radius divided by the contact radius.  Smaller radii are replaced by this value, because
+the friction bound of some indenters is infinite at the centre."""
 SMALLEST_CONTACT = 1e-100
-"""Smallest contact radius, which keeps divisions by it finite."""
+"""Smallest contact radius, which keeps divisions by the contact radius finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
 """Number of Newton steps after the initial value from a table."""
 _REFINEMENTS = 3
-"""Number of grids in the search for the largest bound, each 128 times finer than the last."""
+"""Number of grids in the search for the largest bound.  Each grid is 128 times finer than the
+previous one."""
 
 
 @dataclass(frozen=True)
 class Indenter(RoundPressure):
-    """Base class of axisymmetric indenters: a subclass gives `depth`, `slope` and `radius`.
+    """Base class of axisymmetric indenters.  A subclass defines `depth`, `slope` and `radius`.
 
     Attributes
     ----------
     flat : float
-        Radius of a flat end, over the contact radius.
+        Radius of a flat end, divided by the contact radius.
     """
 
     flat = 0.0
@@ -108,7 +110,7 @@ class Indenter(RoundPressure):
         return 1.0 - np.where(depth > 0.0, self.load(c, c), 0.0)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is this share of the mean load, from a table and Newton's
+        """Depth at which the load divided by the mean load is `share`, from a table and Newton's
         method."""
         share = np.asarray(share, float)
         largest = 1.0
@@ -125,7 +127,7 @@ class Indenter(RoundPressure):
 
     @cached_property
     def largest(self) -> float:
-        """Largest friction bound, searched on grids that get finer around the largest value."""
+        """Largest friction bound, found on grids that are refined around the largest value."""
         low, high = 0.0, 1.0
         for _ in range(_REFINEMENTS):
             r = np.linspace(low, high, len(_GRID))

@@ -15,7 +15,7 @@ _REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",), others=(
 PRESSURES = _REGISTRY.classes
 """Name -> subclass of Pressure."""
 BROKEN = _REGISTRY.broken
-"""Name of a file that cannot be used -> its path and the error."""
+"""Name of a file that cannot be used -> path of the file and error."""
 find = _REGISTRY.find
 
 
@@ -25,7 +25,7 @@ def pressure_named(text: str) -> Pressure:
     Raises
     ------
     InputError
-        If the text does not name a pressure; the message lists the known names.
+        If the text does not name a pressure.  The message lists the known names.
     """
     if from_file.is_file(text):
         return from_file.pressure(text)

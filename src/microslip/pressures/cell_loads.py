@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 RINGS = 4096
-"""Number of thin rings that stand for a round pressure."""
+"""Number of thin rings that approximate a round pressure."""
 SMALLEST_LOAD = 1e-13
-"""Share of the total load below which the load of a cell is rounding error and becomes 0."""
+"""A cell load below this fraction of the total load is a rounding error and is set to 0."""
 
 
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
-    """Loads of cells, (cells, cells), sum 1.
+    """Compute the loads of cells, (cells, cells), with the sum 1.
 
     load: load of the rectangle from the centre to each corner of a cell, odd in both coordinates,
     (cells + 1, cells + 1).
@@ -22,13 +22,14 @@ def of_corner_loads(load: np.ndarray) -> np.ndarray:
 
 
 def of_loads(loads: np.ndarray) -> np.ndarray:
-    """Loads of cells scaled to the sum 1, with rounding errors near 0 replaced by 0."""
+    """Scale the loads of cells to the sum 1, and replace rounding errors near 0 by 0."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
 
 def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
-    """Loads of cells under a pressure that depends on the radius alone, (cells, cells), sum 1.
+    """Compute the loads of cells, (cells, cells), under a pressure that depends on the radius
+    alone. Their sum is 1.
 
     The load of each of RINGS thin rings is spread evenly along its middle circle.
 

@@ -20,10 +20,10 @@ SMALLEST_RATIO = 0.05
 
 @dataclass(frozen=True)
 class Ellipse(Pressure):
-    """The pressure of an elliptic Hertz contact with the semi-axes a and ratio times a.
+    """The pressure of an elliptic Hertz contact with the semi-axes a and `ratio` times a.
 
     u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi), where K is
-    the complete elliptic integral of the eccentricity; it is 3/4 for a circle.
+    the complete elliptic integral of the eccentricity; this is 3/4 for a circle.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Ellipse(Pressure):
     Raises
     ------
     InputError
-        For a ratio outside its range, or `across` other than 0 and 1.
+        If the ratio is outside its range, or if `across` is neither 0 nor 1.
     """
 
     ratio: float = 0.5
@@ -74,16 +74,16 @@ class Ellipse(Pressure):
         return 1.5 / (np.pi * self.ratio)
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
+        """Compute the load on each square, (cells, cells)."""
         return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Tangential force after a displacement from rest, equal to that of the sphere."""
+        """Tangential force after a displacement from rest, which equals that of a sphere."""
         return hertz.mindlin_force(displacement)
 
 
 def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
-    """Load of Hertz's pressure on each square, (cells, cells).
+    """Compute the load of Hertz's pressure on each square, (cells, cells).
 
     axes: forward and lateral semi-axis.
     """

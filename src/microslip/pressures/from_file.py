@@ -1,10 +1,11 @@
-"""Pressures from data files such as "file:measured.csv": values on a regular grid (see grid.py).
+"""Pressures from data files such as "file:measured.csv", with values on a regular grid (see
+grid.py).
 
 A CSV file has a heading with the columns forward, lateral and pressure, and one line for each
-point. A netCDF file has a variable `pressure` with the coordinates `forward` and `lateral`.  By
+point.  A netCDF file has a variable `pressure` with the coordinates `forward` and `lateral`.  By
 default a value is the mean over the cell around its point, as sensors measure it; the load is then
-the sum of values times cell areas.  With ",grid=samples" after the path, values hold at the points
-and are interpolated bilinearly.  ",decimal=comma" and ",encoding=cp1252" describe the format of a
+the sum of values times cell areas.  With ",grid=samples" after the path, values apply at the points
+and are interpolated bilinearly. ",decimal=comma" and ",encoding=cp1252" describe the format of a
 CSV file."""
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ NETCDF = (".nc", ".nc4", ".cdf")
 LARGEST_CACHE = 8
 
 _CACHE: dict[str, Pressure] = {}
-"""Name -> pressure of the files that were read last; equal content has one record."""
+"""Name -> pressure of the files read most recently.  Files with equal content share one entry."""
 
 
 def is_file(text: object) -> bool:

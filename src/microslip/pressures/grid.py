@@ -12,20 +12,22 @@ from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Meaning of the values on a grid.  "cells": means over cells of one step around the points.
-"samples": values at the points, interpolated bilinearly.  The pressure is 0 outside the grid."""
+"""Possible meanings of the values on a grid: "cells" for means over cells around the points, which
+are one step wide, and "samples" for values at the points, interpolated bilinearly.  The pressure is
+0 outside the grid."""
 FINE = 256
 """Number of squares along a side from which u_lim and the torque are computed."""
 FINEST = 1024
-"""Largest number of these squares, for grids of more than FINE points."""
+"""Largest number of these squares, used for grids of more than FINE points."""
 REGULAR = 1e-3
-"""Largest distance of a coordinate from the regular grid, over the step of the grid."""
+"""Largest allowed distance of a coordinate from the regular grid, divided by the step of the
+grid."""
 
 
 def read_grids(
     forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
 ) -> dict[str, Grid]:
-    """The Grid of values on a regular grid, and alternative grids from the same numbers.
+    """Create the Grid of values on a regular grid, and alternative grids from the same numbers.
 
     The unit of length a is half the longer side of the smallest rectangle that contains all
     pressure.  Rotations are about the centre of this rectangle.
@@ -37,7 +39,7 @@ def read_grids(
     values : array, shape (n, m)
         Pressure in any unit, 0 outside the contact.
     reading : str
-        One of READINGS.
+        Meaning of the values, one of READINGS.
 
     Returns
     -------
@@ -48,7 +50,8 @@ def read_grids(
     Raises
     ------
     InputError
-        If coordinates are not evenly spaced, if a value is negative or not finite, or if all are 0.
+        If coordinates are not evenly spaced, if a value is negative or not finite, or if all values
+        are 0.
     """
     values = np.asarray(values, float)
     axes = [np.asarray(axis, float) for axis in (forward, lateral)]
@@ -77,9 +80,11 @@ def _refuse(forward: np.ndarray, lateral: np.ndarray, values: np.ndarray) -> Non
 
 
 def _even(label: str, axis: np.ndarray) -> np.ndarray:
-    """Evenly spaced coordinates (n,) that replace those of an axis, up to the tolerance REGULAR.
+    """Return evenly spaced coordinates (n,) that replace those of an axis, within the tolerance
+    REGULAR.
 
-    Raises InputError for uneven coordinates; the message shows the two with the oddest distance.
+    Raises InputError for uneven coordinates; the message shows the pair whose distance deviates
+    most.
     """
     worst = int(np.isfinite(axis).argmin()) if len(axis) else 0
     if len(axis) > 1 and np.isfinite(axis).all():
@@ -96,8 +101,8 @@ def _even(label: str, axis: np.ndarray) -> np.ndarray:
 
 
 def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Coordinates from 0 on, in units of the longer step, so that areas neither overflow nor
-    underflow.
+    """Return coordinates that start at 0, in units of the longer step, so that areas neither
+    overflow nor underflow.
 
     Raises InputError if one step is more than 1e12 times the other.
     """
@@ -119,7 +124,8 @@ def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
 class _Axis:
     """One side of the smallest rectangle that contains all pressure, and the grid points on it.
 
-    points: evenly spaced coordinates, (n,); low, high: ends of the side; step: distance of points.
+    points: evenly spaced coordinates, (n,); low, high: ends of the side; step: distance between
+    points.
     """
 
     points: np.ndarray
@@ -140,15 +146,16 @@ class _Axis:
 
     @property
     def steps(self) -> int:
-        """Length of the side in steps."""
+        """Length of the side divided by the step."""
         return len(self.points) - (self.reading == "samples")
 
     def edges(self, parts: int) -> np.ndarray:
-        """Coordinates that divide each step into this number of parts."""
+        """Return coordinates that divide each step into this number of parts."""
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
     def coarsened(self) -> tuple[_Axis, np.ndarray]:
-        """An axis with half as many steps, and the matrix that averages values onto it."""
+        """Return an axis with half as many steps, and the matrix that averages values onto this
+        axis."""
         steps = -(-self.steps // 2)
         points = edges = np.linspace(self.low, self.high, steps + 1)
         middles = 0.5 * (edges[1:] + edges[:-1])
@@ -170,7 +177,7 @@ class Grid:
 
     @property
     def reading(self) -> str:
-        """One of READINGS."""
+        """Meaning of the values, one of READINGS."""
         return self.forward.reading
 
     def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
@@ -188,7 +195,7 @@ class Grid:
         return 0.5 * max(side.high - side.low for side in (self.forward, self.lateral))
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells squares over [-1, 1]^2, sum 1."""
+        """Load on each of cells x cells squares over [-1, 1]^2; the sum is 1."""
         edges = self.half * (np.arange(cells + 1) * 2.0 / cells - 1.0)
         along, across = (middle + edges for middle in self.middles)
         return of_loads(self.loads(along, across))
@@ -199,12 +206,13 @@ class Grid:
         return _largest_displacement(self.cell_loads(fine))
 
     def largest(self) -> float:
-        """Largest pressure over F_z / a^2."""
+        """Largest pressure divided by F_z / a^2."""
         edges = (side.edges(1) for side in (self.forward, self.lateral))
         return float(self.values.max()) * self.half**2 / float(self.loads(*edges).sum())
 
     def mean_distance(self) -> float:
-        """Mean distance from the centre, weighted with the pressure, over a; exact for "cells"."""
+        """Mean distance from the centre, weighted with the pressure and divided by a.  It is exact
+        for the meaning "cells"."""
         edges = [side.edges(-(-FINE // side.steps)) for side in (self.forward, self.lateral)]
         loads = self.loads(*edges)
         x, y = ((axis - at) / self.half for axis, at in zip(edges, self.middles, strict=True))

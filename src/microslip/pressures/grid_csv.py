@@ -1,4 +1,5 @@
-"""Read a grid of pressures from CSV: a heading with the columns, then one line for each point."""
+"""Read a grid of pressures from a CSV file: a heading with the column names, then one line for each
+point."""
 
 from __future__ import annotations
 
@@ -13,14 +14,14 @@ from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 SAME = 1e-9
-"""Coordinates are equal if they differ by less than this share of their range."""
+"""Coordinates count as equal if they differ by less than this fraction of their range."""
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
 
 
 def grid(
     content: bytes, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
+    """Return the coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
 
     Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
     ignored.
@@ -59,7 +60,8 @@ def grid(
 
 
 def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
-    """Separator, position of each of COLUMNS, and their units (None without a unit)."""
+    """Return the separator, the position of each of COLUMNS, and their units (None if there is no
+    unit)."""
     for separator in csv_text.SEPARATORS:
         words = csv_text.words(heading, separator)
         matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
@@ -81,7 +83,7 @@ def _number(where: int, name: str, word: str) -> float:
 
 
 def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates and values of the grid that the points fill.
+    """Return the coordinates and values of the grid formed by the points.
 
     table: forward, lateral and pressure of each point, (points, 3); places: line of each point.
     Raises ValueError if a point is missing or occurs twice.

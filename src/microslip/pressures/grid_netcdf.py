@@ -1,4 +1,5 @@
-"""Read a grid of pressures from netCDF: a variable `pressure` over `forward` and `lateral`."""
+"""Read a grid of pressures from a netCDF file with a variable `pressure` of `forward` and
+`lateral`."""
 
 from __future__ import annotations
 
@@ -25,12 +26,12 @@ ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forw
 
 
 def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m).
+    """Return the coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m).
 
     Raises
     ------
     ValueError
-        If the content has another format; the message is one line.
+        If the content has another format.  The message is a single line.
     """
     import xarray as xr  # only here, because it takes a while to load
 
@@ -95,8 +96,8 @@ def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _unit(name: str, attributes: Mapping[str, object]) -> str | None:
-    """The unit of a variable, from its attribute "unit" or "units" in any case; None without
-    one."""
+    """Return the unit of a variable from its attribute "unit" or "units", in upper or lower case;
+    None if there is no such attribute."""
     values = [value for key, value in attributes.items() if key.lower() in ("unit", "units")]
     texts = [value for value in values if isinstance(value, str)]
     if len(values) > 1 or len(texts) < len(values):

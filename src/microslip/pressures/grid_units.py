@@ -18,7 +18,7 @@ def factors(units: list[str | None]) -> list[float]:
     Parameters
     ----------
     units : list of str or None
-        Unit of each column; None or "" for a column without a unit.
+        Unit of each column; None or "" if a column has no unit.
 
     Raises
     ------
@@ -41,7 +41,8 @@ def factors(units: list[str | None]) -> list[float]:
 
 
 def _factor(name: str, text: str) -> float | None:
-    """Factor from a unit to SI units; None for a dimensionless column."""
+    """Return the factor that converts a unit to SI units, or None if the column is
+    dimensionless."""
     if text in ("", "1", "-"):
         return None
     import pint  # only here, because it takes a while to load

@@ -1,4 +1,4 @@
-"""Hertz's pressure over a circle: a sphere on a flat, the contact of the paper."""
+"""Hertz's pressure on a circle: a sphere on a flat, which is the contact of the paper."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Hertz(Pressure):
     largest = 1.5 / np.pi
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
+        """Compute the load on each square, (cells, cells)."""
         return ellipse_loads(cells)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -46,7 +46,7 @@ class Hertz(Pressure):
         return np.sqrt(np.maximum(depth, 0.0))
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is this share of the mean load."""
+        """Depth at which the load divided by the mean load is `share`."""
         return np.cbrt(share) ** 2
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:

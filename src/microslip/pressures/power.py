@@ -1,4 +1,4 @@
-"""Power-law indenters f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, flatter ends for larger
+"""Power-law indenters f(r) ~ r^n: a cone for n = 1, a sphere for n = 2, and flatter ends for larger
 n."""
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Power(Indenter):
     Parameters
     ----------
     exponent : float
-        1 to 100.
+        Exponent of the profile, 1 to 100.
 
     Raises
     ------
@@ -45,7 +45,7 @@ class Power(Indenter):
         return np.asarray(c, float) ** self.exponent
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of the depth."""
+        """Derivative of the depth with respect to the contact radius."""
         return self.exponent * c ** (self.exponent - 1.0)
 
     def radius(self, depth: np.ndarray) -> np.ndarray:
@@ -53,15 +53,15 @@ class Power(Indenter):
         return np.maximum(depth, 0.0) ** (1.0 / self.exponent)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load is this share of the mean load."""
+        """Depth at which the load divided by the mean load is `share`."""
         return np.maximum(share, 0.0) ** (self.exponent / (self.exponent + 1.0))
 
     @cached_property
     def largest(self) -> float:
         """Largest friction bound.
 
-        Up to the exponent n = 2 it is at the centre: (G*/pi) Integral_0^1 n x^(n - 2) dx =
-        (n + 1) / (2 pi (n - 1)).
+        For exponents n up to 2 the largest bound is at the centre: (G*/pi) Integral_0^1 n x^(n - 2)
+        dx = (n + 1) / (2 pi (n - 1)).
         """
         if self.exponent > 2.0:
             return super().largest

@@ -1,17 +1,18 @@
-"""Pressures: distribution of the load over the contact, and with it the friction bound at a point.
+"""Pressures: the distribution of the load over the contact, which gives the friction bound at each
+point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
-of a round contact, or half the longer side of the rectangle around another contact.  The
+of a round contact; for other contacts it is half the longer side of the bounding rectangle.  The
 displacement u_lim is the largest displacement of a point under full slip of the whole contact,
 computed with the compliance averaged over directions,
 
     u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA'.
 
-For an axisymmetric indenter at the depth d it is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
-sphere. A round contact that moves in one direction from rest slides everywhere from u_lim on, and
-so does any contact at nu = 0.  Other contacts at nu > 0 slide some percent earlier or later,
-depending on the direction.  In working units the reduced shear modulus is the number G*, 3/4 for a
-sphere."""
+For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
+sphere.  A round contact that moves in one direction from rest slides everywhere once the
+displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide some
+percent earlier or later, depending on the direction.  In working units the reduced shear modulus is
+the number G*, which is 3/4 for a sphere."""
 
 from __future__ import annotations
 
@@ -32,8 +33,8 @@ from microslip.pressures.grid import READINGS, Grid, read_grids
 class Pressure:
     """A distribution of the load over the contact, in working units (see the module pressure).
 
-    Each pressure is a subclass in its own file.  Its fields are the numbers that may follow its
-    name in a text such as "power:exponent=1"; `str` returns this text.
+    Each pressure is a subclass in its own file.  The fields of the class are the numbers that may
+    follow its name in a text such as "power:exponent=1"; `str` returns this text.
 
     Attributes
     ----------
@@ -42,19 +43,20 @@ class Pressure:
     G_star : float
         Reduced shear modulus 4G/(2 - nu).
     torque : float
-        Torque about the centre at full slip, over mu F_z a.
+        Torque about the centre at full slip, divided by mu F_z a.
     largest : float
-        Largest pressure over F_z / a^2, which is the largest friction bound; can be infinite.
+        Largest pressure divided by F_z / a^2, which is the largest friction bound.  It can be
+        infinite.
     mirrored : bool
         Whether the pressure is symmetric under lateral -> -lateral.
     inner : float
-        Radius of the hole in the middle, 0 without one.
+        Radius of the hole in the middle; 0 if there is no hole.
     hertzian : bool
         Whether the contact is an elliptic Hertz contact.  Its stick zones are ellipses of the same
-        shape (Vermeulen and Johnson), so that `loading` is that of the sphere.
+        shape (Vermeulen and Johnson), so `loading` is that of a sphere.
     readings : tuple of Pressure
-        Alternative pressures that the values of a grid can mean.  The spread of friction under
-        them is the error due to the grid.
+        Alternative pressures that agree with the values of a grid.  The differences of friction
+        between these pressures are the error due to the grid.
     """
 
     mirrored: ClassVar[bool] = True
@@ -71,15 +73,16 @@ class Pressure:
     depth: ClassVar[Any] = None
     """depth(c): indentation depth for the contact radius c; depth(1) = 1."""
     radius: ClassVar[Any] = None
-    """radius(depth): inverse of `depth`, 0 without contact."""
+    """radius(depth): inverse of `depth`; 0 if there is no contact."""
     of_load: ClassVar[Any] = None
-    """of_load(share): depth at which the load is this share of the mean load."""
+    """of_load(share): depth at which the load divided by the mean load is `share`."""
     load: ClassVar[Any] = None
     """load(r, c): load within the radius r of a contact of radius c; arrays broadcast."""
 
     loading: ClassVar[Any] = None
-    """loading(u): tangential force over mu F_z after a displacement u >= 0 (over u_lim) in one
-    direction from rest, at nu = 0; for axisymmetric indenters and elliptic Hertz contacts."""
+    """loading(u): tangential force divided by mu F_z after a displacement u >= 0 (in u_lim) in one
+    direction from rest, at nu = 0.  It is available for axisymmetric indenters and elliptic Hertz
+    contacts."""
 
     def __post_init__(self) -> None:
         spec.refuse_strange(self, "pressure")
@@ -91,7 +94,8 @@ class Pressure:
         """Create a pressure from values on a regular grid.
 
         The unit of length a is half the longer side of the smallest rectangle that contains all
-        pressure.  The error of friction includes the effect of the unknown pressure between points.
+        pressure.  The error estimate of friction includes the effect of the unknown pressure
+        between points.
 
         Parameters
         ----------
@@ -154,7 +158,8 @@ class Pressure:
         raise NotImplementedError
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each of cells x cells squares over [-1, 1]^2, (forward, lateral), sum 1."""
+        """Load on each of cells x cells squares over [-1, 1]^2, (forward, lateral); the sum is
+        1."""
         raise NotImplementedError
 
     @property
@@ -169,22 +174,22 @@ class Pressure:
 
     @property
     def stiffness(self) -> float:
-        """Force over mu F_z for a uniform displacement u_lim without slip, 2 G* a.
+        """Force for a uniform displacement u_lim without slip, divided by mu F_z, which is 2 G* a.
 
         It is an upper bound for a contact that does not fill the circle of radius a.
         """
         return 2.0 * self.G_star
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load of an indenter at depths >= 0, any shape."""
+        """Load of an indenter at depths >= 0, which can have any shape."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
     def stick_radius(self, displacement: float) -> float | None:
-        """Stick radius after a displacement >= 0 (over u_lim) in one direction from rest.
+        """Stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
 
-        It is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger), and 0.0 at full
-        slip.  None if the pressure is not that of an indenter.
+        The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger),
+        and 0.0 at full slip.  The result is None if the pressure is not that of an indenter.
         """
         if self.depth is None:
             return None
@@ -195,9 +200,9 @@ class Pressure:
 
 @dataclass(frozen=True)
 class RoundPressure(Pressure):
-    """Base class of pressures that depend on the radius alone, from integrals over rings.
+    """Base class of pressures that depend on the radius alone, computed from integrals over rings.
 
-    A subclass gives `ring_loads` and `ring_moments`: integrals of the friction bound, and of the
+    A subclass defines `ring_loads` and `ring_moments`: integrals of the friction bound, and of the
     bound times the radius, over the rings between r = sin(psi); shape (n,) from (n + 1,).
     """
 
@@ -215,7 +220,7 @@ class RoundPressure(Pressure):
         return loads / (np.pi * np.diff(radii**2)), lever
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
+        """Compute the load on each square, (cells, cells)."""
         return round_loads(cells, self.ring_loads, self.inner)
 
 
@@ -262,7 +267,7 @@ class Measured(Pressure):
 
     @property
     def name(self) -> str:
-        """Name with a digest of the values."""
+        """Name of the pressure, with a digest of the values."""
         return self.text
 
     def __eq__(self, other: object) -> bool:
@@ -284,5 +289,5 @@ class Measured(Pressure):
         return self.grid.largest()
 
     def cell_loads(self, cells: int) -> np.ndarray:
-        """Load on each square, (cells, cells)."""
+        """Compute the load on each square, (cells, cells)."""
         return self.grid.cell_loads(cells)

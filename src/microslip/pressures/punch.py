@@ -11,14 +11,14 @@ from microslip.foundation import spec
 from microslip.pressures.axisymmetric_indenter import Indenter
 
 LARGEST_FLAT = 0.99
-"""Largest radius of the flat end, over the contact radius."""
+"""Largest radius of the flat end, divided by the contact radius."""
 _HALVINGS = 100
 """Number of bisections, enough for full precision."""
 
 
 @dataclass(frozen=True)
 class Punch(Indenter):
-    """The pressure of a punch whose flat end has the radius `flat`, over the contact radius.
+    """The pressure of a punch whose flat end has the radius `flat`, divided by the contact radius.
 
     Its equivalent plane profile is D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c above the
     radius b of the flat end (Ciavarella 1999).
@@ -26,7 +26,7 @@ class Punch(Indenter):
     Parameters
     ----------
     flat : float
-        Radius of the flat end over the contact radius, 0 to 0.99.
+        Radius of the flat end divided by the contact radius, 0 to 0.99.
 
     Raises
     ------
@@ -58,7 +58,7 @@ class Punch(Indenter):
         return self._scale * self._profile(c)
 
     def slope(self, c: np.ndarray) -> np.ndarray:
-        """Derivative of the depth."""
+        """Derivative of the depth with respect to the contact radius."""
         c = np.maximum(c, self.flat)
         return self._scale * (2.0 * _root(c, self.flat) - self.flat * _angle(c, self.flat))
 

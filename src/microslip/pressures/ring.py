@@ -12,21 +12,21 @@ from microslip.foundation import spec
 from microslip.pressures.pressure import RoundPressure
 
 LIMITS = (0.05, 0.95)
-"""Range of the radius of the hole, over the outer radius."""
+"""Range of the radius of the hole, divided by the outer radius."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 @dataclass(frozen=True)
 class Ring(RoundPressure):
-    """The pressure proportional to sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
+    """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
 
-    This is Hertz's pressure of a line contact, bent to a circle.  It is close to the pressure of a
-    slender torus; for a wide ring it is an assumption.
+    This is the Hertz pressure of a line contact that is bent into a circle.  It is close to the
+    pressure of a slender torus; for a wide ring it is an assumption.
 
     Parameters
     ----------
     inner : float
-        Radius of the hole over the outer radius, 0.05 to 0.95.
+        Radius of the hole divided by the outer radius, 0.05 to 0.95.
 
     Raises
     ------
@@ -55,8 +55,8 @@ class Ring(RoundPressure):
 
     @property
     def _top(self) -> float:
-        """Factor of the root, for which the load is 1: 1 / Integral sqrt((r - b)(1 - r)) 2 pi r dr,
-        with r = middle - half cos t."""
+        """Factor of the root, chosen such that the load is 1: 1 / Integral sqrt((r - b)(1 - r)) 2
+        pi r dr, with r = middle - half cos t."""
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
 
     def bound(self, r: np.ndarray) -> np.ndarray:

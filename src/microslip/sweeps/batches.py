@@ -1,8 +1,9 @@
-"""From a configuration to results: requests, batches of requests, and their records.
+"""Requests of a configuration, batches of requests, and the records of their results.
 
 A request is a plain dict of physical and numerical settings, with numbers as canonical strings.
-The name of its result is a hash of the request and the digest of the solver.  A job gets a batch of
-requests and computes the results that the store does not have, whatever batch computed the others.
+The name of the result of a request is a hash of the request and of the digest of the solver.  A job
+gets a batch of requests and computes only the results that are not yet in the store, regardless of
+which batch computed the others.
 """
 
 import functools
@@ -29,7 +30,8 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Version of the content of records, to increase after a change outside the solver."""
+"""Version of the content of records.  Increase it after a change of the content outside the
+solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
 """Initial states of Figure 5."""
@@ -46,14 +48,15 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
-"""Folders of the store by kind of request.  Records of trials and scaling hold measured times."""
+"""Folders of the store by kind of request.  Records of trials and scaling contain measured
+times."""
 
 
 class PointRequests:
     """Requests for all points of a records.Sweep, generated during iteration.
 
     Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
-    last one changes fastest.
+    last of these changes fastest.
     """
 
     def __init__(self, sweep: Sweep):
@@ -66,7 +69,7 @@ class PointRequests:
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
-        if pressure != "hertz":  # the default is left out: names of older results stay
+        if pressure != "hertz":  # omitted if default, so that names of older results remain valid
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
             self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
@@ -92,7 +95,7 @@ class PointRequests:
 
     @property
     def rows(self) -> list[dict]:
-        """Requests without the last axis, in their order."""
+        """Requests without the last axis, in the same order."""
         *names, _ = self._axes
         values = product(*(self._axes[name] for name in names))
         return [self._common | dict(zip(names, place, strict=True)) for place in values]
@@ -103,7 +106,8 @@ class PointRequests:
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
-    """Requests for the single runs in the dataset of the sweep `name`; [] for extended sweeps."""
+    """Requests for the single runs in the dataset of the sweep `name`; the list is empty for
+    extended sweeps."""
     steady = {"motion": "continuous-bore"}
     kinds: dict[str, list[dict]] = {
         "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
@@ -119,15 +123,16 @@ def history_requests(configuration: Configuration, name: str) -> list[dict]:
 
 
 def key_of(request: dict) -> str:
-    """Name of the result of a request with the running code."""
+    """Return the name of the result of a request that is computed by the running code."""
     return result_key(request, source_digest.of_request(request))
 
 
 def result_key(request: dict, digest: str) -> str:
-    """Name of the result of a request with code of this digest.
+    """Return the name of the result of a request that is computed by code with this digest.
 
-    It is a hash of the request and the digest.  The versions of NumPy, SciPy and Numba change
-    results by rounding errors.  They are recorded in each result and are no part of the name.
+    The name is a hash of the request and the digest.  The versions of NumPy, SciPy and Numba change
+    results by rounding errors.  They are recorded in each result, but they are not part of the
+    name.
     """
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
     return sha256(canonical_json(content))
@@ -137,16 +142,16 @@ def result_key(request: dict, digest: str) -> str:
 
 
 class Batch(NamedTuple):
-    """Requests of a job: each row at each value of an axis.
+    """Requests of a job: every combination of a row and a value of an axis.
 
     Attributes
     ----------
     rows : list of dict
-        Requests without the axis, or whole requests where there is none.
+        Requests without the axis, or complete requests if there is no axis.
     axis : str
         Key of the axis; empty if there is no axis.
     values : sequence of str
-        Values along it.
+        Values along the axis.
     """
 
     rows: list[dict]
@@ -168,9 +173,10 @@ class Batch(NamedTuple):
 
 
 def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
-    """Batches of whole rows, or of parts of long rows, in the order of the points.
+    """Divide points into batches of whole rows, or of parts of long rows, in the order of the
+    points.
 
-    size: mean number of points in a batch.  The order of the points is retained.
+    size: mean number of points in a batch.
     """
     axis, values = requests.last
     parts = cut(values, size) if len(values) > size else [values]
@@ -179,9 +185,9 @@ def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
 
 
 def cut(items: Sequence, mean: int) -> list[list]:
-    """Consecutive items in lists, of `mean` items on average.
+    """Divide items into lists of consecutive items, with `mean` items on average.
 
-    Each cut depends only on the item after it, so that an additional item changes one list.
+    Each cut depends only on the item that follows it, so an additional item changes only one list.
     """
     parts: list[list] = []
     for item in items:
@@ -198,13 +204,13 @@ def group(request: dict) -> str:
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
-    """Record of a request, and the CPU seconds of the solver.
+    """Return the record of a request, and the CPU time of the solver in seconds.
 
-    The record comes from the store (0 seconds), or is computed and stored.  It has the keys key,
-    request, result and versions.  A result that is not final, see evaluate.is_final, is not stored.
+    The record is read from the store (0 seconds), or computed and stored.  It has the keys key,
+    request, result and versions.  A result that is not final (see evaluate.is_final) is not stored.
     Raises CacheError if the record cannot be stored.
 
-    time_limit: largest time for a point, as for microslip.solve.
+    time_limit: time limit of a point, as in microslip.solve.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -227,7 +233,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
 class SourcesEdited(CacheError):
     """The code on disk differs from the running code.
 
-    A result may then come from either code, so it is not stored under the name of one.
+    A result could then come from either version of the code, so it is not stored.
 
     Attributes
     ----------
@@ -247,15 +253,16 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Records of the requests, which depend on the requests and the solver alone, and their
-    `statistics`."""
+    """Return the records of the requests and their `statistics`.  The records depend only on the
+    requests and the solver."""
     answers = [answer(request, store) for request in requests]
     records = [record for record, _ in answers]
     return records, statistics(records, [took for _, took in answers])
 
 
 def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Counts, CPU seconds and finality of records; logs points that did not converge.
+    """Return the number of records, the CPU time and whether all records are final.  Points that
+    did not converge are logged.
 
     Raises SolverError if the solver failed at all points.
     """
@@ -278,13 +285,13 @@ def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """A function from a request to its record, one of these."""
+    """Return a function that maps a request to its record among these records."""
     by_key = {record["key"]: record for record in records}
     return lambda request: by_key[key_of(request)]
 
 
 def label(request: dict) -> str:
-    """A request in a few words, for messages."""
+    """Describe a request in a few words, for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]

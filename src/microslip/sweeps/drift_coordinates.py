@@ -1,15 +1,15 @@
 """Scaled coordinates of a map of drift: force and amplitude.
 
-Below the threshold of the force, the static limit at its amplitude, a contact stays and needs no
-map. Above the threshold it drifts.  The drift velocity is about proportional to the power 3/2 of
-the force above the threshold, since friction approaches its static limit as the power 2/3 of the
-velocity.  At the force 1 the contact runs away; close to it the velocity of a rigid contact is
-proportional to (1 - force)^(-1/2).
+The threshold of the force is the static limit at the amplitude.  Below the threshold a contact does
+not drift and no map is needed.  Above the threshold it drifts.  The drift velocity is about
+proportional to the power 3/2 of the force above the threshold, since friction approaches its static
+limit as the power 2/3 of the velocity.  As the force approaches 1 the velocity becomes infinite;
+the velocity of a rigid contact is then proportional to (1 - force)^(-1/2).
 
-The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).
-Amplitudes gather where the threshold equals the largest force and where it vanishes.  Cells
-interpolate asinh(velocity): its error is the absolute error of a small velocity and the relative
-error of a large one.
+The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).  Nodes
+are clustered at the amplitudes at which the threshold equals the largest force and at which it
+vanishes.  Cells interpolate asinh(velocity): its error is the absolute error of a small velocity
+and the relative error of a large one.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from microslip.theory.kinks import Kinks, kinks_of
 
 
 class DriftCoordinates(NamedTuple):
-    """Range and patches of a map of drift; all dimensionless.
+    """Range and patches of a map of drift.  All values are dimensionless.
 
     Attributes
     ----------
     motion : str
-        Motion of the contact; its static limit is the threshold.
+        Motion of the contact, whose static limit is the threshold.
     force : float
         Largest force, below 1.
     amplitude : tuple of float
-        Smallest and largest amplitude, at least 0.  The map begins at the amplitude from which the
+        Smallest and largest amplitude, at least 0.  The map begins at the amplitude above which the
         largest force moves the contact.
     """
 
@@ -55,7 +55,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """Empty: Poisson's ratio is not a direction of such a map."""
+        """Empty, because Poisson's ratio is not a direction of a map of drift."""
         return ()
 
     @property
@@ -70,7 +70,7 @@ class DriftCoordinates(NamedTuple):
         return cls(values["motion"], values["force"], tuple(values["amplitude"]))
 
     def to_json(self) -> str:
-        """The coordinates as JSON, for the attribute of a dataset."""
+        """Return the coordinates as JSON text for the attribute of a dataset."""
         return canonical_json(self._asdict())
 
     def scaled(
@@ -78,7 +78,7 @@ class DriftCoordinates(NamedTuple):
     ) -> np.ndarray:
         """Scaled coordinates, shape (n, 2), of forces and amplitudes in the range, shape (n,).
 
-        least: thresholds at the amplitudes; computed, which is slow, if None.
+        least: thresholds at the amplitudes.  If None, they are computed, which is slow.
         """
         force, amplitude = (np.asarray(part, float) for part in (force, amplitude))
         thresholds = threshold(self.motion, amplitude) if least is None else least
@@ -107,18 +107,18 @@ class DriftCoordinates(NamedTuple):
 
 
 def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarray:
-    """The scaled force t: 0 at the threshold, infinite at the force 1."""
+    """Scaled force t, which is 0 at the threshold and infinite at the force 1."""
     return np.arctanh(np.sqrt(np.clip((force - least) / (1.0 - least), 0.0, 1.0)))
 
 
 def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
-    """asinh of a velocity, which a map of drift interpolates, and its error bound."""
+    """Return asinh of a velocity, which a map of drift interpolates, and its error bound."""
     low, middle, high = np.arcsinh([velocity - error, velocity, velocity + error]).tolist()
     return middle, max(high - middle, middle - low)
 
 
 def velocity_of(scaled: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Velocities, at least 0, and error bounds from arrays of asinh(velocity) and its errors.
+    """Return velocities >= 0 and their error bounds from arrays of asinh(velocity) and its errors.
 
     The bound of an unknown velocity is infinite.
     """

@@ -1,6 +1,7 @@
-"""Computation of the result of a request, as plain values.
+"""Computation of the result of a request as plain values for JSON.
 
-microslip.sweeps.batches defines requests.  Functions import the solver when they need it.
+microslip.sweeps.batches defines requests.  Functions of this module import the solver only when
+they need it.
 """
 
 import logging
@@ -22,16 +23,16 @@ log = logging.getLogger(__name__)
 SHORTEST = 0.02
 """Shortest measured CPU time, in seconds; shorter runs are repeated and measured together."""
 LONG_ENOUGH = 2.0
-"""CPU time of all readings, in seconds, after which no further reading is taken."""
+"""Total CPU time of the readings, in seconds, after which no further reading is taken."""
 
 
 def computed(request: dict, time_limit: float | None = None) -> dict:
-    """Compute the result of a request, a dict of values that JSON can represent.
+    """Compute the result of a request as a dict of values that JSON can represent.
 
-    time_limit: time limit of a point, as for microslip.solve.  If the solver raises SolverError or
-    InputError, the result is a gap in the dataset: not `converged`, `crashed`, with the error as
-    its reason in one line.  Any other exception is an error of the code or the machine and
-    propagates.
+    time_limit: time limit of a point, as in microslip.solve.  If the solver raises SolverError or
+    InputError, the point is a gap in the dataset: `converged` is False, `crashed` is True, and the
+    reason is the error message in one line.  Any other exception is an error of the code or the
+    machine and propagates.
     """
     try:
         limits = {} if time_limit is None else {"time_limit": time_limit}
@@ -43,15 +44,15 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
 
 
 def is_final(result: dict) -> bool:
-    """False if the solver failed or ran out of time; such a point is computed again."""
+    """False if the solver failed or reached its time limit.  Such a point is computed again."""
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
 def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Call a function repeatedly; return its result and the CPU seconds of a call.
 
-    The first call is not timed, since it may compile.  The seconds are the median of `repeats`
-    readings, or fewer if they take longer than LONG_ENOUGH.  CPU time does not contain the time of
+    The first call is not timed, since it may compile code.  The seconds are the median of `repeats`
+    readings, or fewer if they take longer than LONG_ENOUGH.  CPU time does not include the time of
     other processes.
     """
     result = run()
@@ -88,14 +89,14 @@ def _field(request: dict) -> dict:
 
 
 def _period(request: dict) -> dict:
-    """A period of the periodic state, packed by microslip.sweeps.period_codec."""
+    """Compute one period of the periodic state, packed by microslip.sweeps.period_codec."""
     from microslip.sweeps.period_codec import packed
 
     return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
 
 
 def _trial(request: dict) -> dict:
-    """A timed run at one resolution; `applies` is False if the method cannot be used."""
+    """Time a run at one resolution; `applies` is False if the method cannot be used."""
     from microslip.adaptive import single_run
 
     place = _place(request)
@@ -115,12 +116,12 @@ def _trial(request: dict) -> dict:
 
 
 def _choice(request: dict) -> dict:
-    """A timed `solve` with a tolerance and automatic settings."""
+    """Time `solve` with a tolerance and automatic settings."""
     return _timed(lambda: _solved(request), request["repeats"])
 
 
 def _probe(request: dict) -> dict:
-    """A solve with another method; `applies` is False if the method cannot be used."""
+    """Solve with another method; `applies` is False if the method cannot be used."""
     from microslip.adaptive import single_run
     from microslip.adaptive.checks import checked_problem
     from microslip.adaptive.choice import choose_model
@@ -144,7 +145,7 @@ def _scaling(request: dict) -> dict:
 
 
 def _run(request: dict) -> dict:
-    """A run at one resolution without measured times, so that equal requests have equal results."""
+    """Run at one resolution without measuring times, so that equal requests have equal results."""
     from microslip.adaptive import single_run
 
     names = ("model", "method", "cells", "angles", "steps")
@@ -154,14 +155,14 @@ def _run(request: dict) -> dict:
 
 
 def _patches(request: dict) -> dict:
-    """The stick zone over a period."""
+    """Compute the stick zone during a period."""
     from microslip.adaptive.stick_area import patches
 
     return _found(lambda: patches(**_at(request)))
 
 
 def _propulsion(request: dict) -> dict:
-    """The line of a self-propelled motion, from stall to no load."""
+    """Compute the force-velocity line of a self-propelled motion, from stall to no load."""
     given = {name: float(request[name]) for name in ("poisson", "tolerance")}
     amplitude = float(request["amplitude"])
     line = microslip.propulsion(
@@ -230,7 +231,7 @@ def _at(request: dict) -> dict:
 
 
 def _found(look: Callable[[], dict]) -> dict:
-    """Call a function that needs a period; return the reason if there is no periodic state."""
+    """Call a function that requires a periodic state; return the reason if there is none."""
     from microslip.adaptive.period import NoPeriodicState
 
     try:

@@ -2,12 +2,13 @@
 
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is the polynomial
-through its nodes.  The surplus, the largest differences of the highest order along a direction, is
-the error of a polynomial of one degree less.  The error of the polynomial is a fraction of the
-surplus, calibrated on other points.  A cell with too large an error is halved along the direction
-with the largest surplus; its nodes are nodes of the halves.
+through its nodes.  The surplus of a direction is computed from the largest differences of the
+highest order along it; it is the error of a polynomial of one degree less.  The error of the
+polynomial is estimated as a fraction of the surplus, which was calibrated on other points.  A cell
+whose error is too large is halved along the direction with the largest surplus.  The nodes of the
+cell are nodes of its halves as well.
 
-The cells are a function of the answers alone and do not depend on the order of the requests.
+The cells depend only on the results at the nodes, not on the order of the requests.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ LOW_DEGREE = 2.0
 """Factor of second differences in the surplus: polynomials of degree 2 have a larger error relative
 to the surplus."""
 RESOLVED = 0.05
-"""Largest surplus of a cell that is not halved.  For a larger surplus the error can be a multiple
-of SHARE times the surplus."""
+"""A cell whose surplus exceeds this value is halved even if its error bound is small, because its
+error can then be a multiple of SHARE times the surplus."""
 SMALLEST = 2.0**-9
-"""Smallest width of a cell, in patches."""
+"""Smallest width of a cell, as a fraction of the width of a patch."""
 
 Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]
-"""Friction and its error by node; NaN: the point did not converge."""
+"""Friction and its error by node.  Friction is NaN if the point did not converge."""
 
 
 class Cell(NamedTuple):
@@ -57,7 +58,7 @@ class Cell(NamedTuple):
     end: tuple[float, ...]
 
     def nodes(self, degrees: tuple[int, ...]) -> list[Node]:
-        """Nodes of the cell, the last direction fastest."""
+        """Nodes of the cell; the last direction changes fastest."""
         ends = zip(self.begin, self.end, degrees, strict=True)
         return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
 
@@ -72,16 +73,17 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Refinement:
-    """State of a refinement.
+    """State of the refinement of a map.
 
     Attributes
     ----------
     cells : tuple of Cell
-        Cells that cover the map, also those with missing nodes.
+        Cells that cover the map, including those with missing nodes.
     errors : tuple of float
-        Error bound of each cell, from interpolation and nodes; infinite if unknown.
+        Error bound of each cell due to the interpolation and the errors of the nodes; infinite if
+        unknown.
     missing : tuple of Node
-        Nodes to be solved next, ascending; empty if the map is finished.
+        Nodes to be solved next, in ascending order; empty if the map is finished.
     """
 
     cells: tuple[Cell, ...]
@@ -90,14 +92,14 @@ class Refinement:
 
 
 def first_cells(coordinates: MapCoordinates | DriftCoordinates) -> list[Cell]:
-    """A cell for each patch of a map."""
+    """Create one cell for each patch of a map."""
     return [Cell(*patch) for patch in coordinates.patches]
 
 
 def refine_cells(
     coordinates: MapCoordinates | DriftCoordinates, answers: Answers, error: float
 ) -> Refinement:
-    """Refine a map as far as the answers allow.
+    """Refine a map as far as the results at the nodes allow.
 
     Parameters
     ----------
@@ -133,7 +135,8 @@ def refine_cells(
 
 
 def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
-    """Surplus by direction, the error of a polynomial of one degree less, from values at nodes."""
+    """Surplus by direction, computed from values at nodes; it is the error of a polynomial of one
+    degree less."""
     return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 
@@ -148,7 +151,8 @@ def _surplus(values: np.ndarray, axis: int) -> float:
 
 
 def _worst(cell: Cell, surpluses: tuple[float, ...]) -> int | None:
-    """Direction with the largest surplus; None for the smallest cells and for unknown friction."""
+    """Direction with the largest surplus; None for the smallest cells and if friction is
+    unknown."""
     if not np.all(np.isfinite(surpluses)):
         return None
     wide = [

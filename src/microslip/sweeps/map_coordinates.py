@@ -1,11 +1,12 @@
 """Scaled coordinates of a map of friction.
 
-A map is over velocity and amplitude, and perhaps Poisson's ratio; a map of the static limit has no
-velocity.  It is divided into patches at the known kinks of its motion (theory.kinks).  Patches are
-boxes in scaled coordinates.  Below the kink of the velocity the scaled velocity is the power 1/3,
-half the power with which friction approaches its static limit, and amplitudes are divided at their
-kinks and gather there.  Above it the scaled velocity is the logarithm.  Amplitudes without kinks
-are scaled by log(1 + 2 A).
+The axes of a map are velocity and amplitude, and optionally Poisson's ratio; a map of the static
+limit has no velocity.  It is divided into patches at the known kinks of its motion (theory.kinks).
+Patches are boxes in scaled coordinates.  Below the kink of the velocity, the scaled velocity is
+proportional to the velocity to the power 1/3, which is half the power with which friction
+approaches its static limit.  There the range of amplitudes is divided at its kinks, and nodes are
+clustered at the kinks.  Above the kink of the velocity, the scaled velocity is logarithmic in the
+velocity.  Amplitudes without kinks are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ from microslip.theory.kinks import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits of the coordinates of a node."""
 CLEAR = 2.0
-"""Smallest factor between a kink of the velocity and the ends of the range; otherwise it is not a
-border."""
+"""A kink of the velocity is a border only if it differs from both ends of the range by at least
+this factor."""
 SLOW_POWER = 1.0 / 3.0
-"""Power of the velocity in its scaled coordinate, below the kink."""
+"""Power of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
 """Scaled velocity just above the kink; just below the kink it is 1."""
 FAST_PATCHES = 2
-"""Number of patches above the kink, along the velocity; with fewer, friction may rise too steeply
-for the nodes."""
+"""Number of patches along the velocity above the kink.  With fewer patches, friction may rise too
+steeply to be resolved by the nodes."""
 AT_KINKS = 2.0
-"""Power with which nodes gather at kinks of the amplitude."""
+"""Power with which nodes are clustered at kinks of the amplitude."""
 SPREAD = 2.0
 """Amplitudes without kinks are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
@@ -45,7 +46,7 @@ Ends = Sequence | np.ndarray
 
 
 class MapCoordinates(NamedTuple):
-    """Range and patches of a map; all dimensionless.
+    """Range and patches of a map.  All values are dimensionless.
 
     Attributes
     ----------
@@ -56,7 +57,7 @@ class MapCoordinates(NamedTuple):
     kinks : theory.kinks.Kinks
         Kinks of the motion.
     poisson : tuple of float
-        Smallest and largest Poisson's ratio; () if it is not a direction of the map.
+        Smallest and largest Poisson's ratio; () if Poisson's ratio is not a direction of the map.
     """
 
     velocity: tuple[float, ...]
@@ -95,7 +96,7 @@ class MapCoordinates(NamedTuple):
         return cls(tuple(values["velocity"]), (low, high), kinks, tuple(values["poisson"]))
 
     def to_json(self) -> str:
-        """The coordinates as JSON, for the attribute of a dataset."""
+        """Return the coordinates as JSON text for the attribute of a dataset."""
         ranges = {name: getattr(self, name) for name in DEGREES}
         kinks = {"kink_amplitudes": self.kinks.amplitudes, "kink_velocity": self.kinks.velocity}
         return canonical_json(ranges | kinks)
@@ -103,7 +104,7 @@ class MapCoordinates(NamedTuple):
     def scaled(self, *places: np.ndarray) -> np.ndarray:
         """Scaled coordinates, shape (n, directions), of points in the range.
 
-        places: values of the points by direction, velocities first, shape (n,) each.
+        places: values of the points by direction, with velocities first, shape (n,) each.
         """
         values = [np.asarray(part, float) for part in places]
         deep = [_share(values.pop(), self.poisson)] if self.poisson else []
@@ -121,7 +122,8 @@ class MapCoordinates(NamedTuple):
         return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Point at scaled coordinates: its values by direction, rounded to DIGITS digits."""
+        """Return the point at scaled coordinates: its values by direction, rounded to DIGITS
+        digits."""
         *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
@@ -182,7 +184,7 @@ class MapCoordinates(NamedTuple):
         return _between(share**AT_KINKS if below else 1.0 - (1.0 - share) ** AT_KINKS, ends)
 
     def _even(self, amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-        """Scaled amplitudes in one patch, 0 to 1."""
+        """Scaled amplitudes between 0 and 1 in one patch."""
         below, above = self._gathers_at(ends)
         share, power = _share(amplitude, ends), 1.0 / AT_KINKS
         if below and above:
@@ -192,9 +194,9 @@ class MapCoordinates(NamedTuple):
         return share**power if below else 1.0 - (1.0 - share) ** power
 
     def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """True for the lower and the upper end of a patch if nodes gather there.
+        """Return, for the lower and the upper end of a patch, whether nodes are clustered there.
 
-        They gather at kinks and, in a patch below a kink, at the amplitude 0.
+        Nodes are clustered at kinks and, in a patch below a kink, at the amplitude 0.
         """
         below, above = (end in self.kinks.amplitudes for end in ends)
         return below or (above and ends[0] == 0.0), above

@@ -1,4 +1,4 @@
-"""Solution of the points of a certified map, in rounds of refinement."""
+"""Computation of the points of a certified map, in rounds of refinement."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ def refine(
     map_ : CertifiedMap
         The map.
     ask : callable
-        From a list of requests to the records that answer them, in the same order.
+        Function that returns the records for a list of requests, in the same order.
 
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Friction and its error by node, or the scaled velocity under a force; NaN and infinity where
-        a point did not converge.  They depend on the records alone.
+        Friction and its error by node, or the scaled velocity under a force and its error.  The
+        values are NaN and infinity if a point did not converge.  They depend only on the records.
     refinement : Refinement
         The cells.
     """
@@ -63,7 +63,7 @@ def refine(
 def _request(
     map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
 ) -> dict:
-    """Request for a node, equal to that of a sweep with this point."""
+    """Request for a node, which equals the request of a sweep for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point: dict = {"velocity": (0.0,)}
     if "force" in place:
@@ -100,14 +100,15 @@ def solve_points(
     processes : int
         Number of processes.
     progress : callable
-        Called with an iterable and its length for each round; yields the items of the iterable.
+        Function that is called with an iterable and its length in each round, and yields the items
+        of the iterable.
 
     Returns
     -------
     records : list of dict
         Records of all points.
     seconds : list of float
-        CPU times of the solver.
+        CPU times of the solver for the points.
     """
     answers: dict[str, tuple[dict, float]] = {}
     with ProcessPoolExecutor(
@@ -126,7 +127,7 @@ def solve_points(
 
 
 def _begin(pressure: str) -> None:
-    """Prepare a process of the pool to read files of pressures and to end with its parent."""
+    """Prepare a worker process to read pressure files and to end when its parent process ends."""
     named_files.remember([pressure])
     Thread(target=_end_with_parent, daemon=True).start()
 

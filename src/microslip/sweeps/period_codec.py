@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from microslip.adaptive.period import Period
 
 SHARES = 127
-"""Number of steps of a stored traction from 0 to the friction bound."""
+"""Number of steps between 0 and the friction bound in stored tractions."""
 DECIMALS = 7
-"""Decimals of forces and displacements."""
+"""Number of decimals of stored forces and displacements."""
 HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lateral", "torque")
 
 
 def packed(period: Period, angles: int) -> dict:
-    """Pack a period whose second half is the mirror image of the first.
+    """Pack a period whose second half is the mirror image of its first half.
 
     Parameters
     ----------
@@ -37,14 +37,12 @@ def packed(period: Period, angles: int) -> dict:
     Returns
     -------
     dict
-        radius, bound: lists over rings, (cells,).
-        The names in HISTORIES: lists over time, (steps + 1,).
-        tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
-        bound/127.
-        slips: base64 of bits, (steps/2 + 1, angles, cells).
-        turned: True if the other half of the disc is this half rotated by half a turn, as in
-        translations; False if it is the mirror image across the lateral axis.
-        mu_macro, converged, reason: as in the Period.
+        radius, bound: lists over rings, (cells,).  The names in HISTORIES: lists over time, (steps
+        + 1,). tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in
+        steps of bound/127. slips: base64 of bits, (steps/2 + 1, angles, cells). turned: True if the
+        other half of the disc is this half rotated by half a turn, as in translations; False if it
+        is the mirror image across the lateral axis. mu_macro, converged, reason: values of the
+        Period.
     """
     frames, half = (len(period.phase) + 1) // 2, period.bound.size // 2
     bound = period.bound[:half]

@@ -1,4 +1,4 @@
-"""`microslip.solve` for one point, with the stored results of sweeps."""
+"""`microslip.solve` for one point, which uses the stored results of sweeps."""
 
 from __future__ import annotations
 
@@ -45,27 +45,27 @@ def solve_stored(
     steps: int | None = None,
     time_limit: float | None = None,
 ) -> Result:
-    """Friction at one point, read from a folder of results, or computed and stored there.
+    """Read the friction at one point from a folder of results, or compute and store it there.
 
-    The key of a result is a hash of the point, the tolerance and the code of the solver, so that
-    sweeps, the command line and this function share results.  Numbers are rounded to 12 digits, as
-    in sweeps.  A result after a time limit or a failure of the solver is not stored.
+    The key of a result is a hash of the point, the tolerance and the code of the solver, so sweeps,
+    the command line and this function share results.  Numbers are rounded to 12 digits, as in
+    sweeps.  The result is not stored if the solver failed or reached its time limit.
 
     Parameters
     ----------
     results : str or path
-        Folder of results, which is created if needed.  The other arguments are as for
+        Folder of results, which is created if needed.  The other arguments are those of
         `microslip.solve`.
 
     Returns
     -------
     Result
-        solve_time_s is the time of this call.
+        The result; its attribute `solve_time_s` is the duration of this call.
 
     Raises
     ------
     InputError
-        As `microslip.solve`.
+        If an argument is invalid, as in `microslip.solve`.
     CacheError
         If the folder cannot be used.
     """

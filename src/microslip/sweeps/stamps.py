@@ -1,8 +1,9 @@
-"""Stamps of products: fingerprint of the inputs of a dataset, page or figure, and file checksums.
+"""Stamps of products: a fingerprint of the inputs of a dataset, page or figure, and the checksums
+of its files.
 
-The files of a product have plain names, which do not change with their content.  Its stamp
-`.made/NAME.json` in the folder of results shows whether they are up to date.  A job writes the
-stamp last.
+The files of a product have plain names, which do not change with their content.  The stamp of a
+product, `.made/NAME.json` in the folder of results, shows whether its files are up to date.  A job
+writes the stamp last.
 """
 
 from __future__ import annotations
@@ -25,9 +26,10 @@ FOLDER = ".made"
 AGAIN = ".again"
 """Name of a file in the folder of results that is newer than every outdated file."""
 WHEN = 1_000_000_000
-"""Date of AGAIN (s since 1970, in 2001).  Outdated files are dated one second before."""
+"""Modification time of AGAIN in seconds since 1970; it is in 2001.  Outdated files are dated one
+second earlier."""
 HDF5 = b"\x89HDF"
-"""First bytes of a netCDF file."""
+"""First bytes of a netCDF file, which is in HDF5 format."""
 
 
 def stamp_of(product: str) -> str:
@@ -42,7 +44,8 @@ def write(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> Non
 
 
 def read(stamp: str | Path) -> dict:
-    """Content of a stamp: made_of and sums; empty if the stamp is missing or damaged."""
+    """Read the content of a stamp, made_of and sums.  The dict is empty if the stamp is missing or
+    damaged."""
     try:
         content = json.loads(Path(stamp).read_bytes())
     except (OSError, ValueError):
@@ -51,7 +54,8 @@ def read(stamp: str | Path) -> dict:
 
 
 def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool:
-    """True if all outputs exist with the checksums of the stamp, and were made of `made_of`."""
+    """True if all outputs exist with the checksums of the stamp, and the stamp has this
+    `made_of`."""
     content = read(stamp)
     if content.get("made_of") != made_of:
         return False
@@ -62,7 +66,8 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
 
 
 def is_damaged(dataset: Path) -> bool:
-    """True if a netCDF file differs from its stamp; without a stamp, if it is no netCDF file.
+    """True if a netCDF file differs from its stamp.  If there is no stamp, True if the file is not
+    in netCDF format.
 
     Raises CacheError if the file cannot be read.
     """
@@ -79,7 +84,7 @@ def is_damaged(dataset: Path) -> bool:
 def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
     """Rename the files of a product that differ from its stamp, before a job writes new ones.
 
-    Such a file is damaged, or the user has put it there and may still need it.
+    Such a file is damaged, or it comes from the user, who may still need it.
     """
     for path in map(Path, outputs):
         if path.is_file() and _checksum(path) != _stamped(stamp, path):
@@ -89,10 +94,11 @@ def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
-    """Date outdated files (not right) back, and set a date in the future to the current time.
+    """Set the date of outdated files (`right` is False) back to 2001.  For other files, replace a
+    date in the future by the current time.
 
-    Snakemake runs the job again for a file older than its input AGAIN.  It refuses files that are
-    older than an input, even an ancient one.
+    Snakemake runs a job again if its output file is older than the input AGAIN.  It rejects files
+    that are older than an input, even if the input is marked as ancient.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -102,7 +108,8 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
 
 
 def write_again(path: str | Path, dated: bool) -> None:
-    """Write the file AGAIN with new content, since Snakemake ignores the date of unchanged files.
+    """Write the file AGAIN with new content, because Snakemake ignores the date of files with
+    unchanged content.
 
     dated: True to give it the date WHEN.
     """
@@ -112,7 +119,7 @@ def write_again(path: str | Path, dated: bool) -> None:
 
 
 def _stamped(stamp: str | Path, path: Path) -> str | None:
-    """Checksum of a file according to a stamp; None without one."""
+    """Checksum of a file according to a stamp; None if the stamp does not contain the file."""
     return read(stamp).get("sums", {}).get(path.name)
 
 

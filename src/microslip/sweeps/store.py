@@ -1,7 +1,7 @@
-"""Records on disk: a file for each result, and files of many results.
+"""Records on disk: one file for each result, and files with many results.
 
-A file holds records as lines of JSON, then their checksum.  It is written atomically.  A file
-with a wrong checksum counts as missing.
+A file contains records as lines of JSON, followed by their checksum.  It is written atomically.  A
+file with a wrong checksum counts as missing.
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ from microslip.foundation.errors import CacheError
 log = logging.getLogger(__name__)
 
 NOT_FINAL = b" not final\n"
-"""End of the checksum line if a record is not final, see evaluate.is_final."""
+"""End of the checksum line if at least one record is not final, see evaluate.is_final."""
 
 
 def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None:
-    """Write records, dicts of plain JSON values without NaN, to a file: all of them or none.
+    """Write all records, which are dicts of plain JSON values without NaN, to a file in one atomic
+    step.
 
-    Raises CacheError if the system refuses.
+    Raises CacheError if the file cannot be written.
     """
     content = "".join(f"{canonical_json(record)}\n" for record in records).encode()
     checksum = hashlib.sha256(content).hexdigest().encode()
@@ -33,7 +34,8 @@ def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None
 
 
 def read(path: str | Path) -> list[dict]:
-    """Records of a file in their order; raises CacheError if it is missing or damaged."""
+    """Read the records of a file in their order.  Raises CacheError if the file is missing or
+    damaged."""
     content = _checked(path)
     if content is None:
         raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
@@ -41,7 +43,7 @@ def read(path: str | Path) -> list[dict]:
 
 
 def is_final(path: str | Path) -> bool:
-    """True for an undamaged file with final records."""
+    """True if a file is undamaged and all its records are final."""
     try:
         content = _checked(path)
     except CacheError:
@@ -50,7 +52,8 @@ def is_final(path: str | Path) -> bool:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool] | None:
-    """Lines of a file without the checksum, and True if it is final; None if it is damaged."""
+    """Return the lines of a file without the checksum, and whether its records are final; None if
+    the file is damaged."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:
@@ -65,19 +68,20 @@ class Store:
     """Results in a folder, which several processes may read and write at the same time."""
 
     def __init__(self, folder: str | Path):
-        """folder: folder of results; the first result makes it."""
+        """folder: folder of results, which is created with the first result."""
         files.refuse_no_folder(folder)
         self.folder = Path(folder)
         self._tried = False
 
     def path(self, group: str, key: str) -> Path:
-        """Path of the result `key`; group: subfolder of a kind of request and a motion."""
+        """Path of the result `key`; group: subfolder for a kind of request and a motion, see
+        batches.group."""
         return self.folder / group / key[:2] / f"{key}.json"
 
     def read(self, group: str, key: str) -> dict | None:
-        """The record with the name `key`; None if it is missing or damaged.
+        """Read the record with the name `key`; returns None if the file is missing or damaged.
 
-        A damaged file is logged.  Raises CacheError if the system refuses to read it.
+        A damaged file is logged.  Raises CacheError if the operating system cannot read the file.
         """
         path = self.path(group, key)
         try:
@@ -93,11 +97,12 @@ class Store:
         return records[0]
 
     def write(self, group: str, key: str, record: dict) -> None:
-        """Store `record`; raises CacheError if the system refuses."""
+        """Store `record`.  Raises CacheError if the file cannot be written."""
         write(self.path(group, key), [{**record, "key": key}])
 
     def try_writing(self) -> None:
-        """Raise CacheError if the folder cannot be written to; tries once, before any work."""
+        """Raise CacheError if the folder cannot be written to.  This is checked only once, before
+        any computation."""
         if not self._tried:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)

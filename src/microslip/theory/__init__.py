@@ -1,1 +1,1 @@
-"""Closed forms and bounds of friction. Needs no solver, files or plots."""
+"""Closed forms and bounds of friction. This package uses no solver, files or plots."""

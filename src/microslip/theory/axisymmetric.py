@@ -1,6 +1,7 @@
-"""The paper's formulas for any axisymmetric pressure, by adaptive quadrature.
+"""The paper's formulas for any axisymmetric pressure, evaluated by adaptive quadrature.
 
-All quantities are dimensionless, as in `paper`, which has the closed forms for Hertz's pressure.
+All quantities are dimensionless, as in the module `paper`, which contains the closed forms for
+Hertz's pressure.
 """
 
 from collections.abc import Callable
@@ -19,9 +20,9 @@ def static_stick_zone_of(
     Parameters
     ----------
     pressure : callable
-        Pressure, in any unit, as a function of the radius over the contact radius (0 to 1).
+        Pressure, in any unit, as a function of the radius divided by the contact radius (0 to 1).
     stick_radius : array_like
-        Stick radius over the contact radius, 0 to 1, any shape.
+        Stick radius divided by the contact radius, 0 to 1, any shape.
 
     Raises
     ------
@@ -41,14 +42,14 @@ def bore_of(
     Parameters
     ----------
     pressure : callable
-        Pressure, in any unit, as a function of the radius over the contact radius (0 to 1).
+        Pressure, in any unit, as a function of the radius divided by the contact radius (0 to 1).
     velocity : array_like
-        Velocity over omega a, above 0, any shape.
+        Velocity divided by omega a, above 0, any shape.
 
     Returns
     -------
     forward, torque : np.ndarray
-        Forward friction and torque under this pressure, see paper.bore_forward and bore_torque.
+        Forward friction and torque under this pressure, as in paper.bore_forward and bore_torque.
 
     Raises
     ------

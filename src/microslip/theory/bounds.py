@@ -1,32 +1,32 @@
-"""Upper bounds of the reduction of friction by vibration.
+"""Upper bounds on the reduction of friction by vibration.
 
 Over a period the work of the contact forces is dissipated, because the elastic energy is periodic.
-Every point slips forward by velocity times period, and the length of its slip path is at least
-this distance. This is a lower bound of the dissipation. With the force F (|F| <= 1) and
-d = 1 - mu it gives:
+Every point slips forward by velocity times period, and the length of its slip path is at least this
+distance.  This gives a lower bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu
+it follows that:
 
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
-- bore (forward v phi t, angle phi sin t): the work of the torque replaces that of the lateral
+- bore (forward v phi t, angle phi sin t): the work of the torque replaces the work of the lateral
   force. Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
   1/5 is the second moment of Hertz's pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
   v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
-The bounds hold for any nu and any stiffness. Arguments are the paper's dimensionless groups.
+The bounds hold for any nu and any stiffness.  The arguments are the paper's dimensionless groups.
 
-Friction never falls with the forward velocity. Coulomb's law at a given pressure is monotone and
-the half-space is elastic. So for periodic states at velocities v1 and v2 of the same oscillation
-(mu1 - mu2)(v1 - v2) >= 0. If the oscillation reverses its forward motion half a period later under
-the same load (motions/symmetry.py), friction is odd in the velocity, so it is never negative for
-v > 0. Other motions can propel the contact (Motion.propels).
+Friction never decreases as the forward velocity increases.  Coulomb's law at a given pressure is
+monotone and the half-space is elastic.  So for periodic states of the same oscillation at the
+velocities v1 and v2 (mu1 - mu2)(v1 - v2) >= 0.  If the oscillation reverses its forward motion half
+a period later under the same load (motions/symmetry.py), friction is odd in the velocity, so it is
+never negative for v > 0.  Other motions can propel the contact (Motion.propels).
 """
 
 from __future__ import annotations
 
 
 def largest_drop_transverse(velocity: float, amplitude: float) -> float:
-    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0."""
+    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and amplitude >= 0."""
     if amplitude == 0.0:
         return 0.0
     ratio = velocity / amplitude
@@ -34,7 +34,7 @@ def largest_drop_transverse(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_bore(velocity: float, amplitude: float) -> float:
-    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, at any amplitude > 0."""
+    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and any amplitude > 0."""
     if amplitude == 0.0:
         return 0.0
     excess = velocity - 1.0
@@ -44,5 +44,6 @@ def largest_drop_bore(velocity: float, amplitude: float) -> float:
 
 
 def largest_drop_longitudinal(velocity: float, amplitude: float) -> float:
-    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0: 0 or 1."""
+    """Upper bound on 1 - mu_macro (dimensionless) for velocity >= 0 and amplitude >= 0.  It is 0 or
+    1."""
     return 0.0 if velocity >= amplitude else 1.0

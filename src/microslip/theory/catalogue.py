@@ -1,8 +1,10 @@
-"""Closed forms by motion, each with its limit, its validity and its names.
+"""Closed forms by motion, each with the limit in which it applies, its range of validity and its
+names.
 
-Datasets, answers outside the tabulated range, the study of the paper's claims and figures use this
-catalogue. The forms apply to Hertz's pressure; for other pressures see datasets.pressure_limits.
-The solver uses exact.py instead, so that editing a name here changes no stored result.
+This catalogue is used by datasets, by values outside the tabulated range, by the study of the
+paper's claims and by figures. The forms apply to Hertz's pressure; for other pressures see
+datasets.pressure_limits. The solver uses exact.py instead, so editing a name here does not change
+stored results.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from microslip.theory.exact import STATIC_LIMITS
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
 """Limits in which a form applies."""
 STATIC = "mu_static"
-"""Name of the exact limit for velocity to 0, for every motion."""
+"""Name of the exact limit for velocity to 0; it is the same for every motion."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class ClosedForm:
     motion, name : str
         Name of the motion, and of the variable in a dataset.
     function : callable
-        Dimensionless array as a function of dimensionless arrays of the ``arguments``.
+        Function that returns a dimensionless array for dimensionless arrays of the ``arguments``.
     arguments : tuple of str
         "velocity", "amplitude" or both.
     limit : str
@@ -36,12 +38,12 @@ class ClosedForm:
     equation, label : str
         Equation of the paper ("" if the paper does not contain it), and the name in a legend.
     long_name, description : str
-        Long name and description in a dataset; an empty description is left out.
+        Long name and description in a dataset. An empty description is omitted.
     exact : bool
-        True if the form is exact in its limit, False for an estimate.
+        True if the form is exact in its limit, False if it is an estimate.
     any_poisson, any_pressure : bool
-        True if the form applies to every Poisson's ratio (else to 0), and to every pressure (else
-        to Hertz's).
+        True if the form applies to every Poisson's ratio (otherwise only to 0), or to every
+        pressure (otherwise only to Hertz's pressure).
     """
 
     motion: str

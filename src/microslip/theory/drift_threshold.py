@@ -14,18 +14,19 @@ from microslip.theory.exact import STATIC_LIMITS
 KNOWN = ("transverse", "zigzag", "bore")
 """Motions with an exact threshold under Hertz's pressure."""
 WIDEST = 1e3
-"""Amplitude at which the threshold is practically zero: upper end of the search."""
+"""Amplitude at which the threshold is practically zero, used as the upper end of the search."""
 
 
 def is_known(motion: str, pressure: str, poisson: float) -> bool:
-    """True if the threshold of a motion under a pressure is exact; both are given by name."""
+    """True if the threshold of a motion under a pressure is known exactly. Both arguments are
+    names."""
     if pressure != "hertz" or motion not in KNOWN:
         return False
     return poisson == 0.0 or STATIC_LIMITS[motion].any_poisson
 
 
 def threshold(motion: str, amplitude: np.ndarray | float) -> np.ndarray | float:
-    """Threshold force over mu F_z, of the shape of the amplitude (>= 0)."""
+    """Threshold force divided by mu F_z, with the shape of the amplitude (>= 0)."""
     return STATIC_LIMITS[motion].function(amplitude)
 
 

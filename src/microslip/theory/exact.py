@@ -1,7 +1,7 @@
 """Closed forms of motions under Hertz's pressure, which replace simulations.
 
 Stored results depend on this file and on its functions. The names of these and other formulas are
-in catalogue.py, which stored results do not depend on.
+in catalogue.py. Stored results do not depend on that file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class StaticLimit(NamedTuple):
     function : callable
         Friction as a function of an array of amplitudes, dimensionless.
     any_poisson : bool
-        True if the limit applies to every Poisson's ratio, else to 0 only.
+        True if the limit applies to every Poisson's ratio, otherwise only to 0.
     """
 
     function: Callable
@@ -41,4 +41,4 @@ LARGEST_DROPS = {
     "transverse": bounds.largest_drop_transverse,
     "bore": bounds.largest_drop_bore,
 }
-"""Upper bounds of 1 - mu_macro, functions of velocity and amplitude (floats)."""
+"""Upper bounds on 1 - mu_macro as functions of velocity and amplitude (floats)."""

@@ -1,14 +1,14 @@
 """Constants and closed forms of one Hertz contact: normal load, tangential load and torsion.
 
-Working units, unless a docstring states others: contact radius a = 1, mu*F_z = 1 and u_lim = 1 (the
-displacement at which the whole contact slides). In these units the reduced shear modulus is 3/4,
-tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
+Unless a docstring states otherwise, quantities are in working units: contact radius a = 1, mu*F_z =
+1 and u_lim = 1 (the displacement at which the whole contact slides). In these units the reduced
+shear modulus is 3/4, tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
 
 Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
 finite or outside its range.
 
-Subpackages of SciPy are written in full (`scipy.special.ellipe`), so that each is imported at its
-first call only.
+Names in subpackages of SciPy are written in full (`scipy.special.ellipe`), so that each subpackage
+is imported only when it is first used.
 """
 
 from functools import cache
@@ -50,8 +50,8 @@ def checked(
 def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
     """Friction bound of Hertz's pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
-    r >= 0: distance from the centre (any shape), else ValueError. Dimensionless; 0 outside the
-    contact.
+    r: distance from the centre, any shape. Raises ValueError unless r >= 0. The result is
+    dimensionless and 0 outside the contact.
     """
     r = checked("r", r)
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
@@ -60,7 +60,8 @@ def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
 def load_inside(r: np.ndarray | float) -> np.ndarray | float:
     """Fraction of the normal load within radius r under Hertz's pressure, 1 - (1 - r^2)^(3/2).
 
-    r >= 0 (any shape), else ValueError. Dimensionless; 1 for r >= 1.
+    Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless
+    and 1 for r >= 1.
     """
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
 
@@ -68,9 +69,9 @@ def load_inside(r: np.ndarray | float) -> np.ndarray | float:
 def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Mean friction bound of each ring between consecutive radii.
 
-    edges: n + 1 radii, strictly increasing in 0..1, else ValueError. Returns n values,
-    dimensionless. The sum of values times ring areas is the load between the first and the last
-    edge.
+    edges: n + 1 radii. Raises ValueError unless they are strictly increasing between 0 and 1.
+    Returns n dimensionless values. The sum of values times ring areas is the load between the first
+    and the last edge.
     """
     edges = checked("edges", edges, high=1.0)
     if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
@@ -85,8 +86,8 @@ def ring_bounds(edges: np.ndarray) -> np.ndarray:
 def D(c: np.ndarray | float) -> np.ndarray | float:
     """Difference K(k) - E(k) of elliptic integrals at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
 
-    0 < c <= 1 (any shape), else ValueError. Dimensionless; falls from infinity, as ln(4/c) - 1, to
-    D(1) = 0.
+    Raises ValueError unless 0 < c <= 1; the argument can have any shape. The result is
+    dimensionless. D falls from infinity, where it is about ln(4/c) - 1, to D(1) = 0.
     """
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
@@ -100,14 +101,15 @@ def _D_of_log(log_c: np.ndarray) -> np.ndarray:
 
 @cache
 def D_half() -> float:
-    """D(1/2), the unit of the bore amplitude."""
+    """Return D(1/2), which determines the unit of the bore amplitude."""
     return float(D(0.5))
 
 
 def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Angle of pure torsion from rest as a function of the stick radius (Eq 24).
 
-    0 < stick_radius <= 1, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
+    Raises ValueError unless 0 < stick_radius <= 1 and 0 <= poisson <= 0.5; the arguments are
+    broadcast. Returns an angle in u_lim/a.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return _twist_unit(poisson) * D(stick_radius)
@@ -116,9 +118,9 @@ def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.n
 def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Stick radius after pure torsion from rest by `angle` (inverse of Eq 24).
 
-    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a radius
-    above 0 and at most 1, which is 1 at angle 0. The centre never slips, so a radius that
-    underflows is the smallest normal float.
+    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
+    broadcast. Returns a radius above 0 and at most 1; it is 1 at angle 0. The centre never slips,
+    so a radius that would underflow is replaced by the smallest normal float.
     """
     target = checked("angle", angle) / _twist_unit(poisson)
     # Newton's method in ln c. D has the slope -E(k), between -pi/2 and -1, and is concave. So the
@@ -136,7 +138,8 @@ def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.n
 def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Angle of a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
 
-    amplitude >= 0, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
+    Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
+    Returns an angle in u_lim/a.
     """
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
@@ -144,22 +147,22 @@ def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
 def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Bore amplitude of an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
 
-    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a
-    dimensionless array.
+    Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
+    broadcast. Returns a dimensionless array.
     """
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
 def _twist_unit(poisson: np.ndarray | float) -> np.ndarray:
-    """Factor between D and the angle: torsion depends on G, u_lim on G* = 4G/(2-nu)."""
+    """Factor between D and the angle: torsion depends on G, but u_lim depends on G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
 def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
-    """Tangential force over mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
+    """Tangential force divided by mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
 
-    u >= 0 in u_lim (any shape), else ValueError. Dimensionless; 1 for u >= 1. Formula of Cattaneo
-    and Mindlin.
+    Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The result is
+    dimensionless and 1 for u >= 1. This is the formula of Cattaneo and Mindlin.
     """
     u = np.minimum(checked("u", u), 1.0)
     with np.errstate(divide="ignore"):  # ln 0 = -inf gives the force 1 of full sliding
@@ -169,7 +172,8 @@ def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
 def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
     """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
 
-    u >= 0 in u_lim (any shape), else ValueError. In units of a; 0 for u >= 1.
+    Raises ValueError unless u >= 0 in u_lim; the argument can have any shape. The radius is in
+    units of a, and 0 for u >= 1.
     """
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
@@ -178,8 +182,8 @@ def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray
     """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
 
     It is g - g_c in the stick zone and g outside, where g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
-    of an inner contact of radius c = sqrt(1 - u). Exact for nu = 0. r >= 0, u >= 0 in u_lim
-    (broadcast), else ValueError. Dimensionless.
+    of an inner contact of radius c = sqrt(1 - u). It is exact for nu = 0. Raises ValueError unless
+    r >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
@@ -192,10 +196,10 @@ def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray
 def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Fraction tau/g of the friction bound that pure torsion from rest uses at radius r.
 
-    r >= 0, 0 <= stick_radius <= 1 (broadcast; 0: slip everywhere), else ValueError. The fraction is
-    in 0..1, 1 outside the stick radius, and independent of Poisson's ratio. It is the superposition
-    in closed form of punches of all radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin
-    1951).
+    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
+    stick radius is 0 if all points slip. The fraction is between 0 and 1, equals 1 outside the
+    stick radius, and is independent of Poisson's ratio. It is the superposition of punches of all
+    radii s from c to 1, each rotated by -d phi_lk(s), in closed form (Lubkin 1951).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
@@ -215,8 +219,8 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
 def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Circumferential traction at radius r in pure torsion from rest.
 
-    r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; equal to the
-    friction bound in the slip annulus. See lubkin_share.
+    Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
+    result is dimensionless and equals the friction bound in the slip annulus. See lubkin_share.
     """
     return lubkin_share(r, stick_radius) * friction_bound(r)
 
@@ -224,10 +228,10 @@ def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> 
 def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Torque of pure torsion from rest as a function of the stick radius.
 
-    0 <= stick_radius <= 1 (any shape), else ValueError. In mu*F_z*a: 0 at stick radius 1 and
-    TORQUE_FULL_SLIP at 0, independent of Poisson's ratio. It is the integral of lubkin_traction,
-    and the sum of the torques of punches (16/3) G s^3 (-d phi_lk(s)) from s = c to 1 (Lubkin
-    1951).
+    Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
+    in mu*F_z*a. It is 0 at stick radius 1 and TORQUE_FULL_SLIP at 0, independent of Poisson's
+    ratio. It is the integral of lubkin_traction, and the sum of the torques of punches (16/3) G s^3
+    (-d phi_lk(s)) from s = c to 1 (Lubkin 1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s the integrand is s^2 E(k). After s = t^2 its only singularity, s^4 ln s

@@ -1,4 +1,4 @@
-"""Interface of the pressure under an axisymmetric indenter, as closed forms use it."""
+"""Interface of the pressure under an axisymmetric indenter, as used by closed forms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class IndenterPressure(Protocol):
     Attributes
     ----------
     G_star, stiffness : float
-        Reduced shear modulus, and force per uniform displacement without slip.
+        Reduced shear modulus, and force per unit of uniform displacement without slip.
     bound, depth, radius, of_load, load : callable
         See pressure.Pressure.
     """
@@ -41,4 +41,4 @@ class IndenterPressure(Protocol):
     def load(self) -> Callable: ...
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load at an indentation depth >= 0, of the shape of the depth."""
+        """Load at an indentation depth >= 0, with the shape of the depth."""

@@ -1,7 +1,8 @@
 """Static limits and torsion of any axisymmetric indenter, by quadrature to about 1e-8.
 
-The limits apply at Poisson's ratio 0, and that of the bore at any ratio. For a sphere they agree
-with the closed forms of `paper`, which are faster. Quantities are dimensionless as in `paper`.
+The limits apply at Poisson's ratio 0, and the limit of the bore at any ratio. For a sphere they
+agree with the closed forms of `paper`, which are faster. Quantities are dimensionless as in
+`paper`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from microslip.theory.indenter_pressure import IndenterPressure
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_STICK_RADIUS = 1e-6
-"""Stick radius below which `torsion_stick_radius` returns 0, over the contact radius."""
+"""Stick radius, divided by the contact radius, below which `torsion_stick_radius` returns 0."""
 
 
 def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
@@ -34,7 +35,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     Returns
     -------
     float
-        Friction over mu F_z, 0 to 1.
+        Friction divided by mu F_z, 0 to 1.
     """
     if amplitude >= 1.0:
         return 0.0
@@ -58,7 +59,7 @@ def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: floa
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     stick_radius : float
-        Stick radius over the contact radius, above 0 and at most 1.
+        Stick radius divided by the contact radius, above 0 and at most 1.
     poisson : float
         Poisson's ratio, 0 to 0.5.
 
@@ -89,7 +90,8 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     Returns
     -------
     float
-        Stick radius over the contact radius; 0 below SMALLEST_STICK_RADIUS.
+        Stick radius divided by the contact radius. Values below SMALLEST_STICK_RADIUS are replaced
+        by 0.
     """
     from scipy.optimize import brentq  # takes long to import
 
@@ -114,14 +116,14 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     pressure : pressure.Pressure
         Pressure of an axisymmetric indenter.
     r : array_like
-        Radii below the stick radius, over the contact radius, any shape.
+        Radii below the stick radius, divided by the contact radius, any shape.
     stick_radius : float
-        Stick radius over the contact radius.
+        Stick radius divided by the contact radius.
 
     Returns
     -------
     np.ndarray
-        Traction over mu F_z / a^2, of the shape of r.
+        Traction divided by mu F_z / a^2, with the shape of r.
     """
     r = np.asarray(r, float)[..., None]
     inside = stick_radius**2 - r**2
@@ -149,7 +151,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     Returns
     -------
     float
-        Friction over mu F_z, 0 to 1.
+        Friction divided by mu F_z, 0 to 1.
     """
     c = torsion_stick_radius(pressure, angle, poisson)
     if c in (0.0, 1.0):
@@ -164,14 +166,16 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
 
 
 def _kink(pressure: IndenterPressure) -> float:
-    """Radius of the flat end of an indenter, where its pressure has a kink; 0 without one."""
+    """Radius of the flat end of an indenter, where its pressure has a kink; 0 if there is no flat
+    end."""
     return float(pressure.radius(1e-300))
 
 
 def _over_the_circle(
     function: Callable[[np.ndarray], np.ndarray], radius: float, kink: float
 ) -> float:
-    """Integral over a circle of a function of the radius with a square-root edge."""
+    """Integrate a function of the radius over a circle, at whose edge it behaves like a square
+    root."""
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):
         r = end - (end - start) * _NODES**4

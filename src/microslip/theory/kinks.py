@@ -1,9 +1,9 @@
-"""Kinks in the friction of a motion, where its interpolation needs a border.
+"""Kinks in the friction of a motion, where an interpolation of friction needs a border.
 
-At two places friction is continuous, but its slope or curvature is not: at the amplitude from which
-on nothing sticks in slow sliding, and at the velocity above which nothing sticks at any time. A
-border can be inexact, because the samples of friction resolve the rest of the kink. Stored results
-do not depend on this module.
+At two places friction is continuous, but its slope or curvature is not: at the amplitude above
+which no point sticks during slow sliding, and at the velocity above which no point ever sticks. A
+border need not be exact, because the samples of friction resolve the remaining part of the kink.
+Stored results do not depend on this module.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numpy as np
 from microslip.foundation import spec
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate along two directions; their numbers are 1 by default."""
+"""Name of the motions that oscillate along two directions. Their numbers default to 1."""
 LOAD = "normal"
-"""Name of the motions whose normal load or indentation oscillates; the load is 1 by default."""
+"""Name of the motions whose normal load or indentation oscillates. Their load defaults to 1."""
 
 
 class Kinks(NamedTuple):
@@ -26,10 +26,10 @@ class Kinks(NamedTuple):
     Attributes
     ----------
     amplitudes : tuple of float
-        Amplitudes of kinks that exist below the velocity of the kink.
+        Amplitudes of the kinks at velocities below the velocity of the kink.
     velocity : tuple of float
-        Velocity of the kink. (): there is no kink; (v,): v at all amplitudes;
-        (n0, n1, c0, c1, c2): (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
+        Velocity of the kink: empty if there is no kink, (v,) if it is v at all amplitudes, and (n0,
+        n1, c0, c1, c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()
@@ -52,17 +52,17 @@ UNDER_ANY = {
     # 0.5, 1, 2 and 3. It passes a little above them, because this deforms the neighbouring cells
     # less. Under other pressures it saves a tenth to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
-    # Friction is full at velocities above A, because the contact never moves backward. From the
-    # amplitude 1 on the whole contact slides backward, too.
+    # Friction is full at velocities above A, because the contact never moves backward. Above the
+    # amplitude 1 the whole contact also slides backward.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
     # Springs that are pressed deeper have the same velocity. Contact is lost at the amplitude 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Kinks under any pressure, in the units of that pressure."""
+"""Kinks by motion under any pressure, in the units of that pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """Kinks of a motion under a pressure, both by their names; most motions have none."""
+    """Kinks of a motion under a pressure, which are given by name. Most motions have no kinks."""
     of_hertz = KINKS if pressure == "hertz" else {}
     kinks = UNDER_ANY | of_hertz
     return kinks[motion] if motion in kinks else _of_family(motion)
@@ -74,7 +74,7 @@ def _of_family(motion: str) -> Kinks:
     The velocity of a loop is the largest velocity of its forward oscillation: at larger velocities
     the loop never moves backward. Friction has no kink there, but it changes on this scale of
     velocities at all amplitudes. Under an oscillating load the scale is the amplitude, and contact
-    is lost from an amplitude on.
+    is lost above a certain amplitude.
     """
     name, _, rest = motion.partition(":")
     if name not in (LOOP, LOAD):
@@ -88,7 +88,8 @@ def _of_family(motion: str) -> Kinks:
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
-    """Velocity of the kink at amplitudes >= 0, of their shape. `kinks.velocity` is not empty."""
+    """Velocity of the kink at amplitudes >= 0, with the same shape. `kinks.velocity` must not be
+    empty."""
     first, *rest = kinks.velocity
     amplitude = np.asarray(amplitude, float)
     if not rest:

@@ -1,10 +1,10 @@
 """Friction under longitudinal oscillation in closed form, by Masing's rules.
 
-If the sphere moves along one line, the tangential force depends on its displacement only. The first
-loading is F(d), d in u_lim and F over mu F_z; for a sphere it is 1 - (1 - d)^(3/2) (Cattaneo and
-Mindlin). After each turn the force follows the same curve at twice the scale, up to the previous
-turn, and then the older branch. This is exact for Poisson's ratio 0. Quantities are dimensionless
-as in `paper`.
+If the sphere moves along a line, the tangential force depends only on the history of its
+displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
+it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn the force follows the same curve at
+twice the scale until it reaches the previous turn, and then the older branch. This is exact for
+Poisson's ratio 0. Quantities are dimensionless as in `paper`.
 """
 
 from collections.abc import Callable
@@ -30,17 +30,18 @@ def longitudinal(
     Parameters
     ----------
     velocity : array_like
-        Velocity over omega u_lim, >= 0; 0: the static limit.
+        Velocity divided by omega u_lim, >= 0. The value 0 gives the static limit.
     amplitude : array_like
-        Amplitude in u_lim, >= 0; broadcast with the velocity.
+        Amplitude in u_lim, >= 0. It is broadcast with the velocity.
     curve : callable
-        Force over mu F_z as a function of the displacement from rest; default: a sphere.
+        Force divided by mu F_z as a function of the displacement from rest. Defaults to the curve
+        of a sphere.
 
     Returns
     -------
     np.ndarray
-        Friction over mu F_z, by quadrature to about 1e-10. It is 1 if the motion never turns back
-        (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
+        Friction divided by mu F_z, by quadrature with an error of about 1e-10. It is 1 if the
+        motion never turns back (velocity >= amplitude), and 1 - curve(amplitude) at velocity 0.
 
     Raises
     ------
@@ -57,7 +58,7 @@ def longitudinal(
 
 
 def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
-    """Mean force for 0 < v < x, where the motion turns back, shape (n,)."""
+    """Mean force for 0 < v < x, where the motion turns back; shape (n,)."""
 
     def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
@@ -88,7 +89,8 @@ def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
 
 
 def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Root of a rising function between low and high, or high without a root; shape (n,)."""
+    """Root of an increasing function between low and high, or high if there is no root; shape
+    (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

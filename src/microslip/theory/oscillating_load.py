@@ -1,13 +1,14 @@
 """Friction of forward sliding under an oscillating normal load or indentation, in closed form.
 
-A contact that moves along one line has the force of independent springs at |x| < c(d) (Popov, Popov
-and Popov, Mater. Res. 4, 2017). Here d is the indentation over its mean and c the contact radius. A
-spring at x yields at the stretch d - h(x) in u_lim, where h(x) is the indentation at the contact
-radius x: x^2 for a sphere. The stretch of a spring that came into contact at the time T is
+A contact that moves along a line exerts the same force as independent springs at |x| < c(d) (Popov,
+Popov and Popov, Mater. Res. 4, 2017). Here d is the indentation divided by its mean, and c is the
+contact radius. A spring at x yields at the stretch d - h(x) in u_lim, where h(x) is the indentation
+at which the contact radius is x; it is x^2 for a sphere. The stretch of a spring that came into
+contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because the stretch is at most that of yielding at every tau. So the stretch of yielding exceeds the
+because at every tau the stretch is at most the yield stretch. So the yield stretch exceeds the
 stretch by phi(t) - min phi with phi(t) = d(t) - v t, at any x. The mean over the springs is an
 integral over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working
 units of an indenter's pressure.Pressure.
@@ -29,16 +30,16 @@ _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * 
 """Quadrature on 0..1, clustered at both ends."""
 _HALVINGS = 60
 _SAMPLES = 2001
-"""Points in half a period at which the sign of the slope of phi is sampled."""
+"""Number of points in half a period at which the sign of the slope of phi is sampled."""
 
 
 def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
-    """Mean normal load over the load at the mean indentation or load.
+    """Mean normal load divided by the load at the mean indentation or load.
 
     Parameters
     ----------
     amplitude : float
-        Amplitude of the load or of the indentation over its mean, >= 0.
+        Amplitude of the load or of the indentation, divided by the mean, >= 0.
     by_load : bool
         True if the load oscillates, False if the indentation oscillates.
     pressure : pressure.Pressure
@@ -54,12 +55,13 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
 
 
 def friction(velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
-    """Mean forward friction over mu times the mean normal load.
+    """Mean forward friction divided by mu times the mean normal load.
 
     Parameters
     ----------
     velocity : float
-        Velocity over omega u_lim, >= 0; omega: angular frequency; 0: the static limit.
+        Velocity divided by omega u_lim, >= 0, where omega is the angular frequency. The value 0
+        gives the static limit.
     amplitude, by_load, pressure
         See mean_load.
     """
@@ -74,8 +76,8 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
-        # springs that are always in contact, or come into contact while phi falls, have the lack of
-        # those that come into contact at the next minimum of phi
+        # springs that are always in contact, or come into contact while phi falls, have the same
+        # lack as those that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
@@ -86,7 +88,7 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
 
 
 class _Motion:
-    """Indentation over a period, from its minimum at t = 0 to its maximum at pi and back."""
+    """Indentation during a period, from its minimum at t = 0 to its maximum at pi and back."""
 
     def __init__(
         self, velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure
@@ -103,13 +105,13 @@ class _Motion:
         return self.depth(t) - self.velocity * t
 
     def touched(self, radius: np.ndarray) -> np.ndarray:
-        """Time at which the growing contact has a radius."""
+        """Time at which the growing contact has a given radius."""
         load = self.pressure.load(radius, radius)
         height = load if self.by_load else self.pressure.depth(radius)
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """A function with the sign of phi', finite where contact begins."""
+        """Return a function with the sign of phi', which is finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the load grows with the present stiffness of the contact
             radius = self.pressure.radius(self.pressure.of_load(height))
@@ -117,7 +119,7 @@ class _Motion:
         return self.amplitude * np.sin(t) - self.velocity
 
     def rises(self) -> list[tuple[float, float]]:
-        """Intervals of the growing contact in which phi rises, as (low, high)."""
+        """Intervals (low, high) of the time of the growing contact in which phi rises."""
         t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _SAMPLES)) ** 2
         up = self._climbs(t) > 0.0
         up[-1] = False
@@ -130,7 +132,8 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Contact radii at which phi equals one of its later minima, at `later`."""
+        """Contact radii at which phi equals one of its later minima, which are at the times
+        `later`."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 level = self.phi(np.array([other]))

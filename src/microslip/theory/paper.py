@@ -1,9 +1,9 @@
 """Closed forms of the paper, and exact static limits (v -> 0).
 
 All quantities are dimensionless. Lengths are in the contact radius a, and friction is in mu*F_z.
-Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in
-omega u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is
-the direction of the macroscopic velocity, lateral is perpendicular to it.
+Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in omega
+u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
+direction of the macroscopic velocity, and lateral is perpendicular to it.
 
 Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
 finite or outside its range.
@@ -25,8 +25,9 @@ def large_amplitude_transverse(
 ) -> np.ndarray | float:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
-    It is (2/pi) K(m = -(amplitude/velocity)^2); 1 at amplitude 0, else 0 at velocity 0.
-    velocity >= 0, amplitude >= 0 (broadcast), else ValueError.
+    It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0. At velocity 0 it is 0 for
+    every amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the
+    arguments are broadcast.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), accurate for every ratio v/A.
@@ -42,7 +43,8 @@ def large_amplitude_transverse(
 def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction of a slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
 
-    amplitude >= 0 (any shape), else ValueError. The friction is 0 for amplitude >= 1.
+    Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
+    amplitude >= 1.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     return np.sqrt((1 - amplitude) * (1 + amplitude))
@@ -51,7 +53,8 @@ def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
 def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Stick radius under transverse oscillation alone, sqrt(1 - amplitude) (Eq 8).
 
-    amplitude >= 0 (any shape), else ValueError. The radius is 0 for amplitude >= 1.
+    Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is 0 for
+    amplitude >= 1.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
@@ -59,7 +62,7 @@ def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Fraction of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
-    0 <= stick_radius <= 1 (any shape), else ValueError.
+    Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
     """
     return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
 
@@ -67,8 +70,8 @@ def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
 def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
 
-    amplitude >= 0 (any shape), else ValueError. The friction is 0 for amplitude >= 1. The exact
-    limit is static_limit_transverse.
+    Raises ValueError unless amplitude >= 0; the argument can have any shape. The friction is 0 for
+    amplitude >= 1. The exact limit is static_limit_transverse.
     """
     return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
 
@@ -77,8 +80,9 @@ def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
 def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0) -> tuple:
     """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
-    velocity >= 0, time t~ = t v0/a >= 0 (broadcast), else ValueError. Returns two arrays,
-    -velocity and time. The paper writes t/(v0 a) in Eq 13, which is not dimensionless.
+    Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
+    Returns two arrays, -velocity and time. The paper writes t/(v0 a) in Eq 13, which is not
+    dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -90,9 +94,9 @@ def steady_bore_traction(
     """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
     The traction has the size hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral); it is 0 in the centre of rotation. One sign in the paper's pair
-    is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position from the contact
-    centre; velocity >= 0 (all broadcast), else ValueError.
+    (-forward, velocity + lateral); it is 0 at the centre of rotation. One sign in the paper's pair
+    is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position relative to the
+    contact centre. Raises ValueError unless velocity >= 0; the arguments are broadcast.
     """
     lateral = checked("lateral", lateral, low=-np.inf)
     forward = checked("forward", forward, low=-np.inf)
@@ -103,22 +107,23 @@ def steady_bore_traction(
 
 
 def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity over its bound (Eq 19).
+    """Kernel Q_Y: forward friction of a ring of radius ratio*velocity, divided by its bound (Eq
+    19).
 
-    ratio >= 0 (any shape), else ValueError. The kernel is 4 E(k) at the modulus k = ratio for
-    ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at 0 through 4 at 1 to
-    pi/ratio.
+    Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 E(k) at
+    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at 0
+    through 4 at 1 to pi/ratio.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
 
 
 def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
-    """Kernel Q_M: torque of a ring of radius ratio*velocity over bound and radius (Eq 20).
+    """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
-    ratio >= 0 (any shape), else ValueError. The kernel is 4 (E - (1 - k^2) K)/k at the modulus
-    k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from pi*ratio through 4 at 1
-    to 2 pi.
+    Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
+    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from
+    pi*ratio through 4 at 1 to 2 pi.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -139,9 +144,9 @@ def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, 
 def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
     """Forward friction of the steady continuous bore under Hertz's pressure (Eq 21).
 
-    It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function
-    2F1(-1/2, 1/2; 5/2; 1/v^2), which tends to 1, for v > 1. velocity >= 0 (any shape), else
-    ValueError.
+    It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function 2F1(-1/2, 1/2; 5/2;
+    1/v^2), which tends to 1, for v > 1. Raises ValueError unless velocity >= 0; the argument can
+    have any shape.
     """
     velocity = checked("velocity", velocity)
     slow = np.minimum(velocity, 1.0)
@@ -155,10 +160,11 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 
 
 def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Torque of the steady continuous bore over its value at rest, Hertz's pressure (Eq 22).
+    """Torque of the steady continuous bore under Hertz's pressure, divided by its value at rest (Eq
+    22).
 
     It is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1.
-    velocity >= 0 (any shape), else ValueError.
+    Raises ValueError unless velocity >= 0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
@@ -171,8 +177,8 @@ def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
 def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
     """Forward friction under oscillating bore of large amplitude, steady at each instant (Eq 29).
 
-    It is the mean of bore_forward(velocity/cos(tau)) over tau. velocity >= 0 (any shape), else
-    ValueError.
+    It is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless velocity >=
+    0; the argument can have any shape.
     """
     velocity = checked("velocity", velocity)
     fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
@@ -205,9 +211,9 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
 
 
 def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Bore amplitude with this stick radius, D(c)/D(1/2) (Eqs 30, 31).
+    """Bore amplitude at which the stick radius is c, D(c)/D(1/2) (Eqs 30, 31).
 
-    0 < stick_radius <= 1 (any shape), else ValueError.
+    Raises ValueError unless 0 < stick_radius <= 1; the argument can have any shape.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
     return hertz.D(stick_radius) / hertz.D_half()
@@ -216,7 +222,8 @@ def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
 def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Stick radius under oscillating bore alone (Eq 32, inverse of bore_amplitude_at).
 
-    amplitude >= 0 (any shape), else ValueError. The radius is above 0 and at most 1.
+    Raises ValueError unless amplitude >= 0; the argument can have any shape. The radius is above 0
+    and at most 1.
     """
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
 
@@ -224,8 +231,8 @@ def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
 def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
 
-    It is Eq 10 at the radius of Eq 32. The exact limit is static_limit_bore. amplitude >= 0 (any
-    shape), else ValueError.
+    It is Eq 10 at the radius of Eq 32. The exact limit is static_limit_bore. Raises ValueError
+    unless amplitude >= 0; the argument can have any shape.
     """
     return static_stick_zone(bore_stick_radius(amplitude))
 
@@ -233,7 +240,8 @@ def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
 def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square of Eq 10.
 
-    amplitude >= 0 (any shape), else ValueError. For comparison only.
+    Raises ValueError unless amplitude >= 0; the argument can have any shape. This function is for
+    comparison only.
     """
     return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
 
@@ -245,7 +253,8 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 
     It is the integral over the stick zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound
     of mindlin_traction, and 0 for amplitude >= 1. At other Poisson's ratios Mindlin's traction and
-    this limit are approximations. amplitude >= 0 (any shape), else ValueError.
+    this limit are approximations. Raises ValueError unless amplitude >= 0; the argument can have
+    any shape.
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
@@ -256,8 +265,9 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
 
-    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. Exact
-    for Poisson's ratio 0. amplitude >= 0 in u_lim (any shape), else ValueError.
+    It is the integral of the inner bound g_c of mindlin_traction, and 0 for amplitude >= 1. It is
+    exact for Poisson's ratio 0. Raises ValueError unless amplitude >= 0 in u_lim; the argument can
+    have any shape.
     """
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
@@ -267,8 +277,8 @@ def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
 
     It is the integral over the stick zone of (2/pi) g arccos(tau/g), the largest forward traction
     averaged over the angle. It is exact for every Poisson's ratio, because the stick radius and the
-    torsional traction tau at a given phi~ do not depend on it. amplitude >= 0 (any shape), else
-    ValueError.
+    torsional traction tau at a given phi~ do not depend on it. Raises ValueError unless amplitude
+    >= 0; the argument can have any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -280,7 +290,8 @@ def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
 def _stick_zone_rule(
     c: np.ndarray, complement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Quadrature over r < c: weights for d(eta), and sqrt(1 - r^2), sqrt(c^2 - r^2) at the nodes.
+    """Quadrature over r < c: weights for d(eta), and the roots sqrt(1 - r^2) and sqrt(c^2 - r^2) at
+    the nodes.
 
     The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
     r dr is minus the product of the roots times d(eta). The substitution resolves the edge layer of

@@ -1,9 +1,10 @@
-"""The influence operator on rings times angles, which is block-diagonal in angular modes.
+"""The influence operator for points on rings and at angles, which is block-diagonal in angular
+modes.
 
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
-0 forward tractions of a mode cause forward displacements only, and lateral tractions lateral ones,
-by the same matrix of rings.  At nu > 0 the complex waves e^{i m theta} of forward - i lateral are
-coupled in pairs m and 2 - m (see rings/influence.py)."""
+0 the forward tractions of a mode cause only forward displacements, and its lateral tractions only
+lateral displacements, with the same matrix of rings.  At nu > 0 the complex waves e^{i m theta} of
+forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
 
 from __future__ import annotations
 
@@ -21,15 +22,16 @@ from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Rings
 
 SHARED_MODES = (9, 17, 33)
-"""Numbers of modes for which kernels are averaged, so that runs at 4, 6 and 8 angles share them."""
+"""Numbers of modes for which kernels are averaged.  Runs at 4, 6 and 8 angles share the same
+averages."""
 
 
 Wave = tuple[int, int]
-"""Number m and part of a wave, see `_pairs`."""
+"""Number m of a wave and its part (0 or 1), see `_pairs`."""
 
 
 class Modes(NamedTuple):
-    """Operators on fields of rings times angles, for one or several contacts.
+    """Operators on fields of points on rings and at angles, for one or several contacts.
 
     Rows of a field have equal width.  At nu = 0 there are two sectors, forward and lateral; at
     nu > 0 there is one.
@@ -41,8 +43,8 @@ class Modes(NamedTuple):
     to_points : np.ndarray, shape (sectors, rows of points, waves)
         Matrix from amplitudes of the waves to values at the points.
     blocks : np.ndarray, shape (operators, contacts waves, chunks, columns, LANES)
-        Matrices.blocks of each wave at nu = 0, or of each pair of neighbouring waves at nu > 0,
-        which form one row of twice the width.
+        Matrices.blocks of each wave at nu = 0, or of each pair of neighbouring waves at nu > 0.  A
+        pair forms one row of twice the width.
     points, waves : np.ndarray of int, shape (sectors contacts, ...)
         Indices of the rows of a field, and of `amplitudes`, that belong to a sector of a contact.
     amplitudes, images : np.ndarray, shape (sectors, contacts waves width)
@@ -58,7 +60,7 @@ class Modes(NamedTuple):
     images: np.ndarray
 
     def own(self) -> Modes:
-        """A copy of these operators with its own scratch arrays."""
+        """Return a copy of these operators with separate scratch arrays."""
         return self._replace(
             amplitudes=np.empty_like(self.amplitudes), images=np.empty_like(self.images)
         )
@@ -95,7 +97,7 @@ def modes_of(
 @operator(Modes)
 @kernel
 def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image = operator field; see operators.operator."""
+    """Fill image with an operator applied to field, see operators.operator."""
     sectors, waves, _ = modes.to_modes.shape
     contacts, amplitudes, images = len(modes.points) // sectors, modes.amplitudes, modes.images
     width = amplitudes.shape[1] // (contacts * waves)
@@ -121,7 +123,7 @@ def combine(
     target: np.ndarray,
     rows: np.ndarray,
 ) -> None:
-    """target[rows] = matrix source[columns]; source, target: (..., width)."""
+    """Set target[rows] = matrix source[columns]; both arrays have the shape (..., width)."""
     width = source.shape[1]
     for after in range(0, len(rows), 2):
         one = min(after, len(rows) - 2)  # two rows at a time; the last two can be computed twice
@@ -145,7 +147,8 @@ def combine(
 
 @kernel
 def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """image[0, row] = matrix[row] field[0, row]; operators.multiply_rows for one component."""
+    """Set image[0, row] = matrix[row] field[0, row]; like operators.multiply_rows for one
+    component."""
     _, rows, chunks, columns, _ = operators.blocks.shape
     width = field.shape[1] // rows
     for row in range(rows):
@@ -162,7 +165,8 @@ def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: n
 
 
 WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
-"""Symmetry by which tractions on half of the disc determine the others; none for the whole disc."""
+"""Symmetry by which the tractions on half of the disc determine those on the other half; the whole
+disc has no such symmetry."""
 
 
 def _single_waves(
@@ -188,7 +192,7 @@ def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tu
     """Pairs of waves at nu > 0: first those that are coupled, then those that are not.
 
     A wave is (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The shortest waves
-    of a whole disc or of a rotation are not coupled, because their cosine vanishes at the points.
+    of a whole disc or of a rotation are not coupled, because their cosine is 0 at all points.
     """
     step = 2 if symmetry == TRANSLATION else 1
     parts = (0,) if symmetry == ROTATION else (0, 1)
@@ -244,27 +248,28 @@ def _shared_influence(
 def influence_modes(
     rings: Rings, angles: int, symmetry: str, poisson: float, modulus: float, width: int
 ) -> tuple[Modes, np.ndarray]:
-    """The operator A and its resolvents on rings times angles, and the self-influence of each ring.
+    """Create the operator A and its resolvents for points on rings, and the self-influence of each
+    ring.
 
     Parameters
     ----------
     rings : mesh.Rings
         Mesh of N rings.
     angles : int
-        Number of points on half of a ring.
+        Number of points on half of each ring.
     symmetry : str
         WHOLE, ROTATION or TRANSLATION.
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     width : int
-        Number of columns of a field.
+        Number of columns of a field, at least N.
 
     Returns
     -------
     operators : Modes
         The operators, for one contact.
     scale : np.ndarray, shape (N,)
-        Mean displacement of each ring under a unit traction on itself.
+        Mean displacement of each ring under a unit traction on the same ring.
     """
     kappa, n = poisson / (2.0 - poisson), len(rings.bound)
     influence = near, _ = _shared_influence(

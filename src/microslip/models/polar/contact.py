@@ -1,12 +1,13 @@
-"""Contact of rings times angular modes, for rotations at any nu and for translations at nu > 0.
+"""Contact of rings with angular modes, for rotations at any nu and for translations at nu > 0.
 
-Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  They are on one
-half of the disc, and the other half follows from symmetry:
+Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  Only one half
+of the disc is resolved; the other half follows from symmetry:
 
 - for rotations, a mirror across the lateral axis (forward traction even, lateral traction odd);
 - for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
 
-A motion with both has neither symmetry, and the whole disc is resolved.
+A motion that combines a rotation and a translation has neither symmetry, so the whole disc is
+resolved.
 
 Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
 with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
@@ -31,15 +32,15 @@ the static limit."""
 
 
 class PolarContact(SystemContact):
-    """Contact of rings times angles (see models.contact.Contact); states have shape (2, angles,
-    cells).
+    """Contact of points on rings and at angles (see models.contact.Contact); states have the shape
+    (2, angles, cells).
 
     Parameters
     ----------
     cells, angles : int
-        Number of rings, and of points of each ring on half the disc; angles must be even.
+        Number of rings, and number of points of each ring on half the disc, which must be even.
     rotates : bool
-        Whether the motion is a rotation, with mirror symmetry; otherwise a translation.
+        Whether the motion is a rotation, with mirror symmetry; otherwise it is a translation.
     poisson : float
         Poisson's ratio.
     focus : mesh.Focus, float or None
@@ -100,8 +101,8 @@ class PolarContact(SystemContact):
         *,
         whole: bool,
     ) -> PolarContact:
-        """Return the contact with these arguments; equal arguments return the same object, which
-        must not be changed."""
+        """Return the contact with these arguments.  Calls with equal arguments return the same
+        object, which must not be modified."""
         return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
@@ -122,10 +123,11 @@ class PolarContact(SystemContact):
         return out
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
-        """Interpolate tractions (2, angles, cells) of this contact on a coarser mesh to its points.
+        """Interpolate tractions (2, angles, cells) from a coarser mesh to the points of this
+        contact.
 
-        Tractions are interpolated as shares of the friction bound.  None for translations, whole
-        discs, changing loads and fewer than FEWEST_PROLONGED rings.
+        Tractions are interpolated as fractions of the friction bound.  Returns None for
+        translations, whole discs, changing loads and fewer than FEWEST_PROLONGED rings.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
         grows = hasattr(self, "bounds")

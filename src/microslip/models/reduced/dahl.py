@@ -3,9 +3,9 @@
     dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1
 
 Here k is the stiffness of the contact without slip.  The model has the stiffness and the friction
-bound of the contact, but no stick: any vibration removes all friction of an infinitely slow motion.
-Along a straight piece of the path the equation has a closed solution, which is linear in the force
-at the start."""
+bound of the contact, but it never sticks, so any vibration reduces the friction of an infinitely
+slow motion to 0.  Along a straight segment of the path the equation has a closed-form solution,
+which is linear in the initial force."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class DahlContact(contact.Contact):
         return state / self.stiffness
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Lateral traction negated."""
+        """Return the state with its lateral traction negated."""
         return state * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:

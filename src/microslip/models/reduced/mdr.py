@@ -1,11 +1,11 @@
 """The method of dimensionality reduction: a row of independent springs with friction.
 
-For tangential loading of an axisymmetric indenter in one direction it is exact (Cattaneo and
-Mindlin).  With two components of slip it is an approximation, because the springs do not interact.
-Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per length, where
-h(x) is the depth for the contact radius x over the actual depth.  So the spring at x slides at the
-displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a sphere.  At another depth d it slides at
-(d - h) u_lim if this is above 0.
+The method is exact for tangential loading of an axisymmetric indenter in one direction (Cattaneo
+and Mindlin).  For slip in two directions it is an approximation, because the springs do not
+interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit
+length, where h(x) is the depth for the contact radius x divided by the actual depth.  So the spring
+at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a sphere.  At
+another depth d it begins to slide at (d - h) u_lim if this is above 0.
 """
 
 from __future__ import annotations
@@ -22,9 +22,11 @@ from microslip.pressures.pressure import Pressure
 def mdr_contact(
     cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
 ) -> RadialContact:
-    """Contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards x = `focus`.
+    """Create a contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards
+    `focus`.
 
-    `bound` is force over length.  The weight of a spring is the length of it and its mirror image.
+    `bound` is a force per unit length.  The weight of a spring is its length plus that of its
+    mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)

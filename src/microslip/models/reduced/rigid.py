@@ -1,7 +1,7 @@
 """The rigid contact: every point slips in the direction of its rigid velocity at every instant.
 
 For a translation it is the rigid slider of Eq 6; for a rotation it is the quasi-steady contact of
-Eqs 21, 22 and 29.  It has no memory, so that a march only evaluates the forces at each phase.
+Eqs 21, 22 and 29.  The model has no memory, so a march only evaluates the forces at each phase.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
-"""Grading of the steps towards the turning points, where the direction of slip reverses within a
-phase v/y."""
+"""Grading of the steps towards the turning points.  There the direction of slip reverses within a
+phase of about v/y."""
 
 
 class RigidContact(contact.Contact):
-    """Points on rings times angles of a half disc, or one point for a translation (see
+    """Points on rings and at angles on half the disc, or a single point for a translation (see
     models.contact)."""
 
     compiled = False
@@ -46,11 +46,12 @@ class RigidContact(contact.Contact):
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """The state after lateral -> -lateral (lateral traction negated)."""
+        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        tractions."""
         return state[:, ::-1, :] * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Return the state after one march, which does not depend on the state before."""
+        """Return the state after one march, which does not depend on the initial state."""
         end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
         return self.mirrored(end) if mirror else end
 
@@ -61,7 +62,8 @@ class RigidContact(contact.Contact):
         tolerance: float,
         previous: contact.Guess | None = None,
     ) -> contact.March:
-        """Forces of full slip along the velocity at each phase of the path."""
+        """Compute the forces under full slip in the direction of the velocity at each phase of the
+        path."""
         velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))
         for k, (forward, lateral, angle) in enumerate(velocity):

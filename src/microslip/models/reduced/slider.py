@@ -1,8 +1,8 @@
 """The elastic single slider: one friction element behind an isotropic spring (Benad et al. 2019).
 
-The element slides from the displacement u_lim on, as the whole contact does, so that the
-dimensionless groups are the same.  The model has no partial slip.  It is good and cheap well above
-the static limit; near this limit its friction is Eq 7.
+The element slides once the displacement exceeds u_lim, as the whole contact does, so the
+dimensionless groups are the same.  The model has no partial slip.  It is accurate and cheap well
+above the static limit; near this limit its friction is that of Eq 7.
 """
 
 from __future__ import annotations
@@ -13,5 +13,5 @@ from microslip.models.rings.contact import RadialContact
 
 
 def slider_contact() -> RadialContact:
-    """Contact of one point with unit friction bound and unit compliance."""
+    """Create a contact of one point with unit friction bound and unit compliance."""
     return RadialContact(np.ones((1, 1)), np.ones(1), np.ones(1))

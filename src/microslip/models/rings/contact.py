@@ -1,4 +1,4 @@
-"""Contact of rings, exact for translations at nu = 0, where tractions depend on the radius
+"""Contact of rings.  It is exact for translations at nu = 0, where tractions depend on the radius
 alone."""
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from microslip.pressures.pressure import Pressure
 class RadialContact(SystemContact):
     """Contact of rings (see models.contact.Contact); states have shape (2, 1, cells).
 
-    `resolved` creates the contact of the half-space.
+    Use `resolved` to create the contact of an elastic half-space.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class RadialContact(SystemContact):
         Stiffness of the whole contact, see models.contact.Contact; None to compute it from the
         matrix.
     growth : varying_load.Growth or None
-        Growth of the contact with the depth; None if the normal load is constant.
+        Scaling of the contact with the depth; None if the normal load is constant.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class RadialContact(SystemContact):
         self.resultants = np.array([1.0, 1.0, 0.0])
 
     def _matrices(self) -> np.ndarray:
-        """The operator A and its resolvents, (operators, 1, cells, cells)."""
+        """Matrices of the operator A and its resolvents, (operators, 1, cells, cells)."""
         weight = self.weight
         penalty = best_penalty(self.compliance, len(weight))
         shifts = PENALTIES[:, None, None] * np.diag(weight * penalty)
@@ -84,9 +84,9 @@ class RadialContact(SystemContact):
     def resolved(
         cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
     ) -> RadialContact:
-        """Return the contact of the half-space on `cells` rings graded towards `focus`.
+        """Return the contact of an elastic half-space with `cells` rings graded towards `focus`.
 
-        Equal arguments return the same object, which must not be changed.
+        Calls with equal arguments return the same object, which must not be modified.
         """
         rings = make_rings(cells, focus, pressure)
         near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
@@ -125,13 +125,14 @@ class RadialContact(SystemContact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Effective radii (cells + 1,): radius of the contact with the stiffness of the first k
+        """Effective radii (cells + 1,): the radius of a contact that is as stiff as the first k
         rings without slip.
 
         An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
         contact when the contact radius is halfway between the effective radii without and with this
-        ring.  A growing contact then has the right stiffness on average.  If the ring joined when
-        the contact reached its inner edge, it would stick too early, an error of first order.
+        ring.  A growing contact then has the correct stiffness on average.  If the ring joined when
+        the contact reached its inner edge, it would stick too early, which is an error of first
+        order.
         """
         part = np.linalg.solve(np.linalg.cholesky(self._weighted), self.weight)
         # w^T B^-1 w of the first k rings, B: weighted influence
@@ -140,8 +141,8 @@ class RadialContact(SystemContact):
     def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells).
 
-        edge: radii (len(depths),) that determine which rings are in contact; None for the contact
-        radii.  Load outside these rings is added to the last of them.
+        edge: radii (len(depths),) inside which rings are in contact; None for the contact radii.
+        Load outside these rings is added to the outermost of them.
         """
         growth = self._checked_growth
         load_within = growth.load_within(growth.pressure, growth.edges, depths)
@@ -153,10 +154,11 @@ class RadialContact(SystemContact):
     def bounds_along(self, path: Path) -> np.ndarray:
         """Friction bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
-        Rings join or leave the contact at the last stage of a step only, because the integrator
-        would carry a jump at an earlier stage on to later ones.  A ring that joins there is
-        strained for the share 1 / (1 + carried) of the step, but on average it should be strained
-        for half of the step.  The contact radius is therefore taken earlier by the difference."""
+        Rings join or leave the contact only at the last stage of a step, because the integrator
+        would carry a jump at an earlier stage over to the later stages.  A ring that joins at the
+        last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
+        should be strained for half of the step.  The contact radius is therefore evaluated earlier
+        by the difference."""
         assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
         ends = self._checked_growth.pressure.radius(path.depth[::stages])
@@ -169,5 +171,5 @@ class RadialContact(SystemContact):
 
 
 def width_of(rings: int) -> int:
-    """Number of columns of a field for a number of rings: a multiple of 4 and at least LANES."""
+    """Number of columns of a field for a number of rings: a multiple of 4, and at least LANES."""
     return max(-(-rings // 4) * 4, LANES)

@@ -29,10 +29,11 @@ from microslip.theory.hertz import G_STAR
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Numbers of Gauss points of the outer (averaging) and the inner (singular) ring integral, and the
-power that clusters the inner points at the nearest approach, where kernels have a logarithm."""
+"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and the
+exponent that clusters the inner points where the rings are closest, since the kernels have a
+logarithmic singularity there."""
 APART_POINTS = 5
-"""Number of Gauss points on each of two rings that are at least the width of a ring apart."""
+"""Number of Gauss points on each of two rings whose distance is at least the width of a ring."""
 
 
 class Averaging(NamedTuple):
@@ -43,11 +44,12 @@ class Averaging(NamedTuple):
     psi : np.ndarray, shape (rings + 1,)
         Edges of the rings as angles, with r = sin(psi).
     coupled : bool
-        Whether modes m and 2 - m act on each other (nu > 0).
+        Whether the modes m and 2 - m are coupled (nu > 0).
     outer, inner : tuple of np.ndarray
-        Rules for the narrower ring, and for the other ring from the point of nearest approach on.
+        Rules for the narrower ring, and for the other ring starting at the point of closest
+        approach.
     apart : tuple of np.ndarray
-        Rule for both rings if they are at least the width of a ring apart.
+        Rule for both rings if their distance is at least the width of a ring.
     """
 
     psi: np.ndarray
@@ -59,10 +61,10 @@ class Averaging(NamedTuple):
 
 @kernel
 def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
-    """Average kernels over ring i (outer rule) and ring j (inner rule).
+    """Average the kernels over ring i (outer rule) and ring j (inner rule).
 
     Ring i must be the narrower one, because only the points of the inner rule are clustered where
-    the rings are nearest.  Adds the averages of G_m to near[:, i, j], and those of C_{m+1} to
+    the rings are closest.  Adds the averages of G_m to near[:, i, j], and those of C_{m+1} to
     far[:, i, j] and far[:, j, i].  Averages are weighted with the shape of the traction on each
     ring, normalised to Integral shape r dr = 1.
     """
@@ -103,14 +105,14 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
 
 @kernel
 def _weight(psi: float) -> float:
-    """Shape of the friction bound of Hertz times r dr/dpsi, at r = sin psi."""
+    """Shape of Hertz's friction bound times r dr/dpsi, at r = sin psi."""
     c = np.cos(psi)
     return np.sin(psi) * c * c
 
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill near and far, (n_modes, rings, rings), which must be zero on entry."""
+    """Fill the arrays near and far, (n_modes, rings, rings), which must be zero on entry."""
     width = np.diff(averaging.psi)
     for one in range(len(width)):
         for other in range(one + 1):
@@ -140,15 +142,15 @@ def ring_influence(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Influence matrices of angular modes on rings of a half-space.
 
-    Tractions on a ring have the shape of the friction bound of Hertz.  Averages are Galerkin
-    averages, so that near is symmetric after weighting with ring areas.
+    Tractions on a ring have the shape of Hertz's friction bound.  Averages are Galerkin averages,
+    so the matrices near[m] are symmetric after weighting with the ring areas.
 
     Parameters
     ----------
     psi : np.ndarray, shape (n + 1,)
         Edges of the rings as angles, with r = sin(psi), increasing up to pi/2.
     n_modes : int
-        Number of modes; they are 0 to n_modes - 1.
+        Number of modes, which are numbered 0 to n_modes - 1.
     coupled : bool
         Whether to compute `far`, which is zero otherwise.
     modulus : float
@@ -157,8 +159,8 @@ def ring_influence(
     Returns
     -------
     near : np.ndarray, shape (n_modes, n, n)
-        near[m] maps mean tractions of rings (force over area) of mode m to mean displacements of
-        rings of mode m; modes m and -m have the same matrix.
+        near[m] maps mean ring tractions (force per area) of mode m to mean ring displacements of
+        mode m; modes m and -m have the same matrix.
     far : np.ndarray, shape (n_modes, n, n)
         kappa * far[j] maps conjugate tractions of mode 1 - j to displacements of mode 1 + j; its
         transpose maps those of mode 1 + j to mode 1 - j.

@@ -23,9 +23,10 @@ class Focus(NamedTuple):
     Attributes
     ----------
     radii : tuple of float
-        Increasing radii over the contact radius, 0 to 1.
+        Increasing radii divided by the contact radius, 0 to 1.
     strength : float
-        Strength of the grading: the width of rings at a radius is 1 - strength of the mean width.
+        Strength of the grading: rings at one of the radii are 1 - strength times as wide as the
+        mean.
     """
 
     radii: tuple[float, ...]
@@ -39,14 +40,14 @@ class Rings:
     Attributes
     ----------
     psi : np.ndarray, shape (n + 1,)
-        Edges as angles, with r = sin(psi).
+        Edges of the rings as angles psi, with r = sin(psi).
     area : np.ndarray, shape (n,)
-        Areas over a^2.
+        Areas of the rings divided by a^2.
     bound : np.ndarray, shape (n,)
         Mean friction bound of each ring; area @ bound is 1.
     radius : np.ndarray, shape (n,)
-        Mean lever arm of a traction with the shape of the bound, for which the torque at full slip
-        is exact.
+        Mean lever arm of a traction with the shape of the friction bound.  With it the torque at
+        full slip is exact.
     """
 
     psi: np.ndarray
@@ -58,8 +59,8 @@ class Rings:
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
     """Create a mesh of rings that is graded towards a focus.
 
-    Each radius of the focus is an edge of the mesh.  The traction has a kink at the stick radius,
-    and a ring across it would reduce the order of accuracy by one.
+    Each radius of the focus is an edge between rings.  The traction has a kink at the stick radius,
+    and a ring across the kink would reduce the order of accuracy by one.
 
     Parameters
     ----------
@@ -92,8 +93,8 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
-    """Create the Rings from edges for a contact without a hole, mapped to one with a hole if the
-    pressure has one."""
+    """Create the Rings from edges for a contact without a hole.  The edges are mapped to a contact
+    with a hole if the pressure has one."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
@@ -101,7 +102,7 @@ def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
 
 
 def _as_focus(focus: Focus | float) -> Focus:
-    """Convert a radius to a Focus, and check a Focus; raises InputError."""
+    """Convert a radius to a Focus and check it.  Raises InputError if it is invalid."""
     focus = focus if isinstance(focus, Focus) else Focus((focus,))
     radii = focus.radii
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
@@ -113,9 +114,9 @@ def _as_focus(focus: Focus | float) -> Focus:
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Edges (count + 1,) as angles psi, graded towards `places`, which are edges themselves.
+    """Edges (count + 1,) as angles psi, graded towards `places`; each of the places is an edge.
 
-    Between two places the widest rings are in the middle.
+    Between two places, the rings in the middle are the widest.
     """
     edge = np.pi / 2
 
@@ -141,8 +142,8 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Number of rings before each of the ends, in proportion to psi, with some rings on both sides
-    of each place."""
+    """Number of rings before each of the ends, in proportion to psi, with at least a few rings on
+    both sides of each place."""
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]
     for k in range(1, len(ends)):

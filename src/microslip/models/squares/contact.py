@@ -1,8 +1,9 @@
 """Contact of square cells with FFT convolution, for any nu and any outline.
 
-It is the general reference for the other models, and the discretisation of the paper.  Tractions
-have the symmetries that rigid displacement, pressure and influence have in common.  Only cells that
-are not images of others by these symmetries are resolved (see `_images`)."""
+This model is the general reference for the other models, and the discretisation of the paper.
+Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
+have in common.  Only one of the cells that are related by these symmetries is resolved (see
+`_images`)."""
 
 from __future__ import annotations
 
@@ -17,16 +18,17 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 ROUNDED = 1e-10
-"""Difference of two loads over the largest load, below which they are equal.  For a sphere on 192 x
-192 squares, loads differ from their images by less than 1/20 of it."""
+"""Two loads count as equal if their difference divided by the largest load is below this value.
+For a sphere on 192 x 192 squares, loads differ from their images by less than 1/20 of this
+value."""
 
 
 class CartesianContact(SystemContact):
     """Contact of squares over the circumscribed square (see models.contact.Contact).
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell
-    across the edge of the contact carries the load of its part inside.
+    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell that
+    is cut by the edge of the contact carries the load of the part inside the contact.
 
     Parameters
     ----------
@@ -38,18 +40,20 @@ class CartesianContact(SystemContact):
         Any pressure.
     symmetry : str
         Symmetry of the motion: half.TURN for translations, half.MIRROR for rotations without a
-        lateral displacement, "" for other motions.  It is used if the pressure has it as well.
+        lateral displacement, "" for other motions.  The symmetry is used only if the pressure is
+        symmetric as well.
 
     Attributes
     ----------
     images : int
-        Number of squares of the whole contact for each resolved square: 4 if those with positive
-        coordinates are resolved, 2 if those with a positive forward coordinate are, otherwise 1.
+        Number of squares of the whole contact for each resolved square: 4 if only squares with
+        positive coordinates are resolved, 2 if only squares with a positive forward coordinate are
+        resolved, otherwise 1.
 
     Raises
     ------
     ValueError
-        If there are fewer than 2 cells.
+        If `cells` is below 2.
     """
 
     angles = 1
@@ -89,7 +93,7 @@ class CartesianContact(SystemContact):
             self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
     def solver(self, weight: np.ndarray) -> Descent:
-        """Solver of a Coulomb step, by projected gradients."""
+        """Create the solver of a Coulomb step, which uses projected gradients."""
         length = np.array([1.0 / self.scale])
         return Descent(self.largest, PATIENCE, length, np.empty((3, self.layout.columns)))
 

@@ -3,10 +3,11 @@
 Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
 of a transform is in digit-reversed order, as are the transformed influence coefficients and the
 input of the inverse transform, so that no array is ever sorted.  Butterflies run over whole rows,
-which the compiler turns into vector instructions.  Rows that are zero or not needed are skipped.
+which the compiler turns into vector instructions.  The transforms skip rows that are zero or not
+needed.
 
-For symmetric fields a part is sufficient: a quarter for fields that are even along both axes
-(quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
+For symmetric fields the transform of a part is sufficient: a quarter for fields that are even along
+both axes (quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Convolution(NamedTuple):
     """Tables of the compiled convolution.
 
     P is the padded number of cells along a side of the resolved part.  H is the number of lateral
-    frequencies: P, or fewer for a half.
+    frequencies, which is P, or less if half of the squares are resolved.
 
     Attributes
     ----------
@@ -37,16 +38,18 @@ class Convolution(NamedTuple):
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
     kernel : np.ndarray, shape (P, H)
-        Transform of the influence coefficients, real; for a quarter see quarter.folded_filter.
+        Transform of the influence coefficients, which is real; for a quarter of the squares see
+        quarter.folded_filter.
     cross : np.ndarray, shape (2, P, H)
-        Transform of the influence coefficients on the conjugate traction, used only if `coupled`;
-        for a half see half.halved_filter.
+        Transform of the influence coefficients for the conjugate traction, used only if `coupled`;
+        for half of the squares see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
         Row of the opposite frequency of each row.
     images : int
-        Number of squares for each resolved square: 1, 2 for a half, 4 for a quarter.
+        Number of squares for each resolved square: 1 if all are resolved, 2 for a half, 4 for a
+        quarter.
     folding : quarter.Folding
         Tables for the convolution of a quarter of the squares.
     halving : half.Halving
@@ -72,7 +75,7 @@ def square_convolution(
     images: int = 1,
     symmetry: str = half.TURN,
 ) -> tuple[Convolution, float, float]:
-    """Convolution on cells x cells squares over [-1, 1]^2.
+    """Create the convolution on cells x cells squares over [-1, 1]^2.
 
     Parameters
     ----------
@@ -81,9 +84,9 @@ def square_convolution(
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     images : int
-        See Convolution.  4: fields at nu = 0 that are even along both axes, on squares with
-        positive coordinates.  2: fields with a symmetry of half.py, on squares with a positive
-        forward coordinate.
+        See Convolution.  With 4, fields at nu = 0 are even along both axes, and squares with
+        positive coordinates are resolved.  With 2, fields have a symmetry of half.py, and squares
+        with a positive forward coordinate are resolved.
     symmetry : str
         Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
 
@@ -92,9 +95,9 @@ def square_convolution(
     convolution : Convolution
         Tables of the compiled convolution.
     scale : float
-        Displacement of a square under a unit traction on itself, in u_lim.
+        Displacement of a square under a unit traction on the same square, in u_lim.
     largest : float
-        Upper bound on the eigenvalues of the convolution, in u_lim over traction.
+        Upper bound on the eigenvalues of the convolution, in u_lim per unit of traction.
     """
     padded = _padded(cells // 2 if images == 4 else cells)
     radices = _radices(padded)
@@ -131,11 +134,11 @@ def square_convolution(
 def influence(
     cells: int, padded: int, poisson: float, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Influence coefficients for the traction and for its conjugate, (P, P) each.
+    """Influence coefficients of the traction and of its complex conjugate, (P, P) each.
 
-    They are closed forms: the kernels of rings/influence.py integrated over a square, at the
-    centres of cells.  Units are u_lim over traction.  The first axis is the forward offset, and the
-    second the lateral offset; negative offsets are wrapped around."""
+    The kernels of rings/influence.py are integrated over a square in closed form, and evaluated at
+    the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
+    offset, and the second the lateral offset; negative offsets are wrapped around."""
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")
@@ -214,7 +217,7 @@ class Convolved(NamedTuple):
     convolution : Convolution
         Convolution of each contact.
     extents : np.ndarray, shape (contacts,)
-        u_lim of each contact over that of the body.
+        u_lim of each contact divided by u_lim of the body.
     first, second : np.ndarray
         Scratch arrays, see `workspace`.
     traction, displacement : np.ndarray, shape (2, rows, columns)
@@ -229,7 +232,7 @@ class Convolved(NamedTuple):
     displacement: np.ndarray
 
     def own(self) -> Convolved:
-        """A copy of this operator with its own scratch arrays."""
+        """Return a copy of this operator with separate scratch arrays."""
         return convolved(self.convolution, *self.traction.shape[1:])._replace(extents=self.extents)
 
     @staticmethod
@@ -239,7 +242,7 @@ class Convolved(NamedTuple):
 
 
 def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
-    """Operator of one contact on fields of rows and columns, with scratch arrays."""
+    """Create the operator of one contact on fields of rows and columns, with scratch arrays."""
     scratch = np.empty((2, 2, rows, columns))
     return Convolved(convolution, np.ones(1), *workspace(convolution), scratch[0], scratch[1])
 
@@ -249,7 +252,7 @@ def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
 def apply_convolution(
     convolved: Convolved, number: int, field: np.ndarray, image: np.ndarray
 ) -> None:
-    """image = A field; see operators.operator."""
+    """Fill image with A applied to field, see operators.operator."""
     scratch = (convolved.first, convolved.second)
     traction, displacement = convolved.traction, convolved.displacement
     points = traction[0].size
@@ -301,7 +304,8 @@ def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: n
 
 @kernel
 def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
-    """Multiply the transform by that of the influence coefficients; first: scratch array."""
+    """Multiply the transform by the transform of the influence coefficients; first: scratch
+    array."""
     if operator.images == 4:
         quarter.apply_filter(operator.folding, operator.kernel, second)
     elif not operator.coupled:

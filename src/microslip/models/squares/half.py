@@ -12,8 +12,8 @@
 So half of the rows are transformed along the lateral axis, and then half of the lateral frequencies
 along the forward axis.  The values at the other frequencies give the other half of the cells.
 
-The influence on the conjugate traction needs the transform of the conjugate.  Under a half turn the
-transform of a real field is real, except for the phase e of the centre.  The transform of the
+The influence of the conjugate traction requires the transform of the conjugate.  Under a half turn
+the transform of a real field is real, except for the phase e of the centre.  The transform of the
 conjugate is therefore e^2 times the conjugate of the transform at the same frequency.  Under the
 mirror it is -w^((n-1) k) times the transform at the forward frequency -k.
 """
@@ -32,7 +32,7 @@ TURN, MIRROR = "half turn", "mirror image"
 
 
 class Halving(NamedTuple):
-    """The H lateral frequencies that are computed, and factors for the others.
+    """The H lateral frequencies that are computed, and factors for the other frequencies.
 
     Attributes
     ----------
@@ -81,7 +81,8 @@ def _turn(frequencies: np.ndarray, cells: int, padded: int) -> np.ndarray:
 
 @kernel
 def turned(q: np.ndarray, out: np.ndarray) -> None:
-    """Copy rows of q (2, m, n) to columns of out (2, P, H), lateral part first; zeros below."""
+    """Copy rows of q (2, m, n) to columns of out (2, P, H), lateral part first, and zeros below
+    them."""
     m, n = q.shape[1], q.shape[2]
     for part in range(2):
         for row in range(n):
@@ -94,7 +95,7 @@ def turned(q: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def turned_back(values: np.ndarray, out: np.ndarray) -> None:
-    """Inverse of `turned`."""
+    """Apply the inverse of `turned`."""
     for part in range(2):
         for row in range(out.shape[1]):
             for column in range(out.shape[2]):
@@ -125,7 +126,7 @@ def completed(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> 
 
 @kernel
 def halved(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> None:
-    """Inverse of `completed`."""
+    """Apply the inverse of `completed`."""
     for column in range(len(halving.rows)):
         near, far = halving.rows[column], halving.images[column]
         c, s = halving.turn[0, column], halving.turn[1, column]
@@ -139,7 +140,7 @@ def halved(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> Non
 
 @kernel
 def multiply_turned(direct: np.ndarray, cross: np.ndarray, values: np.ndarray) -> None:
-    """values = direct values + cross conj(values), for complex values as (2, P, H)."""
+    """Set values = direct values + cross conj(values); complex values are stored as (2, P, H)."""
     for i in range(values.shape[1]):
         for k in range(values.shape[2]):
             x, y = values[0, i, k], values[1, i, k]
@@ -151,7 +152,8 @@ def multiply_turned(direct: np.ndarray, cross: np.ndarray, values: np.ndarray) -
 def multiply_mirrored(
     direct: np.ndarray, cross: np.ndarray, opposite: np.ndarray, values: np.ndarray
 ) -> None:
-    """values = direct values + cross times opposite rows, for complex values as (2, P, H)."""
+    """Set values = direct values + cross times the opposite rows; complex values are stored as (2,
+    P, H)."""
     for i in range(values.shape[1]):
         far = opposite[i]
         if i <= far:

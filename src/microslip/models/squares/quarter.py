@@ -1,4 +1,4 @@
-"""Convolution of fields that are even along both axes, from a quarter of their cells.
+"""Convolution of fields that are even along both axes, computed from a quarter of their cells.
 
 The Fourier transform of an even field of 2 m cells is a cosine transform (type II) of the m cells
 of one half.  These are padded to the length L, half the padded length of the whole field.  A
@@ -8,10 +8,10 @@ k, and t = pi k / (2 L),
 
     2 C_k = exp(-i t) Z_k + exp(i t) Z_{L-k},      Z_k = exp(i t) (C_k - i C_{L-k}),      Z_0 = C_0.
 
-All steps are linear, so that one complex transform serves two real fields at once.  The influence
-coefficients are even as well.  Hence the cosine transform of the displacement is the product of
-those of the tractions and of the influence coefficients.  Rows are in the order of transform.py, in
-which the first row has the frequency 0."""
+All steps are linear, so one complex transform handles two real fields at once.  The influence
+coefficients are even as well.  Hence the cosine transform of the displacement is the product of the
+cosine transforms of the tractions and of the influence coefficients.  Rows are in the order of
+transform.py, in which the first row has the frequency 0."""
 
 from __future__ import annotations
 
