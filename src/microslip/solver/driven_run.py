@@ -153,7 +153,7 @@ class _DrivenSearch:
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance: float, guess: Run | None = None) -> Run:
-        """Run the search.  `tolerance` is a force divided by mu F_z; for `guess` see simulate_driven."""
+        """Run the search to a tolerance of the force divided by mu F_z; see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, searches = Goal(tolerance, step_tolerance, MARCHES), []
