@@ -13,13 +13,13 @@ STEPLESS = ("rigid", "dahl")
 
 
 def choose_model(problem: Problem, model: str = "auto") -> str:
-    """Name of the model to use: the cheapest exact one for "auto", else the requested one.
+    """Name of the model to use: the cheapest exact one for "auto", otherwise the requested one.
 
-    Rings are chosen if the traction depends on the radius only (translation at nu = 0), angular
-    modes for other motions of a round contact, and squares otherwise.  Squares are also chosen for
-    the static limit of a contact without symmetry, whose stick zone is not round.  The slider and
-    the rigid contact are never chosen, because their model error can only be bounded by a run of
-    the rings, which already gives the result.
+    Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
+    modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
+    are also chosen for the static limit of a contact without symmetry, whose stick zone is not
+    round.  The slider and the rigid contact are never chosen, because their model error can only be
+    bounded by a run of the rings, which already gives the result.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 
 
 def method_refusal(problem: Problem, model: str, method: Method) -> str:
-    """Message why a method does not apply to a model and a motion; empty if it applies."""
+    """Reason why a method does not apply to a model and a motion; empty if it applies."""
     motion = problem.motion
     if method.run is not None:
         if model != method.model:

@@ -53,10 +53,10 @@ def unless_imposed(
 def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     """Result of a closed form, or None if no closed form applies.
 
-    Closed forms exist in four cases.  In the steady state of a motion that does not oscillate,
-    every point slips along its rigid velocity.  The other cases are the limit of vanishing
-    velocity, motion along one line at nu = 0, and sliding so fast that the width of the bounds in
-    bounds.py is within the tolerance.
+    Closed forms exist in four cases.  The first is the steady state of a motion that does not
+    oscillate, where every point slips along its rigid velocity.  The others are the limit of
+    vanishing velocity, motion along one line at nu = 0, and sliding so fast that the width of the
+    bounds in bounds.py is within the tolerance.
 
     Parameters
     ----------

@@ -30,8 +30,7 @@ STEP_TOLERANCE = 1e-7
 LONGEST_TRAVEL = 1e6
 """Largest travel of a steady motion, in u_lim.  The motion becomes steady within about 10 u_lim."""
 LONGEST_PHASE = 1e12
-"""Largest rotation of a steady motion, in u_lim / a.  Up to it, successive phases differ as
-floats."""
+"""Largest rotation of a steady motion, in u_lim / a, at which successive phases still differ."""
 MOST_STEPS = 10 * LARGEST["steps"]
 """Largest number of steps of a history, over all periods."""
 

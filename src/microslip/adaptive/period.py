@@ -27,8 +27,8 @@ from microslip.solver.snapshots import bounds_at_phases, frames
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
 """Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
-"""Largest distance from the periodic state, as a force divided by mu F_z; far below 2e-3, the error
-by resolution."""
+"""Largest distance from the periodic state, as a force divided by mu F_z.  It is far below 2e-3,
+the error due to the resolution."""
 ON_BOUND = 1.0 - 1e-4
 """Smallest traction along the slip of a slipping point, divided by the friction bound."""
 MOST_ANGLES = 1000
@@ -39,8 +39,7 @@ MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 
 
 class NoPeriodicState(SolverError, ValueError):
-    """Raised if the march failed, so that there are no tractions.  The message contains the
-    reason."""
+    """Raised if the march failed and there are no tractions.  The message contains the reason."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,7 +48,7 @@ def solve(
         "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
     velocity : float or None
         The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
-        limit. None under a prescribed force, which determines the velocity.  Negative velocities
+        limit.  None under a prescribed force, which determines the velocity.  Negative velocities
         are allowed for self-propelled motions; for other motions the friction at -v is the opposite
         of that at v.
     amplitude : float or None
@@ -78,8 +78,8 @@ def solve(
         for a velocity above 1.  With imposed cells and steps it can be None: then any error is
         accepted.
     cells, steps : int or None
-        Imposed number of cells, and of steps in a full period.  By default they are chosen by the
-        tolerance.
+        Imposed number of cells, and of steps in a full period.  By default they are chosen
+        according to the tolerance.
     method : str
         "shipped", or for comparison another name in solver.method_names.names().
     most_work : float or None

@@ -69,7 +69,7 @@ class Response:
     converged : bool
         Whether every force error is within the tolerance.
     reason : str
-        Why the response is not converged, else empty.
+        Reason why the response is not converged, otherwise empty.
     model : str
         Name of the model.
     cells, angles : int
@@ -94,8 +94,10 @@ class Response:
 
     @property
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
-        """Unit and values of every column by name; `force_error` is the larger error of both
-        forces."""
+        """Unit and values of every column, by name.
+
+        The column `force_error` is the larger of the errors of the two force components.
+        """
         columns = {
             "force_forward": self.force_forward,
             "force_lateral": self.force_lateral,
@@ -115,8 +117,7 @@ class Response:
         return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
     def to_xarray(self) -> Any:
-        """Convert the columns to an xarray.Dataset with the dimension `row`, by
-        `microslip.to_xarray`."""
+        """Convert the columns to an xarray.Dataset with the dimension `row`."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
 

@@ -138,8 +138,8 @@ class Result:
         return None if self.torque is None else self.torque.value
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets.  Fields that do not apply are
-        omitted."""
+        """Convert to a dict with the names of JSON and datasets, without fields that do not
+        apply."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}
@@ -177,8 +177,7 @@ def _number(value: float | None) -> float:
 
 
 def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
-    """Build the Result of a closed form with the values (mu, torque, error); `point`: other
-    fields."""
+    """Build the Result of a closed form from other fields (`point`) and (mu, torque, error)."""
     (mu, torque, error), tolerance = values, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(

@@ -32,7 +32,7 @@ STEP_TOLERANCE = 1e-6
 def applies(
     motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
 ) -> str:
-    """Message why a model or a method does not apply to a motion; empty if both apply."""
+    """Reason why a model or a method does not apply to a motion; empty if both apply."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
@@ -110,7 +110,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
     """Measure the cost of a backward Euler step.
 
     The march covers half a period from full slip, of the transverse motion for rings, otherwise of
-    the bore motion. The time is the median of three marches.  A first march compiles the code.
+    the bore motion.  The time is the median of three marches.  A first march compiles the code.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ def least_load(problem: Problem) -> float:
 
 
 def runs_away(problem: Problem) -> str:
-    """Message why the contact has no mean velocity; empty if it has one."""
+    """Reason why the contact has no mean velocity; empty if it has one."""
     force = force_of(problem)
     if abs(force) >= 1.0:
         return f"runs away: the force {force:g} is at least full friction"

@@ -70,7 +70,7 @@ class Ladder:
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
-        # half the number of imposed steps must be a different number
+        # an imposed number of steps below FEWEST and half of it must stay different
         fewest = 1 if self.imposed and self.steps else FEWEST
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
@@ -132,7 +132,7 @@ COUPLED = LOAD._replace(start=STATIC.start)
 """Several interacting contacts.  The set of sliding contacts can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Number of angles on half the disc, divided by the level.  A rotation has its centre in the
-contact. In a translation the tractions depend on the angle only at nu > 0, and weakly.  Calibrated
+contact.  In a translation the tractions depend on the angle only at nu > 0, and weakly.  Calibrated
 by `benchmarks/angles.py`."""
 
 
@@ -192,7 +192,7 @@ def _kind(problem: Problem, model: str) -> Kind:
 def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
     """Change a ladder so that its first level has the imposed resolution.
 
-    A number that is not imposed is chosen by the tolerance or the imposed cells.
+    A number that is not imposed is chosen according to the tolerance or the imposed cells.
     """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:
@@ -244,8 +244,8 @@ def with_mass(
     Returns
     -------
     tuple of Ladder and str
-        The ladder, and a message why its steps do not resolve the natural oscillation of the mass;
-        the message is empty if they do.
+        The ladder, and the reason why its steps do not resolve the natural oscillation of the mass;
+        empty if they do.
     """
     if mass == 0.0 or not ladder.steps:
         return ladder, ""

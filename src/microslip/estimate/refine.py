@@ -33,7 +33,7 @@ READING_SAFETY = 2.5
 None of them resolves a peak or an edge between the points of a grid."""
 SMALLEST_SHARE = 0.7
 """Smallest error estimate by resolution, divided by the tolerance, in case three levels agree by
-chance. Calibrated by benchmarks/error_estimates.py."""
+chance.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Largest sum of the other errors, divided by the tolerance, at which finer runs are worthwhile."""
 

@@ -39,7 +39,7 @@ class Extrapolation(NamedTuple):
         Estimated error of the limit.
     difference : float or np.ndarray
         Difference between the last two levels, or a quarter of the previous difference if that is
-        larger. It covers the error of the last level for first-order convergence.
+        larger.  It covers the error of the last level for first-order convergence.
     order : float or np.ndarray
         Observed order of convergence.  It is infinite if the last two levels agree, and NaN if all
         three agree.

@@ -109,7 +109,7 @@ def build_contact(
     resolution : Resolution
         Resolution of the model.
     focus : mesh.Focus or None
-        Grading of the rings; None: towards the radius at which slip starts.
+        Grading of the rings.  By default they are graded towards the radius at which slip starts.
     start : float or None
         Phase at which a period starts.  Defaults to the first turning point.
     """
@@ -132,8 +132,9 @@ class Graded(Protocol):
 def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrator = SDIRK2) -> Path:
     """Build the path of a problem, starting at a turning point.
 
-    The path is half a period if the second half is its mirror image, else a whole period.  For
-    several contacts it is a BodyPath, with steps graded towards the turning points of each contact.
+    The path covers half a period if the second half is its mirror image, otherwise a whole period.
+    For several contacts it is a BodyPath, with steps graded towards the turning points of each
+    contact.
 
     Parameters
     ----------

@@ -60,8 +60,8 @@ class Accuracy(NamedTuple):
     Attributes
     ----------
     tolerance : float
-        Tolerance of the result.  It applies to a force divided by mu F_z for a spring, else to the
-        mean velocity.
+        Tolerance of the result, which is a force divided by mu F_z for a spring, otherwise the mean
+        velocity.
     slope : float
         Approximate derivative of the friction force, divided by mu times the mean normal load, with
         respect to the velocity.  It converts an unbalanced force to an error of the velocity.
@@ -170,7 +170,7 @@ class _DrivenSearch:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
             drift_rate = DriftRate(static_force, full, rate * self.interval)
-            # 1 - mu falls at most in proportion to 1 / velocity^2, its law at large velocities
+            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
             slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
         mirror = self.problem.half_period_mirror
         return DrivenMap(self.contact, self.path, self.body, drift_rate, mirror, slope)

@@ -23,7 +23,7 @@ class Goal(NamedTuple):
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
     most_marches : int
         Largest number of marches.
     near : bool

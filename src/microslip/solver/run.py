@@ -99,7 +99,7 @@ class Run:
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
-    """Message why the stages are not solved to their tolerance; empty if they are.
+    """Reason why the stages are not solved to their tolerance; empty if they are.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
     solves : int
         Number of stages.
     step_tolerance : float
-        Tolerance of each stage, a force over mu F_z.
+        Tolerance of each stage, as a force divided by mu F_z.
     """
     if residual <= solves * step_tolerance:
         return ""

@@ -85,7 +85,7 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Constant tractions R at every point; arrays of shape (2, ...), forward component first.
 
     The two discs |R +- q| <= g intersect in a lens.  R is the forward tip of one disc if the other
-    disc contains it, else the forward corner of the lens.
+    disc contains it, otherwise the forward corner of the lens.
     """
     q_forward, q_lateral = oscillating
     size = np.hypot(q_forward, q_lateral)

@@ -78,7 +78,7 @@ def loop_limit(
     path : path.Path
         Path over a period, or half a period.
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
 
     Returns
     -------

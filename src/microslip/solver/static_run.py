@@ -32,7 +32,7 @@ MOST_PASSES = 4
 MOST_EDGES = 4
 """Largest number of edges of the stick zone.  More edges are treated as scatter."""
 SLIVER = 1e-3
-"""Largest distance between two edges that is treated as scatter, divided by the contact radius. If
+"""Largest distance between two edges that is treated as scatter, divided by the contact radius.  If
 there is little slip, the shift of the rings on either side of an edge is almost 0."""
 NOTHING_LEFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""

@@ -30,7 +30,7 @@ def steady_state(
     problem : problem.Problem
         The steady motion; its velocity sets the length of a step.
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
 
     Returns
     -------

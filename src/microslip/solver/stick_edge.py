@@ -46,7 +46,7 @@ def edge_focus(
 
     The stick zone of a circular motion is smaller than that of a linear motion of the same
     amplitude, since the slip never stops.  The stick zone of a contact with a hole is a ring with
-    two edges. Under an oscillating load the edges are computed for the static limit only.
+    two edges.  Under an oscillating load the edges are computed for the static limit only.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarra
     """Fill `out`, shape (n,), with the combination of images that has the smallest change.
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
-    difference. `pairs` holds images and changes, the newest last.  `scale`, shape (n,), is the
+    difference.  `pairs` holds images and changes, the newest last.  `scale`, shape (n,), is the
     square root of the metric of changes.
     """
     images, changes = pairs[0], pairs[1]

@@ -6,7 +6,7 @@ and the drift rate of the motion (`Goal`).  The last quantity is needed near the
 the state changes so slowly that a small residual is no evidence of convergence.
 
 The state of a driven body includes two more numbers, its position x and rate x'
-(contacts/drive.py). In one period, unbalanced forces hardly change the state of a heavy body or of
+(contacts/drive.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
 a body on a soft spring.  Therefore the map extrapolates the changes of x and x' by the factors of
 `Inertia`, which does not change its fixed point.
 """
@@ -45,7 +45,7 @@ class Goal(NamedTuple):
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     near : bool

@@ -57,7 +57,7 @@ class Stage(NamedTuple):
     slip : np.ndarray, shape (2, K)
         Slip b - A q, written by the solver.
     tolerance : float
-        Largest accepted residual, a force over mu F_z.
+        Largest accepted residual, as a force divided by mu F_z.
     """
 
     b: np.ndarray
