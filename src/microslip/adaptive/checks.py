@@ -220,8 +220,10 @@ def checked_drive(
 def checked_request(
     tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple[float | None, int | None, int | None]:
-    """Check the tolerance and the imposed resolution; raises InputError, which names the
-    argument."""
+    """Check the tolerance and the imposed resolution.
+
+    Raises InputError, which names the argument.
+    """
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
         tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)

@@ -72,7 +72,7 @@ def history(
     periods: int = 3,
     travel: float = 5.0,
 ) -> History:
-    """Compute the forces from an initial state on, for an oscillation or a steady motion.
+    """Compute the force history of an oscillation or a steady motion from an initial state.
 
     Parameters
     ----------

@@ -138,8 +138,7 @@ class Result:
         return None if self.torque is None else self.torque.value
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets, without fields that do not
-        apply."""
+        """Convert to a dict with the names of JSON and datasets; omits fields that do not apply."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}

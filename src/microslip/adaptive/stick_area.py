@@ -24,7 +24,7 @@ def patches(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, cells, angles, steps
-        See `microslip.period`.  The second half of the period must mirror the first.
+        See `microslip.period`.  The second half of the period is assumed to mirror the first.
 
     Returns
     -------

@@ -46,8 +46,7 @@ class Budget:
         self._began = time.monotonic()
 
     def renewed(self) -> Budget:
-        """A new Budget with the same limits and no effort.  Its time starts with that of this
-        one."""
+        """A new Budget with the same limits and no effort, whose time started with this one."""
         other = Budget(self.most_work, self.time_limit)
         other._began = self._began
         return other

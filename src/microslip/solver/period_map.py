@@ -129,8 +129,10 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
 
     def image(self, state: np.ndarray) -> np.ndarray:
-        """Tractions at the start of the next interval, a linear function of `state`, those at the
-        end."""
+        """Tractions at the start of the next interval, from those at the end of an interval.
+
+        The map is linear.
+        """
         return self.contact.mirrored(state) if self.mirror else state
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -112,8 +112,7 @@ def _run(
     guess: Run | None,
     settings: Settings,
 ) -> Run:
-    """Do the work of `simulate`, with a tolerance in units of mu F_z; failures raise
-    StepFailure."""
+    """Run as in `simulate`, but with a tolerance in units of mu F_z; can raise StepFailure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return steady_state(contact, problem, tolerance, STEP_SHARE * tolerance)
@@ -165,7 +164,7 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-        # for motions on a line a prepared search computes the limit
+        # for motions on a line a prepared search computes the limit;
         # for slow loops the limit only sets `least`
         limit = 0.0 if problem.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.drift * interval
@@ -234,10 +233,10 @@ class _Search:
         return limit.residual + limit.oscillating
 
     def _limit_of_a_loop(self, rise: float) -> np.ndarray:
-        """Tractions of the static limit, to the accuracy that the rise of friction above it
-        requires.
+        """Tractions of the static limit, computed with reduced accuracy.
 
-        Since they are not more accurate, the force of the limit only sets `least`.
+        The rise of friction above the limit determines the accuracy.  Because of the reduced
+        accuracy, the force of the limit only sets `least`.
         """
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.steps, self.method.integrator)

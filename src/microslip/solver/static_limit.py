@@ -5,7 +5,7 @@ and R the constant part of the traction at a point.  As the forward velocity van
 slips forward a little in each period, when |R + q_osc| reaches the friction bound g.  Such a slow
 drift does not change q_osc, and by the flow rule R solves the problem
 
-    maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
+    maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point.
 
 This is the counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points the
 oscillating traction moves along the segment from -q_osc to q_osc, so only these two instants

@@ -192,7 +192,7 @@ def _without_slivers(radii: list[float]) -> list[float]:
 def _on_these_points(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """The Run on one contact, and a mask of the sticking points (None if it cannot stick)."""
+    """The Run on one contact, and a mask of sticking points (None if the contact cannot stick)."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance

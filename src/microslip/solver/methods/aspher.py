@@ -83,7 +83,7 @@ class Solver:
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
-    """March the half period with a number: 0, 1, ....
+    """March one half period; `number` counts the half periods from 0.
 
     Returns the forward forces at its phases, except the first, and the sum of the residuals.
     """
