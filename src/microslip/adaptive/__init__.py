@@ -1,1 +1,1 @@
-"""Many runs: the model, the resolution and the error of an answer."""
+"""Choice of the model and the resolution, and error estimates from many runs."""

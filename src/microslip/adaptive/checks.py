@@ -1,4 +1,4 @@
-"""Checks of the arguments of a request.  Every error names the argument."""
+"""Checks of the arguments of a request.  Every error message names the argument."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 LARGEST_FORCE = 1e6
-"""Largest force over mu times the mean normal load; from 1 on the result is that it runs away."""
+"""Largest force divided by mu times the mean normal load.  From 1 on the contact runs away."""
 
 
 def checked_problem(
@@ -47,8 +47,8 @@ def checked_problem(
     Raises
     ------
     InputError
-        If an argument is out of range, if there are other arguments beside a Problem, or if the
-        Problem has a drive or several contacts.  It names the argument.
+        If an argument is out of range, if a Problem is combined with other arguments, or if the
+        Problem has a drive or several contacts.  The message names the argument.
     """
     problem = _problem(motion, (velocity, amplitude, poisson), pressure)
     if problem.drive is not None:
@@ -70,20 +70,20 @@ def checked_driven_problem(
     contacts: str | None = None,
     **drive: float | None,
 ) -> Problem:
-    """Check the arguments of one contact or several, with any drive, and parse texts.
+    """Check the arguments of one or several contacts with any drive, and parse texts.
 
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, contacts
         See `microslip.solve`.  The velocity can be negative for self-propelled motions.
     **drive : float or None
-        force, stiffness, mass and damping, see `microslip.solve`.
+        The arguments force, stiffness, mass and damping, see `microslip.solve`.
 
     Raises
     ------
     InputError
-        If an argument is out of range, or if there are other arguments beside a Problem.  It names
-        the argument.
+        If an argument is out of range, or if a Problem is combined with other arguments.  The
+        message names the argument.
     """
     place = (velocity, amplitude, poisson)
     if isinstance(motion, Problem):
@@ -108,7 +108,7 @@ def _problem(
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """The Problem of a motion at `place` = (velocity, amplitude, poisson), or the given Problem."""
+    """Problem of a motion at `place` = (velocity, amplitude, poisson), or the given Problem."""
     if isinstance(motion, Problem):
         velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
@@ -124,7 +124,7 @@ def _problem(
 def _refuse_drive(problem: Problem) -> None:
     """Raise InputError if the drive of a Problem is outside the range of the solver."""
     drive = problem.drive
-    assert drive is not None  # as the caller looks
+    assert drive is not None  # checked by the caller
     mass, damping = drive.mass or None, drive.damping or None
     if drive.force is None:
         checked_drive(problem.velocity, stiffness=drive.stiffness, mass=mass, damping=damping)
@@ -164,7 +164,7 @@ def checked_propulsion(
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
 ) -> Problem:
-    """The problem of a self-propelled motion at velocity 0; see `checked_problem`."""
+    """Build the problem of a self-propelled motion at velocity 0; see `checked_problem`."""
     problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
     if problem.velocity != 0.0:
         raise InputError("velocity", problem.velocity, "allowed is 0: the answer is a line of them")
@@ -188,7 +188,10 @@ def checked_drive(
     mass: float | None = None,
     damping: float | None = None,
 ) -> Drive | None:
-    """The drive; None: prescribed velocity.  Raises InputError, which names the argument."""
+    """Build the drive, or return None for a prescribed velocity.
+
+    Raises InputError, which names the argument.
+    """
     if velocity is None and force is None:
         raise InputError("velocity", None, "allowed is a number, or a force in its place")
     if velocity is not None and force is not None:
@@ -217,7 +220,10 @@ def checked_drive(
 def checked_request(
     tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple[float | None, int | None, int | None]:
-    """Tolerance and imposed resolution; raises InputError, which names the argument."""
+    """Check the tolerance and the imposed resolution.
+
+    Raises InputError, which names the argument.
+    """
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
         tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
@@ -225,7 +231,7 @@ def checked_request(
 
 
 def refuse_bounds(**arguments: float | None) -> None:
-    """Raise InputError for an argument that is neither None nor a number above 0."""
+    """Raise InputError if an argument is neither None nor a number above 0."""
     for name, value in arguments.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")

@@ -13,25 +13,25 @@ STEPLESS = ("rigid", "dahl")
 
 
 def choose_model(problem: Problem, model: str = "auto") -> str:
-    """The name of the model to use: the cheapest exact one for "auto", else the requested one.
+    """Name of the model to use: the cheapest exact one for "auto", otherwise the requested one.
 
-    Rings are chosen if the traction depends on the radius only (translation at nu = 0), angular
-    modes for other motions of a round contact, and squares otherwise.  Squares are also chosen for
-    the static limit of a contact without symmetry, whose stick zone is not round.  The slider and
-    the rigid contact are never chosen: their model error can only be bounded by a run of the rings,
-    which then is the answer.
+    Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
+    modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
+    are also chosen for the static limit of a contact without symmetry, whose stick zone is not
+    round.  The slider and the rigid contact are never chosen, because their model error can only be
+    bounded by a run of the rings, which already gives the result.
 
     Parameters
     ----------
     problem : problem.Problem
-        At velocity 0 without a drive the result is the static limit.
+        The problem.  At velocity 0 without a drive its result is the static limit.
     model : str
         "auto", or a name in models.registry.MODELS.
 
     Raises
     ------
     InputError
-        For an unknown model or one that does not apply.
+        If the model is unknown or does not apply.
     """
     if not isinstance(model, str) or model not in ("auto", *MODELS):
         raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
@@ -60,7 +60,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
 
 
 def method_refusal(problem: Problem, model: str, method: Method) -> str:
-    """Why a method does not apply to a model (by name) and a motion, as one line; "" if it does."""
+    """Reason why a method does not apply to a model and a motion; empty if it applies."""
     motion = problem.motion
     if method.run is not None:
         if model != method.model:

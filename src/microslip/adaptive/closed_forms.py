@@ -15,17 +15,17 @@ from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 CLOSED_FORM = "closed-form"
 """Name of the model in results that are not marched."""
 QUADRATURE = 1e-7
-"""Error of Eqs 17 and 18 by quadrature, for pressures other than Hertz, which may have kinks."""
+"""Error of the quadrature in Eqs 17 and 18 for pressures other than Hertz, which can have kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms by quadrature: over the motion of a sphere, and over the tabulated
-pressure of another indenter."""
+"""Errors of closed forms by quadrature: over the motion for a sphere, and over the tabulated
+pressure for another indenter."""
 ROUNDING = 1e-12
-"""Error of closed forms without quadrature."""
+"""Error of closed forms that need no quadrature."""
 
 
 def known_exactly(request: Request) -> Result | None:
-    """The Result in closed form, or None if there is none."""
+    """Result in closed form, or None if there is no closed form."""
     exact = no_vibration(request.problem)
     if exact is None and request.chosen and request.method == SHIPPED:
         exact = unless_imposed(request.problem, request.tolerance, request.cells, request.steps)
@@ -36,7 +36,7 @@ def known_exactly(request: Request) -> Result | None:
 
 
 def no_vibration(problem: Problem) -> tuple | None:
-    """(mu, torque, error) at amplitude 0, for any model, else None."""
+    """(mu, torque, error) for any model if the amplitude is 0, otherwise None."""
     still = problem.motion.periodic and problem.amplitude == 0.0
     return (1.0, None, ROUNDING) if still else None
 
@@ -44,30 +44,31 @@ def no_vibration(problem: Problem) -> tuple | None:
 def unless_imposed(
     problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple | None:
-    """The `closed_form`, or None if a resolution is imposed and the motion has to be marched."""
+    """Result of `closed_form`, or None if an imposed resolution requires a march."""
     if problem.velocity > 0.0 and not (cells is None and steps is None):
         return None
     return closed_form(problem, tolerance or 0.0)
 
 
 def closed_form(problem: Problem, tolerance: float) -> tuple | None:
-    """The result of a closed form, or None where no closed form applies.
+    """Result of a closed form, or None if no closed form applies.
 
-    Closed forms cover the steady state of a motion that does not oscillate, where every point slips
-    along its rigid velocity; the limit of vanishing velocity; motion along one line, nu = 0; and
-    sliding so fast that the bracket of bounds.py is within the tolerance.
+    Closed forms exist in four cases.  The first is the steady state of a motion that does not
+    oscillate, where every point slips along its rigid velocity.  The others are the limit of
+    vanishing velocity, motion along one line at nu = 0, and sliding so fast that the width of the
+    bounds in bounds.py is within the tolerance.
 
     Parameters
     ----------
     problem : problem.Problem
         The problem, already checked.
     tolerance : float
-        Absolute, on the friction.
+        Absolute tolerance of the friction.
 
     Returns
     -------
     tuple or None
-        mu, torque (None for oscillating motions) and the error.
+        Friction mu, torque (None for oscillating motions) and error.
     """
     motion, velocity, amplitude = problem.motion, problem.velocity, problem.size
     if not motion.periodic:
@@ -92,7 +93,7 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
 
 
 def _steady_bore(problem: Problem) -> tuple | None:
-    """(mu, torque, error) of a steady bore by Eqs 17 and 18, for a sphere Eqs 21 and 22."""
+    """(mu, torque, error) of a steady bore by Eqs 17 and 18, or Eqs 21 and 22 for a sphere."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)

@@ -1,9 +1,10 @@
 """Second attempt at a run that did not converge: continuation in the velocity.
 
-The slower the forward motion, the longer its transients.  Then smaller errors of the steps add up
-to a wrong state, and a search needs a better initial guess.  So the second attempt solves the steps
-to a tighter tolerance.  It first finds the periodic state at a higher velocity, where that is
-easier, and then lowers the velocity, each run starting from the state before.
+The slower the forward motion, the longer its transients.  In long transients even small errors of
+the steps accumulate to a wrong state, and the search needs a better initial guess.  So the second
+attempt solves the steps to a tighter tolerance.  It first finds the periodic state at a higher
+velocity, where this is easier.  Then it lowers the velocity step by step, and each run starts from
+the state of the previous one.
 """
 
 from __future__ import annotations
@@ -27,16 +28,17 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     Parameters
     ----------
     run_at : callable
-        run_at(velocity, guess, tighter) -> run.Run; tighter: solve the steps tighter.
+        `run_at(velocity, guess, tighter)` returns a run.Run.  If `tighter` is True, the steps are
+        solved to a smaller tolerance.
     velocity : float
-        Dimensionless.
+        Dimensionless velocity.
     guess : run.Run or None
         Initial guess.
 
     Returns
     -------
     run.Run
-        Its effort is that of all attempts; effort.retried is 1 after a second attempt.
+        The run, with the effort of all attempts.  `effort.retried` is 1 after a second attempt.
     """
     first = run_at(velocity, guess, False)
     if first.converged:
@@ -48,13 +50,13 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
         return attempts[-1]
 
     result = _from_above(run, velocity)
-    # the reason of the first failure explains most
+    # the first reason is the most informative
     result = first if result is None else result
     return replace(result, effort=sum((one.effort for one in attempts), Effort(retried=1)))
 
 
 def _from_above(run: Callable[[float, Run | None], Run], velocity: float) -> Run | None:
-    """The Run at a velocity by continuation from higher velocities; None if that fails."""
+    """Run at a velocity by continuation from higher velocities; returns None if that fails."""
     higher = (velocity * FACTOR**step for step in range(MOST_STEPS + 1))
     above, at = next(
         ((result, v) for v in higher if (result := run(v, None)).converged), (None, velocity)

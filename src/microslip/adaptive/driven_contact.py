@@ -42,21 +42,23 @@ from microslip.solver.run import Run, Settings
 from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
-"""Error estimate of the velocity v of a steady motion, divided by max(1, v)."""
+"""Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
 COARSE_TOLERANCE = 1e-2
-"""Tolerance of the coarse runs that locate the velocity under a force."""
+"""Tolerance of the coarse runs that find the approximate velocity under a force."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
-"""Resolution of the contact whose stiffness sets the steps of a mass."""
+"""Resolution at which the stiffness of the contact is computed to choose the time steps for a
+mass."""
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
 """Smallest accepted velocity of the coarse run under the force, divided by the velocity at which
-coarse runs have that friction.  A slower run is not resolved and is not used."""
+coarse runs at prescribed velocities have this friction.  A slower run is not resolved and is not
+used."""
 SCALE_SHARE = 0.9
-"""Fraction of the coarse velocity to which the relative tolerance refers."""
+"""The relative tolerance refers to this fraction of the velocity of the coarse run."""
 ROUGH_TOLERANCE = 3e-2
-"""First tolerance of the static limit.  It is divided by 10 until the force differs from the limit
-by more than the error."""
+"""First tolerance of the static limit.  It is divided by 10 until the difference between the force
+and the limit exceeds the error of the limit."""
 STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
 same value, so both agree on which forces are below the threshold."""
@@ -65,7 +67,7 @@ GAP_MARGIN = 2.0
 
 
 def refuse_drive(problem: Problem, model: str) -> None:
-    """Raise InputError if a model (by name) or a motion cannot be combined with the drive."""
+    """Raise InputError if the model or the motion cannot be combined with the drive."""
     motion, drive = problem.motion, drive_of(problem)
     pulls = "stiffness" if drive.force is None else "force"
     if drive.force is not None and drive.force < 0.0 and not problem.propels:
@@ -92,15 +94,15 @@ def refuse_request(request: Request) -> None:
 
 
 def solve_driven(request: Request) -> Result:
-    """The Result of a contact with a drive: its friction, or under a force its velocity.
+    """Compute the friction of a driven contact, or its velocity under a prescribed force.
 
-    The caller checks the request by `refuse_request` first.
+    The caller must check the request with `refuse_request` first.
     """
     problem, drive = request.problem, drive_of(request.problem)
     if drive.force is not None:
         return _under_force(request)
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
-        # a constant force stretches the spring to a constant length
+        # under a constant force the length of the spring is constant
         answer = solve_each(replace(request, problem=replace(problem, drive=None)))
         return replace(answer, **driven_by(drive))
     bracket = _bracket(request)
@@ -118,7 +120,7 @@ def solve_driven(request: Request) -> Result:
 def _bracket(request: Request) -> tuple[float, None, float] | None:
     """(mu, torque, error) from the energy bound of theory/bounds.py.
 
-    Returns None if the error is above the tolerance.  The bound for transverse and bore motions
+    Returns None if the error exceeds the tolerance.  The bound for transverse and bore motions
     also applies to a body on a spring: per period, the spring does the work of the mean force, a
     mass does none, and a dashpot dissipates energy.
     """
@@ -136,7 +138,7 @@ def _bracket(request: Request) -> tuple[float, None, float] | None:
 
 
 def _driven(request: Request, **drive: float) -> Request:
-    """The request with other fields of the drive, which is a Force."""
+    """A copy of the request with changed fields of the drive."""
     problem = request.problem
     changed = problem.drive
     assert isinstance(changed, Force)
@@ -144,12 +146,12 @@ def _driven(request: Request, **drive: float) -> Request:
 
 
 def _under_force(request: Request) -> Result:
-    """The Result of a contact under a prescribed force."""
+    """Compute the Result of a contact under a prescribed force."""
     drive = drive_of(request.problem)
     if drive.mass == 0.0 and request.problem.motion.periodic:
         request = replace(request, problem=without_forward_motion(request.problem))
     problem, force = request.problem, force_of(request.problem)
-    if force < 0.0 and not problem.propels:  # the mirror image of a forward force
+    if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
         ahead = _under_force(_driven(request, force=-force))
         return replace(
             ahead, force=force, friction=-ahead.friction, mean_velocity=-ahead.mean_velocity
@@ -205,7 +207,7 @@ def _surely_moving(static: Result) -> float:
 
 
 def _static(request: Request, force: float) -> Result:
-    """The Result of the static limit, just accurate enough to be compared with the force."""
+    """Compute the static limit, just accurately enough to compare it with the force."""
     rough = ROUGH_TOLERANCE
     while request.tolerance is not None and request.tolerance < rough:
         static = _at_rest(request, rough)
@@ -216,13 +218,13 @@ def _static(request: Request, force: float) -> Result:
 
 
 def _at_rest(request: Request, tolerance: float | None) -> Result:
-    """The Result of the static limit at a tolerance."""
+    """Compute the static limit to a tolerance."""
     problem = replace(request.problem, velocity=0.0, drive=None)
     return solve_each(replace(request, problem=problem, tolerance=tolerance))
 
 
 def _without_runs(request: Request, velocity: float, error: float, reason: str = "") -> Result:
-    """The Result for a velocity that follows without a run; reason: why it is not converged."""
+    """Result for a velocity that needs no run.  `reason` says why it is not converged."""
     force, tolerance = force_of(request.problem), request.tolerance
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
@@ -236,10 +238,11 @@ def _without_runs(request: Request, velocity: float, error: float, reason: str =
 
 
 def _moving(request: Request, moving_force: float) -> Result:
-    """The Result of a moving contact.
+    """Compute the Result of a moving contact.
 
-    moving_force: a force under which the contact certainly moves; the runs use it.  If it is larger
-    than the requested force, the velocity lies between 0 and the velocity of the runs.
+    `moving_force` is a force under which the contact certainly moves; it is the force in the runs.
+    If it is larger than the requested force, the velocity lies between 0 and the velocity of the
+    runs.
     """
     force, original = force_of(request.problem), request
     request = _driven(request, force=moving_force)
@@ -255,10 +258,10 @@ def _moving(request: Request, moving_force: float) -> Result:
         velocity = abs(refined.value.value)
         if not refined.converged or scale <= max(1.0, velocity):
             break
-        scale = SCALE_SHARE * velocity  # a small mass can move far slower than the coarse run
+        scale = SCALE_SHARE * velocity  # a small mass can move far more slowly than the coarse run
     estimate = refined.value
     if not request.problem.propels:
-        # a negative value is rounding and error
+        # a negative value is within the error
         estimate = replace(estimate, value=max(estimate.value, 0.0))
     if not refined.converged and not estimate.error < abs(estimate.value):
         estimate = UNKNOWN  # the order of magnitude is unknown
@@ -279,8 +282,8 @@ def _moving(request: Request, moving_force: float) -> Result:
 def _near(request: Request) -> Near:
     """Estimate the velocity under the force by coarse runs.
 
-    Runs at prescribed velocities bracket the velocity.  One run under the force then improves the
-    estimate, unless that run is too slow to be resolved.
+    Runs at prescribed velocities bracket the velocity.  A run under the force then improves the
+    estimate, unless its velocity is too low to be resolved.
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
@@ -306,7 +309,7 @@ def _near(request: Request) -> Near:
 
 
 def _without_answer(request: Request, reason: str) -> Result:
-    """The Result of a point without any estimate; reason: why."""
+    """Result of a point without any estimate, with the reason."""
     unknown = replace(_without_runs(request, math.nan, math.inf, reason), model=request.model)
     return replace(
         unknown,
@@ -317,7 +320,7 @@ def _without_answer(request: Request, reason: str) -> Result:
 
 
 def _refined(request: Request, accuracy: Accuracy) -> Refined:
-    """Runs of a driven contact, refined to an accuracy."""
+    """Refine the runs of a driven contact to an accuracy."""
     problem, tolerance = request.problem, accuracy.tolerance
     drive = drive_of(problem)
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)

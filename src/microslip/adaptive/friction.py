@@ -24,16 +24,16 @@ from microslip.solver.stick_edge import edge_focus
 
 
 class Plan(NamedTuple):
-    """Runs of a contact at a prescribed velocity: arguments of refine.refine.
+    """Runs of a contact at a prescribed velocity, as arguments of refine.refine.
 
     Attributes
     ----------
     run : callable
-        run(resolution, guess) -> run.Run.
+        Function `run(resolution, guess)` that returns a run.Run.
     ladder : ladder.Ladder
         Ladder of resolutions.
     readings : list of callable
-        Like `run`, for other pressures that agree with the same measured values.
+        Functions like `run`, for other pressures that agree with the same measured values.
     """
 
     run: Callable
@@ -42,9 +42,9 @@ class Plan(NamedTuple):
 
 
 def plan_for(request: Request) -> Plan:
-    """The Plan of a point with a velocity of at least 0.
+    """Make the Plan of a point with a velocity of at least 0.
 
-    Its runs raise budget.Spent when the budget of the point is spent.
+    Its runs raise budget.Spent if the budget of the point is exceeded.
     """
     problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
@@ -52,7 +52,7 @@ def plan_for(request: Request) -> Plan:
         refuse_free(ladder, request.cells, request.steps)
     share = run_tolerance(tolerance)
 
-    @cache  # the search for the slip front counts once
+    @cache  # the search for the slip front is charged once
     def settings() -> Settings:
         focus = edge_focus(problem, request.model, request.budget, request.progress)
         return Settings(request.how, budget=request.budget, focus=focus)
@@ -78,7 +78,7 @@ def plan_for(request: Request) -> Plan:
 
 
 def solve_friction(request: Request) -> Result:
-    """The Result of a contact at a prescribed velocity, by runs of a model."""
+    """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
     problem, (run, ladder, readings) = request.problem, plan_for(request)
     refined = refine(run, ladder, request.accuracy, readings)
     return Result(
@@ -91,7 +91,7 @@ def solve_friction(request: Request) -> Result:
 
 
 def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
-    """Raise InputError if a resolution has to be chosen without a tolerance."""
+    """Raise InputError if a resolution would have to be chosen without a tolerance."""
     exact = no_vibration(problem)
     if exact is None and model == "auto":
         exact = unless_imposed(problem, None, cells, steps)

@@ -28,27 +28,27 @@ ANGLES = 16
 STEPS = 256
 STEP_TOLERANCE = 1e-7
 LONGEST_TRAVEL = 1e6
-"""Largest travel of a steady motion, in u_lim; it settles within about ten."""
+"""Largest travel of a steady motion, in u_lim.  The motion becomes steady within about 10 u_lim."""
 LONGEST_PHASE = 1e12
-"""Largest rotation of a steady motion, in u_lim / a, at which its steps are distinct floats."""
+"""Largest rotation of a steady motion, in u_lim / a, at which successive phases still differ."""
 MOST_STEPS = 10 * LARGEST["steps"]
-"""Largest number of steps of a history, all periods together."""
+"""Largest number of steps of a history, over all periods."""
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Forces along a path; dimensionless arrays of shape (steps + 1,).
+    """Forces along a path, as dimensionless arrays of shape (steps + 1,).
 
     Attributes
     ----------
     phase : np.ndarray
-        omega t; for steady motions the angle of rotation in u_lim / a.
+        Phase omega t, or for steady motions the angle of rotation in u_lim / a.
     displacement_forward : np.ndarray
         Forward displacement in u_lim.
     force_forward, force_lateral : np.ndarray
-        Forces on the flat over mu F_z, positive in the direction of motion of the sphere.
+        Forces on the flat divided by mu F_z, positive in the direction of motion of the sphere.
     torque : np.ndarray
-        Torque over its full-slip value.
+        Torque divided by its full-slip value.
     """
 
     phase: np.ndarray
@@ -72,16 +72,16 @@ def history(
     periods: int = 3,
     travel: float = 5.0,
 ) -> History:
-    """Compute the forces from an initial state, over periods or over the travel of a steady motion.
+    """Compute the force history of an oscillation or a steady motion from an initial state.
 
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, model
         See `microslip.solve`; the velocity is above 0.
     cells : int or None
-        Rings, or squares along a side, at least 2.
+        Number of rings, or of squares along a side, at least 2.  Defaults to 32.
     steps : int or None
-        Steps in a period; for steady motions over the whole travel.
+        Number of steps in a period, or for steady motions over the whole travel.  Defaults to 256.
     start : str
         "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
         (rotational slip everywhere).
@@ -93,12 +93,12 @@ def history(
     Returns
     -------
     History
-        The forces at every step, the initial state included.
+        The forces at every step, including the initial state.
 
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        If an argument is invalid.  The message names the argument.
     microslip.models.contact.StepFailure
         If a step is not solved.
     """
@@ -146,27 +146,28 @@ def traction_field(
     poisson: float = 0.0,
     cells: int | None = None,
 ) -> dict:
-    """Steady tractions of the continuous bore on the whole disc, computed by the polar model.
+    """Compute the steady tractions of the continuous bore on the whole disc, by the polar model.
 
     Parameters
     ----------
     motion, velocity, amplitude, poisson
         See `microslip.solve`; the motion is "continuous-bore".
     cells : int or None
-        Rings.
+        Number of rings.  Defaults to 32.
 
     Returns
     -------
     dict
-        - lateral_position, forward_position: positions of the points, over a.
+        - lateral_position, forward_position: positions of the points, in units of a.
         - traction_lateral, traction_forward, bound: tractions on the indenter and friction bound at
-          these points, over mu F_z / a^2.  The tractions oppose the motion, as in Eq 15.
-        - centre_lateral: lateral position of the instantaneous centre of rotation (Eq 14), over a.
+          these points, in units of mu F_z / a^2.  The tractions oppose the motion, as in Eq 15.
+        - centre_lateral: lateral position of the instantaneous centre of rotation (Eq 14), in units
+          of a.
 
     Raises
     ------
     InputError
-        For bad input, or another motion.
+        If an argument is invalid or the motion is not "continuous-bore".
     microslip.models.contact.StepFailure
         If no steady state is reached, or a step is not solved.
     """
@@ -184,7 +185,7 @@ def traction_field(
     if not run.converged:
         failure = f"{run.reason}, residual {run.solver_residual:.1e}"
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
-    assert run.state is not None  # as of every steady state
+    assert run.state is not None  # true for every steady state
     (forward,), (lateral,) = whole_disc(contact, -run.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {

@@ -25,56 +25,58 @@ from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
-"""Default resolution: the mean force agrees with `solve` to 2e-3, see test_period.py."""
+"""Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
-"""Largest distance from the periodic state, a force over mu F_z, far below those 2e-3."""
+"""Largest distance from the periodic state, as a force divided by mu F_z.  It is far below 2e-3,
+the error due to the resolution."""
 ON_BOUND = 1.0 - 1e-4
-"""Traction along the slip, over the friction bound, from which a point counts as slipping."""
+"""Smallest traction along the slip of a slipping point, divided by the friction bound."""
 MOST_ANGLES = 1000
 MOST_VALUES = 1e8
-"""Largest number of values in a field: points times steps."""
+"""Largest number of values in a field, points times steps."""
 MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
-"""Signs by which forward force, lateral force and torque change after half a period."""
+"""Factors by which forward force, lateral force and torque are multiplied after half a period."""
 
 
 class NoPeriodicState(SolverError, ValueError):
-    """The march failed, so that there are no tractions; the message contains the reason."""
+    """Raised if the march failed and there are no tractions.  The message contains the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class Period:
-    """One period of the periodic state on the whole disc; dimensionless.
+    """One period of the periodic state on the whole disc, in dimensionless form.
 
-    If the normal load oscillates, F_z and a belong to the reference state, and the points cover the
-    largest contact area.
+    If the normal load oscillates, F_z and a are those of the reference state, and the points cover
+    the largest contact area.
 
     Attributes
     ----------
     phase : np.ndarray, shape (steps + 1,)
-        omega t over one period, from a turning point.
+        Phase omega t over one period, starting at a turning point.
     forward, lateral, angle : np.ndarray, shape (steps + 1,)
         Rigid displacements in u_lim, and rotation in u_lim / a.
     force_forward, force_lateral, torque : np.ndarray, shape (steps + 1,)
-        Forces over mu F_z, and torque over its full-slip value.
+        Forces divided by mu F_z, and torque divided by its full-slip value.
     forward_position, lateral_position : np.ndarray, shape (points,)
-        Positions of the points, over a.
+        Positions of the points, in units of a.
     bound : np.ndarray, shape (points,)
-        Friction bound over mu F_z / a^2.  If the normal load oscillates, its shape is (steps + 1,
-        points), and it is 0 at points out of contact.
+        Friction bound, in units of mu F_z / a^2.  If the normal load oscillates, its shape is
+        (steps + 1, points), and it is 0 at points out of contact.
     area : np.ndarray, shape (points,)
-        Areas of the points, over a^2; their sum is pi.
+        Areas of the points, in units of a^2; their sum is pi.
     traction_forward, traction_lateral : np.ndarray, shape (steps + 1, points)
-        Tractions on the flat, positive in the direction of motion of the sphere, over mu F_z / a^2.
+        Tractions on the flat in units of mu F_z / a^2, positive in the direction of motion of the
+        sphere.
     slip_forward, slip_lateral : np.ndarray, shape (steps + 1, points)
-        Slip in the step that ends at this phase, in u_lim; the first row repeats the last step.
+        Slip in the step that ends at each phase, in u_lim.  The first row repeats the last step.
     slips : np.ndarray of bool, shape (steps + 1, points)
         Whether a point slips at the end of the step.
     mu_macro : float
-        Mean of force_forward over the mean normal load.
+        Mean of `force_forward` divided by the mean normal load.
     converged : bool
         Whether the state is periodic and every step is solved, at this resolution.
     reason : str
-        Why it is not, else empty.
+        Reason why the period is not converged, otherwise empty.
     """
 
     phase: np.ndarray
@@ -109,7 +111,7 @@ def period(
     angles: int = ANGLES,
     steps: int = PERIOD_STEPS,
 ) -> Period:
-    """Forces, tractions and slip over one period of the periodic state, at one resolution.
+    """Compute forces, tractions and slip over one period of the periodic state, at one resolution.
 
     Parameters
     ----------
@@ -117,11 +119,11 @@ def period(
         See `microslip.solve`.  The motion oscillates, velocity and amplitude are above 0, and the
         pressure depends on the radius only.
     cells : int
-        Number of rings, even.
+        Number of rings, an even number.
     angles : int
-        Number of points on half a ring, even.
+        Number of points on half a ring, an even number.
     steps : int
-        Number of steps in a period, even.
+        Number of steps in a period, an even number.
 
     Returns
     -------
@@ -131,7 +133,7 @@ def period(
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        If an argument is invalid.  The message names the argument.
     microslip.adaptive.period.NoPeriodicState
         If the march failed.
     """
@@ -199,7 +201,7 @@ def period(
 
 
 def _slip(contact: PolarContact, path: Path, tractions: np.ndarray) -> np.ndarray:
-    """Slip in every step, shape (steps, 2, M, N): rigid minus elastic displacement."""
+    """Slip in every step, shape (steps, 2, M, N), as rigid minus elastic displacement."""
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
     forward, lateral, angle = np.diff(path.positions, axis=0).T[..., None, None]
     rigid = (

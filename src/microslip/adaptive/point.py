@@ -1,4 +1,4 @@
-"""solve(): the friction, or the velocity under a force, at one point with its error estimate."""
+"""solve(): friction, or velocity under a force, at one point, with its error estimate."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def solve(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Result:
-    """Macroscopic friction of a vibrated contact at one point.
+    """Compute the macroscopic friction of a vibrated contact at one point.
 
     Parameters
     ----------
@@ -47,56 +47,59 @@ def solve(
         "transverse", "bore", "continuous-bore" or another motion, with its parameters, such as
         "elliptic:forward=0.5".  A Problem replaces all arguments up to `poisson`.
     velocity : float or None
-        The paper's dimensionless velocity, in units of u_lim of the pressure; 0: the static limit.
-        None under a prescribed force, which determines the velocity.  Negative velocities are
-        allowed for self-propelled motions; for other motions the friction at -v is the opposite of
-        that at v.
+        The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
+        limit.  None under a prescribed force, which determines the velocity.  Negative velocities
+        are allowed for self-propelled motions; for other motions the friction at -v is the opposite
+        of that at v.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
     force : float or None
         Prescribed forward force divided by mu times the mean normal load.  Give either this or
         `velocity`.
     stiffness, mass, damping : float or None
-        Stiffness of a spring that pulls the body, over mu F_z / u_lim; its far end has the
-        velocity.  Mass of the body, over mu F_z / (u_lim omega^2), also under a force.  Damping of
-        a dashpot parallel to the spring, over mu F_z / (u_lim omega).  F_z is the normal load
-        without oscillation.
+        Stiffness of a spring that pulls the body, in units of mu F_z / u_lim; the far end of the
+        spring moves at `velocity`.  Mass of the body, in units of mu F_z / (u_lim omega^2); it can
+        also be combined with a force.  Damping of a dashpot parallel to the spring, in units of mu
+        F_z / (u_lim omega).  F_z is the normal load without oscillation.
     contacts : str or None
-        Contacts that the body rests on, such as "phase=0;phase=180".  Each has a load relative to
-        the others (1), a phase in degrees (0) and a fraction of the amplitude (1).  Velocity and
-        amplitude are in units of u_lim of the contact with the mean load; forces are divided by mu
-        times the load of all contacts.
+        Contacts that the body rests on, such as "phase=0;phase=180".  Each contact has a load
+        relative to the others (default 1), a phase in degrees (default 0) and a fraction of the
+        amplitude (default 1).  Velocity and amplitude are in units of u_lim of the contact with the
+        mean load; forces are divided by mu times the load of all contacts.
     pressure : str or Pressure
-        "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.by_name.
+        Pressure, such as "hertz", "power:exponent=1" or "file:measured.csv", see
+        microslip.pressures.by_name.
     poisson : float
         Poisson's ratio, 0 to 0.5.
     model : str
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
-        Absolute tolerance of mu_macro, or under a force of the velocity (relative for a velocity
-        above 1).  None, with imposed cells and steps: any error is accepted.
+        Absolute tolerance of mu_macro.  Under a force it is the tolerance of the velocity, relative
+        for a velocity above 1.  With imposed cells and steps it can be None: then any error is
+        accepted.
     cells, steps : int or None
-        Imposed resolution, steps in a full period; None: chosen by the tolerance.
+        Imposed number of cells, and of steps in a full period.  By default they are chosen
+        according to the tolerance.
     method : str
-        "shipped", or another one of solver.method_names.names(), for comparison.
+        "shipped", or for comparison another name in solver.method_names.names().
     most_work : float or None
-        Largest number of step solves times unknowns, over all runs; None: MOST_WORK.
+        Largest number of step solves times unknowns, summed over all runs.  Defaults to MOST_WORK.
     time_limit : float or None
-        Limit of the wall-clock time in seconds, checked between marches; None: no limit.
+        Limit on the wall-clock time in seconds, checked between marches.  None means no limit.
     progress : callable or None
         Called with the Resolution of every run before it starts.
 
     Returns
     -------
     Result
-        `converged` is False, with the reason, if the error estimate exceeds the tolerance, also at
-        an imposed resolution.  Without a tolerance it is True if every run found its periodic
-        state, to the accuracy of the tolerance 1e-3.
+        The result.  If the error estimate exceeds the tolerance, also at an imposed resolution,
+        `converged` is False and `reason` says why.  Without a tolerance `converged` is True if
+        every run found its periodic state, to the accuracy required by a tolerance of 1e-3.
 
     Raises
     ------
     InputError
-        For input out of range or a model that does not apply; it names the argument.
+        If an argument is out of range or a model does not apply.  The message names the argument.
     """
     problem = checked_driven_problem(
         motion,
@@ -127,7 +130,7 @@ def solve(
 def _answer(request: Request) -> Result:
     if request.problem.drive is None:
         return solve_each(request)
-    # imported only here, since it loads compiled code
+    # imported here because it loads compiled code
     from microslip.adaptive.driven_contact import refuse_request, solve_driven
 
     refuse_request(request)
@@ -135,7 +138,7 @@ def _answer(request: Request) -> Result:
 
 
 def _answer_backward(request: Request) -> Result:
-    """The Result at a negative velocity, from the mirror image at the opposite velocity."""
+    """Compute the Result at a negative velocity from the mirror image at the opposite velocity."""
     problem = request.problem
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
     answer = _answer(replace(request, problem=behind))
@@ -151,14 +154,14 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
-"""Points whose solution compiles the kernels, by the name of the kernels."""
+"""Points whose solution compiles kernels, by the name of the kernels."""
 
 
 def warm_up(*kernels: str) -> None:
-    """Compile kernels of the automatic models; Numba caches them.
+    """Compile kernels of the models that "auto" can choose; Numba caches them.
 
-    The first time takes up to a minute.  Several processes can compile different kernels at the
-    same time.  Squares are compiled at their first use.
+    The first compilation takes up to a minute.  Several processes can compile different kernels at
+    the same time.  Squares are compiled at their first use.
 
     Parameters
     ----------
@@ -169,7 +172,7 @@ def warm_up(*kernels: str) -> None:
     Raises
     ------
     InputError
-        For an unknown name.
+        If a name is unknown.
     """
     kernels = kernels or ("rings", "angles")
     for name in kernels:

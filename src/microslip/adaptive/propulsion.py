@@ -1,23 +1,25 @@
-"""Self-propelled motions: force from stall to the no-load velocity, power and efficiency.
+"""Self-propelled motions: force between stall and the no-load velocity, power and efficiency.
 
-The sphere moves forward at a prescribed velocity v, like a body so heavy that its velocity stays
-constant during a period.  Friction mu(v) is the mean forward force that moves the sphere.  So the
-contact exerts the force -mu(v) on its own body, against a load that pulls the body back:
+The sphere moves forward at a prescribed velocity v, like a body that is so heavy that its velocity
+stays constant during a period.  The friction mu(v) is the mean forward force needed to move the
+sphere.  So the contact exerts the force -mu(v) on its own body, against a load that pulls the body
+back:
 
     force(v) = -mu(v)             power out = force v, the work on the load
     stall force = force(v -> 0)   the load that stops it
-    no-load velocity: force = 0   the highest velocity, without a load
+    no-load velocity: force = 0   the highest velocity, reached without a load
 
-Power in is the mean power of the oscillation on the contact, supplied by the actuator between the
-sphere and its body.  An oscillating normal load does no work over a period.  Elastic energy is
-recovered, so
+The power in is the mean power of the oscillation on the contact.  It is supplied by the actuator
+between the sphere and its body.  An oscillating normal load does no work over a period.  Elastic
+energy is recovered, so
 
     power in - power out = dissipation >= 0.
 
-Friction never falls with the velocity (theory/bounds.py).  So the force falls from stall to the
-no-load velocity, and two velocities with friction of known sign enclose the no-load velocity.
-A motion can also propel the body backward: then the velocities and forces are negative.  If
-friction holds the body at rest against small forces in both directions, the motion propels nothing.
+Friction never decreases with the velocity (theory/bounds.py).  So the force decreases from stall to
+the no-load velocity, and two velocities with friction of opposite signs enclose the no-load
+velocity.  A motion can also propel the body backward.  In this case the velocities and forces are
+negative.  If friction holds the body at rest against small forces in both directions, the motion
+propels nothing.
 
 A body without mass under a constant load is not propelled: it follows the forward oscillation (see
 under_force.without_forward_motion).
@@ -54,20 +56,21 @@ FACTOR = 4.0
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5
-"""First distance from the no-load velocity, over the distance in which friction rises by its
-error."""
+"""First distance from the no-load velocity, divided by the distance over which friction rises by
+its error."""
 MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
-"""Reason of a motion that propels nothing, with the lowest and the highest of these forces."""
+"""Reason for a motion that propels nothing; the fields are the lowest and the highest force."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PropulsionLine:
-    """Load and velocity of a self-propelled motion, from stall to no load.
+    """Load and velocity of a self-propelled motion between stall and no load.
 
     All values except the time are dimensionless.  Forces are divided by mu times the mean normal
-    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the unit of
-    the motion's own velocity.  Every error estimate belongs to the field before it.
+    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the same unit
+    as the velocity of the motion.  A field whose name ends with `_error` is the error estimate of
+    the field without this ending.
 
     Attributes
     ----------
@@ -76,28 +79,30 @@ class PropulsionLine:
     amplitude, poisson, tolerance : float
         Arguments of the request.
     stall_force, stall_force_error : float
-        Load that stops the motion; 0 if it propels nothing, negative if it propels backward.
+        Load that stops the motion.  It is 0 if the motion propels nothing, and negative if it
+        propels the body backward.
     no_load_velocity, no_load_velocity_error : float
         Velocity without a load, with the sign of the stall force.
     holding_force_low, holding_force_low_error : float or None
-        Lowest force against which friction holds the body at rest; it is negative (backward).  None
-        if the motion propels the body.
+        Lowest force against which friction holds the body at rest.  It is negative, which means
+        backward.  None if the motion propels the body.
     holding_force_high, holding_force_high_error : float or None
-        Highest force against which friction holds the body at rest.
+        Highest force against which friction holds the body at rest.  None if the motion propels the
+        body.
     velocity, force, force_error : np.ndarray, shape (points,)
-        Equidistant velocities from 0 to the no-load velocity, and the force at each.  Empty if the
-        motion propels nothing.
+        Equidistant velocities from 0 to the no-load velocity, and the force at each velocity.  The
+        arrays are empty if the motion propels nothing.
     power_out, power_out_error : np.ndarray, shape (points,)
         Mean power on the load: force times velocity.
     power_in, power_in_error : np.ndarray, shape (points,)
         Mean power of the oscillation.
     efficiency, efficiency_error : np.ndarray, shape (points,)
-        Power out over power in.
+        Power out divided by power in.
     converged : bool
-        Whether the errors of forces, and of powers over the mean speed of the oscillation, are
-        within the tolerance.
+        Whether the errors of the forces, and of the powers divided by the mean speed of the
+        oscillation, are within the tolerance.
     reason : str
-        Why it is not converged, or why the motion propels nothing; else empty.
+        Reason why the result is not converged or why the motion propels nothing, otherwise empty.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -148,7 +153,7 @@ def propulsion(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> PropulsionLine:
-    """Compute force, power and efficiency of a self-propelled motion, from stall to no load.
+    """Compute force, power and efficiency of a self-propelled motion between stall and no load.
 
     Parameters
     ----------
@@ -160,25 +165,27 @@ def propulsion(
     pressure, poisson, model
         See `microslip.solve`.
     tolerance : float
-        Absolute, on every force.  For powers it is multiplied by the mean speed of the oscillation.
+        Absolute tolerance of every force.  The tolerance of powers is this value times the mean
+        speed of the oscillation.
     points : int
         Number of velocities, including both ends.
     most_work : float or None
-        Limit of the work at each velocity, see `microslip.solve`.
+        Limit on the work at each velocity, see `microslip.solve`.
     time_limit : float or None
-        Limit of the wall-clock time in seconds, checked between marches; None: no limit.
+        Limit on the wall-clock time in seconds, checked between marches.  None means no limit.
     progress : callable or None
         See `microslip.solve`.
 
     Returns
     -------
     PropulsionLine
-        The line; the head of this module defines the signs.
+        Force, power and efficiency at each velocity.  The docstring of this module defines the
+        signs.
 
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        If an argument is invalid.  The message names the argument.
     """
     problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
     points = count("points", points, 2, most=MOST_POINTS)
@@ -191,7 +198,7 @@ def propulsion(
 
 
 class _Contact:
-    """Friction and power of a motion at velocities of at least 0; every run is done once."""
+    """Friction and power of a motion at velocities of at least 0.  No run is repeated."""
 
     def __init__(self, request: Request):
         self.request, self.sign = request, 1
@@ -200,17 +207,17 @@ class _Contact:
 
     @property
     def drift(self) -> float:
-        """Forward displacement in a radian of phase at the velocity 1, in u_lim."""
+        """Forward displacement per radian of phase at the velocity 1, in u_lim."""
         problem = self.request.problem
         return problem.unit_drift
 
     @property
     def first(self) -> float:
-        """Velocity equal to the mean speed of the oscillation: the start of a search."""
+        """Velocity equal to the mean speed of the oscillation, at which a search starts."""
         return self.speed / self.drift
 
     def reversed(self) -> _Contact:
-        """The mirror image of the contact across the forward direction."""
+        """The contact with the forward direction reversed."""
         problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
         image = _Contact(replace(self.request, problem=behind))
@@ -221,7 +228,7 @@ class _Contact:
         return self._certified(velocity, "mu")
 
     def power(self, velocity: float) -> Answer:
-        """Mean power of the oscillation; its error is that of a force times the mean speed."""
+        """Mean power of the oscillation.  Its error is that of a force times the mean speed."""
         answer = self._certified(velocity, "power")
         return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
 
@@ -257,7 +264,7 @@ class _Contact:
 
 
 def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """`run` with a cache by resolution, so that two quantities share their runs."""
+    """Cache `run` by resolution, so that two quantities use the same runs."""
     cache = {}
 
     def again(resolution: Resolution, guess: Run | None) -> Run:
@@ -338,7 +345,7 @@ def _record(
         stall_force_error=stall.error,
         no_load_velocity=sign * fastest.value,
         no_load_velocity_error=fastest.error,
-        velocity=sign * velocity + 0.0,  # no zero has a sign
+        velocity=sign * velocity + 0.0,  # turns -0.0 into 0.0
         force=sign * force,
         force_error=error,
         power_out=power_out,
@@ -354,12 +361,13 @@ def _record(
 
 
 def no_load(friction: Callable, first: float) -> Answer:
-    """The velocity at which friction vanishes; 0 if friction is not negative at velocity 0.
+    """Find the velocity at which friction vanishes; 0 if friction is not negative at velocity 0.
 
     Parameters
     ----------
     friction : callable
-        friction(velocity) -> Answer, for velocities of at least 0; 0 means the static limit.
+        `friction(velocity)` returns an Answer for velocities of at least 0; the velocity 0 means
+        the static limit.
     first : float
         First velocity to try, above 0.
     """
@@ -384,9 +392,10 @@ def no_load(friction: Callable, first: float) -> Answer:
 def _root(
     friction: Callable, low: tuple[float, float], high: tuple[float, float]
 ) -> tuple[float, float, str]:
-    """A velocity at which friction is 0 within its error, the slope, and a reason for failure.
+    """Find a velocity at which friction is 0 within its error, by secant steps and bisections.
 
-    low, high: velocity and friction on both sides.  Secant steps and bisections alternate.
+    `low` and `high` are velocity and friction on either side of the root.  Returns the velocity,
+    the slope of the friction, and a reason for failure.
     """
     for turn in range(MOST_HALVINGS):
         width, rise = high[0] - low[0], high[1] - low[1]
@@ -406,9 +415,9 @@ def _root(
 
 
 def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
-    """A velocity below or above another one at which friction certainly has the given sign.
+    """Find a velocity near another one at which friction certainly has the given sign.
 
-    Returns 0 if there is none below, None if there is none above.
+    Returns 0 if there is no such velocity below, and None if there is none above.
     """
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):

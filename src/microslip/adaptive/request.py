@@ -1,4 +1,4 @@
-"""A request: problem, model, method, tolerance and budget."""
+"""Requests, which consist of a problem, a model, a method, a tolerance and a budget."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from microslip.solver import method_names
 from microslip.solver.budget import Budget
 from microslip.solver.method import Method
 
-if TYPE_CHECKING:  # it loads compiled code, which a closed form does not need
+if TYPE_CHECKING:  # the module loads compiled code, which a closed form does not need
     from microslip.estimate.refine import Refined
 
 TOLERANCE = 1e-3
-"""Default tolerance, and accuracy of runs if no tolerance is requested."""
+"""Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Default limit of the work by model, step solves times unknowns: over ten times the work of the
-slowest points of the paper's range at a tolerance of 1e-4."""
+"""Default limits on the work (step solves times unknowns) by model.  They exceed ten times the work
+of the slowest points in the paper's range at a tolerance of 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """A checked request for the friction, or the velocity, of a problem.
+    """A checked request for the friction of a problem, or for its velocity under a force.
 
     Attributes
     ----------
@@ -41,21 +41,21 @@ class Request:
     model : str
         Name in models.registry.MODELS.
     chosen : bool
-        Whether the model is "auto", so that a closed form may replace it.
+        Whether the requested model is "auto", so that a closed form can replace the model.
     method : str
         Name of the method.
     how : method.Method
         The method.
     tolerance : float or None
-        Absolute tolerance; None: any error is accepted.
+        Absolute tolerance.  None means that any error is accepted.
     cells, steps : int or None
-        Imposed resolution; steps in a full period.
+        Imposed numbers of cells, and of steps in a full period; None if not imposed.
     budget : budget.Budget
         Budget of all runs together.
     progress : callable or None
         Called with the Resolution of every run before it starts.
     started : float
-        time.perf_counter() at the beginning.
+        Value of time.perf_counter() when the request was made.
     """
 
     problem: Problem
@@ -72,12 +72,12 @@ class Request:
 
     @property
     def accuracy(self) -> float:
-        """Tolerance to which the runs are refined."""
+        """The tolerance to which the runs are refined."""
         return TOLERANCE if self.tolerance is None else self.tolerance
 
     @property
     def point(self) -> dict:
-        """Fields of a result.Result that are taken from the request."""
+        """The fields of a result.Result that are copied from the request."""
         problem = self.problem
         several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
         return (
@@ -96,7 +96,7 @@ class Request:
 
     @property
     def seconds(self) -> float:
-        """Wall-clock time since the request, in seconds."""
+        """Wall-clock time since the request was made, in seconds."""
         return time.perf_counter() - self.started
 
 
@@ -112,7 +112,7 @@ def request_for(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Request:
-    """Build the Request for a problem; its time limit starts now.
+    """Build the Request for a problem.  Its time limit starts now.
 
     Parameters
     ----------
@@ -124,8 +124,8 @@ def request_for(
     Raises
     ------
     InputError
-        For an argument out of range, or a model or a method that does not apply.  It names the
-        argument.
+        If an argument is out of range, or a model or a method does not apply.  The message names
+        the argument.
     """
     started = time.perf_counter()
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
@@ -160,10 +160,10 @@ def request_for(
 
 
 def within_friction(problem: Problem, friction: Estimate) -> Estimate:
-    """The friction clipped to its physical range: 0 to 1, or -1 to 1 for a motion that may propel.
+    """Clip the friction to its range: 0 to 1, or -1 to 1 for motions that can propel.
 
-    Values outside come from rounding and discretisation.  If the error exceeds the width of the
-    range, the result is the middle of the range with half the width as its error.
+    Values outside this range result from rounding and discretisation errors.  If the error exceeds
+    the width of the range, the result is the middle of the range with half the width as its error.
     """
     least = -1.0 if problem.propels else 0.0
     if not math.isfinite(friction.value):
@@ -175,7 +175,7 @@ def within_friction(problem: Problem, friction: Estimate) -> Estimate:
 
 
 def driven_by(drive: Drive | None) -> dict:
-    """Fields of a result.Result that a drive sets."""
+    """The fields of a result.Result that describe the drive."""
     if drive is None:
         return {}
     if drive.force is None:
@@ -184,9 +184,9 @@ def driven_by(drive: Drive | None) -> dict:
 
 
 def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
-    """Fields of a result.Result that describe convergence, resolution and effort.
+    """The fields of a result.Result that describe convergence, resolution and effort.
 
-    largest: largest accepted error; None: any.
+    `largest` is the largest accepted error, or None if any error is accepted.
     """
     if request.budget.exhausted:
         refined = replace(refined, effort=request.budget.taken)

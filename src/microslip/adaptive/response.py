@@ -1,7 +1,7 @@
 """Response of a contact to a prescribed path: forces at every row, with their errors.
 
-The path is not periodic.  It begins at rest without tangential tractions, in full slip, or where
-another response ended.
+The path need not be periodic.  It begins without tangential tractions, in full slip, or at the end
+of another response.
 """
 
 from __future__ import annotations
@@ -34,38 +34,42 @@ from microslip.solver.snapshots import bounds_at_phases
 Progress = Callable[[int, int], None]
 STARTS = ("stress-free", "full-slip", "full-rotation")
 STEP_SHARE = 0.05
-"""Largest sum of the residuals of all steps of a march over the tolerance, as refine.RUN_SHARE."""
+"""Largest sum of the residuals of all steps of a march, divided by the tolerance; see
+refine.RUN_SHARE."""
 MOST_VALUES = 2e7
-"""Largest number of tractions kept at a time: a path is marched in pieces of so many."""
+"""Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
 STEPS = 2
-"""Time steps per u_lim of the path and level, as ladder.TRANSLATION has for a stroke of u_lim."""
+"""Number of time steps for a path of length u_lim, divided by the level.  ladder.TRANSLATION has
+the same number for a stroke of u_lim."""
 ON_BOUND = 1.0 - 1e-4
-"""Share of the friction bound from which on a point counts as slipping."""
+"""Smallest traction of a slipping point, divided by the friction bound."""
 
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Forces along a path, one row each; dimensionless.
+    """Dimensionless forces at the rows of a path.
 
     Attributes
     ----------
     force_forward, force_lateral : np.ndarray, shape (rows,)
-        Over mu F_z of the reference load, in the direction of the displacement that they resist.
+        Forces divided by mu F_z of the reference load, positive in the direction of the
+        displacement that they resist.
     torque : np.ndarray, shape (rows,)
-        Over its value at full slip under the reference load.
+        Torque divided by its value at full slip under the reference load.
     force_error : np.ndarray, shape (rows, 3)
         Estimated errors of the forward force, the lateral force and the torque.
     dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
-        Work of friction since the first row, over mu F_z u_lim, and its estimated error.
+        Energy dissipated by friction since the first row, divided by mu F_z u_lim, and its
+        estimated error.
     stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the area in contact that sticks in the step that ends at the row; NaN in the
-        first row and without contact.  Its resolution is that of the mesh.
+        Fraction of the contact area that sticks in the step that ends at the row.  It is NaN in the
+        first row and without contact.  Its resolution is limited by the mesh.
     tolerance : float
         Requested largest force error.
     converged : bool
         Whether every force error is within the tolerance.
     reason : str
-        Why the response is not converged, else empty.
+        Reason why the response is not converged, otherwise empty.
     model : str
         Name of the model.
     cells, angles : int
@@ -90,8 +94,10 @@ class Response:
 
     @property
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
-        """Unit and values of every column, by name; `force_error` is the larger error of the two
-        forces."""
+        """Unit and values of every column, by name.
+
+        The column `force_error` is the larger of the errors of the two force components.
+        """
         columns = {
             "force_forward": self.force_forward,
             "force_lateral": self.force_lateral,
@@ -111,7 +117,7 @@ class Response:
         return {name: getattr(self, name) for name in names} | {"converged": int(self.converged)}
 
     def to_xarray(self) -> Any:
-        """The columns as an xarray.Dataset over `row`, as `microslip.to_xarray` returns it."""
+        """Convert the columns to an xarray.Dataset with the dimension `row`."""
         return import_module("microslip.datasets.of_records").to_xarray(self)
 
 
@@ -128,41 +134,44 @@ def response(
     tolerance: float = 1e-3,
     progress: Progress | None = None,
 ) -> Response:
-    """Forces of a contact that follows a prescribed path.
+    """Compute the forces of a contact that follows a prescribed path.
 
     Parameters
     ----------
     forward : array_like, shape (rows,)
-        Forward displacement, in u_lim.  Between rows everything changes linearly.
+        Forward displacement, in u_lim.  All quantities change linearly between rows.
     lateral : array_like or None, shape (rows,)
         Lateral displacement, in u_lim.
     angle : array_like or None, shape (rows,)
         Rotation about the contact normal, in u_lim / a.
     load : array_like or None, shape (rows,)
-        Normal load over the reference load, >= 0; None: the reference load.
+        Normal load divided by the reference load, >= 0.  Defaults to the reference load.
     indentation : array_like or None, shape (rows,)
-        In place of the load: indentation over that under the reference load, >= 0.
+        Indentation divided by the indentation under the reference load, >= 0.  Give either this or
+        `load`.
     state : Response, str or None
-        State in the first row: the end of another response, "full-slip", "full-rotation", or None
-        for no tangential tractions.
+        State in the first row: another response, at whose end the path begins; "full-slip";
+        "full-rotation"; or None for no tangential tractions.
     pressure : str or Pressure
-        As for `microslip.solve`; a load that changes needs an axisymmetric indenter.
+        Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.
     poisson : float
         Poisson's ratio, 0 to 0.5.
     tolerance : float
-        Largest error of the forces, over mu F_z, and of the torque over its value at full slip.
+        Largest accepted error of the forces divided by mu F_z, and of the torque divided by its
+        value at full slip.
     progress : callable or None
-        Called as progress(rows, total) in the course of the marches.
+        Called as `progress(rows, total)` during the marches.
 
     Returns
     -------
     Response
-        Not converged, with the reason, where the finest level does not reach the tolerance.
+        The forces.  If the finest level does not reach the tolerance, `converged` is False and
+        `reason` says why.
 
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        If an argument is invalid.  The message names the argument.
     """
     columns = {
         "forward": forward,
@@ -187,8 +196,11 @@ def response(
 
 
 def _joined(before: Response, path: SampledPath) -> tuple[SampledPath, int, str]:
-    """The path of a response with another one after it, the number of the row where that begins,
-    and the start of the first."""
+    """Append a path to the path of an earlier response.
+
+    Returns the joined path, the index of the first row of the appended path, and the start state of
+    the earlier response.
+    """
     old = before.problem.motion
     assert isinstance(old, SampledPath)
     height = None
@@ -207,15 +219,15 @@ def _joined(before: Response, path: SampledPath) -> tuple[SampledPath, int, str]
 
 
 class _Marches:
-    """Marches along a path at the levels of its ladder, each done once.
+    """Marches along a path at the levels of its ladder.  No march is repeated.
 
     Attributes
     ----------
     rows : dict of int to np.ndarray
-        By level: forward force, lateral force, torque, dissipated energy and the sum of the
-        residuals since the start at every row, shape (rows, 5).
+        Values at every row by level, shape (rows, 5): forward force, lateral force, torque,
+        dissipated energy, and sum of the residuals since the start.
     stick : dict of int to np.ndarray
-        By level: stick fraction at every row.
+        Stick fraction at every row, by level.
     """
 
     def __init__(self, problem: Problem, start: str, tolerance: float, progress: Progress | None):
@@ -300,7 +312,7 @@ def _refined(marches: _Marches, first: int) -> Response:
 
 
 def _steps(problem: Problem, level: int) -> np.ndarray:
-    """Number of time steps between rows, (rows - 1,)."""
+    """Number of time steps between rows, shape (rows - 1,)."""
     path = problem.motion
     assert isinstance(path, SampledPath)
     lengths = np.minimum(path.lengths(problem.pressure), LONG_STROKE)
@@ -308,7 +320,7 @@ def _steps(problem: Problem, level: int) -> np.ndarray:
 
 
 def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
-    """First and last row of the pieces in which a path is marched; size: numbers in a state."""
+    """First and last rows of the pieces of a path; `size` is the number of values in a state."""
     ends, first = np.cumsum(counts), 0
     while first < len(counts):
         done = ends[first - 1] if first else 0
@@ -318,7 +330,7 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
 
 
 def _phases(row: int, counts: np.ndarray) -> np.ndarray:
-    """Phases of steps from a row on; counts: steps between rows."""
+    """Phases of the steps from a row on; `counts` are the numbers of steps between rows."""
     parts = [row + k + np.arange(1, count + 1) / count for k, count in enumerate(counts)]
     return np.concatenate([[row], *parts])
 
@@ -326,8 +338,8 @@ def _phases(row: int, counts: np.ndarray) -> np.ndarray:
 def _tractions(
     contact: Contact, path: Path, march: March, ends: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Tractions after the steps `ends`, and the bounds there."""
-    assert march.fields is not None  # as of all compiled contacts
+    """Tractions and friction bounds after the steps `ends`."""
+    assert march.fields is not None  # true for all compiled contacts
     fields = np.moveaxis(march.fields[:: path.stages.shape[1]][ends], 1, 0)
     bounds = bounds_at_phases(contact, path)
     bounds = bounds if len(bounds) == 1 else bounds[ends]
@@ -335,12 +347,12 @@ def _tractions(
 
 
 def _stored_energy(contact: Contact, state: np.ndarray) -> float:
-    """Elastic energy of tractions, over mu F_z u_lim."""
+    """Elastic energy of tractions, divided by mu F_z u_lim."""
     return 0.5 * float(np.vdot(contact.weight * state, contact.displacement(state)))
 
 
 def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Fraction of the area in contact whose tractions are below their bounds."""
+    """Fraction of the contact area whose tractions are below the friction bound."""
     size = np.hypot(tractions[:, 0], tractions[:, 1])
     bounds = np.broadcast_to(bounds, size.shape)
     area = np.where(bounds > 0.0, contact.weight, 0.0)

@@ -1,4 +1,4 @@
-"""The result at one point: friction, or the velocity under a force, with its error estimate."""
+"""Result at one point: friction, or velocity under a prescribed force, with its error estimate."""
 
 from __future__ import annotations
 
@@ -22,60 +22,60 @@ EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retr
 class Result:
     """Friction at one point, or the velocity under a force, with its error estimate.
 
-    All numbers are dimensionless, except the time.  A count is 0 where it does not apply: a closed
-    form takes no marches, a steady motion has no periods.
+    All numbers except the time are dimensionless.  A count that does not apply is 0: a closed form
+    needs no marches, and a steady motion has no periods.
 
     Attributes
     ----------
     motion, pressure : str
-        The motion and the pressure, with their parameters.
+        Names of the motion and the pressure, with their parameters.
     mean_velocity : Estimate
-        Forward velocity, dimensionless as in the paper.  Its error is 0 where the velocity is
-        prescribed.  The velocity is NaN if the contact runs away.
+        Forward velocity, dimensionless as in the paper.  Its error is 0 if the velocity is
+        prescribed.  The velocity is NaN if the contact accelerates without limit.
     amplitude : float or None
-        The dimensionless group of the motion; None for steady motions.
+        Dimensionless amplitude of the motion; None for steady motions.
     poisson : float
         Poisson's ratio.
     force, stiffness, mass, damping : float or None
-        Parameters of the drive, see motions.drive; None: the drive has no such part.
+        Parameters of the drive, see motions.drive.  None if the drive has no such part.
     contacts : str or None
-        Contacts of the body, see motions.body_contacts; None: one contact.
+        Contacts of the body, see motions.body_contacts.  None for a single contact.
     model : str
-        Contact model that was used, or "closed-form".
+        Name of the contact model, or "closed-form".
     tolerance : float or None
-        Largest accepted error of the answer; relative for a velocity above 1.  None: any error is
-        accepted.
+        Largest accepted error of the result, relative for a velocity above 1.  None means that any
+        error is accepted.
     method : str
         "shipped", or the name of another method.
     friction : Estimate
-        Mean forward friction force over mu F_z; 1 is friction without vibration.  Its error is 0
-        if the force is prescribed.
+        Mean forward friction force divided by mu F_z; 1 is friction without vibration.  Its error
+        is 0 if the force is prescribed.
     torque : Estimate or None
-        Torque over its value at zero forward velocity; None for oscillating motions.
+        Torque divided by its value at zero forward velocity; None for oscillating motions.
     converged : bool
-        Whether the error is within the tolerance and every run found its periodic state; without a
-        tolerance, whether every run found it.
+        Whether the error is within the tolerance and every run found its periodic state.  Without a
+        tolerance only the second condition applies.
     periodic : bool
         Whether every run found its periodic state.
     reason : str
-        Why it is not converged, as one line; else empty.
+        Reason why the result is not converged, in one line; otherwise empty.
     cells : int
-        Rings, or squares across the contact, of the finest run.
+        Number of rings, or of squares across the contact, in the finest run.
     angles : int
-        Angular points on half the disc, of the finest run; 1 where rings or squares suffice.
+        Number of angular points on half the disc in the finest run; 1 for rings and squares.
     steps_per_period : int
-        Time steps in a full period, of the finest run.
+        Number of time steps in a full period in the finest run.
     observed_order : float or None
-        Observed order of convergence of the last three levels; None where it is not known.  2 is
-        expected; far below 1 the runs are too coarse for the error estimate.
+        Observed order of convergence of the last three levels, or None if it is unknown.  The
+        expected order is 2.  If it is far below 1, the runs are too coarse for the error estimate.
     periods : float
-        Full periods marched in the longest run until the periodic state was found; 2.5 means five
-        half periods.
+        Number of full periods that the longest run marched to find the periodic state; 2.5 means
+        five half periods.
     effort : Effort
         Effort of all runs.
     exhausted : str
-        The bound that ended the search: "work", or "time", which depends on the machine; else
-        empty.
+        Name of the limit that ended the search, otherwise empty.  It is "work" or "time"; the
+        second limit depends on the machine.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -109,7 +109,7 @@ class Result:
 
     @property
     def answer(self) -> Estimate:
-        """The requested quantity: the velocity under a force, else the friction."""
+        """The requested quantity: the velocity under a prescribed force, otherwise the friction."""
         return self.friction if self.force is None else self.mean_velocity
 
     @property
@@ -129,7 +129,7 @@ class Result:
 
     @property
     def velocity_error(self) -> float | None:
-        """Error of `mean_velocity`; None where the velocity is prescribed."""
+        """Error of `mean_velocity`; None if the velocity is prescribed."""
         return None if self.force is None else self.mean_velocity.error
 
     @property
@@ -138,7 +138,7 @@ class Result:
         return None if self.torque is None else self.torque.value
 
     def to_dict(self) -> dict:
-        """Plain dict by the names of JSON and datasets, without what does not apply."""
+        """Convert to a dict with the names of JSON and datasets; omits fields that do not apply."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}
@@ -153,7 +153,7 @@ class Result:
 
     @staticmethod
     def from_dict(flat: Mapping[str, Any]) -> Result:
-        """The Result from the output of `to_dict`; missing fields become NaN, 0 or empty."""
+        """Build a Result from the output of `to_dict`; missing fields become NaN, 0 or empty."""
         errors = {source: _number(flat.get(name)) for source, name in ERRORS.items()}
         values: dict[str, Any] = {"converged": False, "periodic": False, "solve_time_s": 0.0}
         values |= {"amplitude": None, "tolerance": None, "model": "", "method": ""}
@@ -171,12 +171,12 @@ class Result:
 
 
 def _number(value: float | None) -> float:
-    """The number, or NaN for None."""
+    """Return the number, or NaN for None."""
     return math.nan if value is None else value
 
 
 def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
-    """The Result with the fields `point` and the values (mu, torque, error) of a closed form."""
+    """Build the Result of a closed form from other fields (`point`) and (mu, torque, error)."""
     (mu, torque, error), tolerance = values, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(

@@ -1,4 +1,4 @@
-"""Friction at a prescribed velocity, of one contact or of several contacts on one body."""
+"""Friction of one contact, or of a body on several contacts, at a prescribed velocity."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from microslip.solver.effort import Effort
 
 
 def solve_each(request: Request) -> Result:
-    """The Result of one contact, or the mean over the contacts of a body, solved separately."""
+    """Solve each contact separately; returns the Result of one contact or the mean over several."""
     problem = request.problem
     if not problem.parts:
         return _solve(request)
@@ -45,7 +45,7 @@ def solve_each(request: Request) -> Result:
 
 
 def _solve(request: Request) -> Result:
-    """The Result of one contact: a closed form, else runs of a model."""
+    """Solve one contact, by a closed form if there is one, otherwise by runs of a model."""
     exact = known_exactly(request)
     if exact is not None:
         return exact

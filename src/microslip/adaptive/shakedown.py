@@ -1,9 +1,9 @@
 """Displacement of a vibrated contact under a constant force until it comes to rest (shakedown).
 
-Below the static limit a vibrated contact under a constant force settles.  Period by period its slip
-zones relax and transfer their load to the stick zone, until no point slips forward any more.  The
-displacement depends on the history.  Here the force is applied first, to a contact without
-tangential load; then the vibration starts at its mean position.
+A vibrated contact under a constant force below the static limit comes to rest.  Period by period
+its slip zones relax and transfer their load to the stick zone, until no point slips forward any
+more.  The displacement depends on the history.  Here the force is applied first, to a contact
+without tangential load; then the vibration starts at its mean position.
 """
 
 from __future__ import annotations
@@ -41,15 +41,16 @@ from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
-"""Tolerance of a shakedown run, over that of a periodic state.  The residuals of its steps add up
-over all periods, some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
+"""Ratio of the tolerance of a shakedown run to that of a periodic state.  The residuals of the
+steps accumulate over all periods, several hundred near the static limit
+(tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity at which the time steps are chosen: at velocity 0 the ladder would have none."""
+"""Velocity for which the time steps are chosen; for velocity 0 the ladder has no time steps."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shakedown:
-    """Displacement of a contact until it comes to rest; dimensionless.
+    """Dimensionless displacement of a contact until it comes to rest.
 
     Attributes
     ----------
@@ -58,27 +59,29 @@ class Shakedown:
     amplitude, poisson, force, tolerance : float
         Arguments of the request.
     threshold, threshold_error : float
-        Static limit over mu times the mean normal load: from this force on the contact does not
-        come to rest.
+        Static limit divided by mu times the mean normal load, and its estimated error.  Under this
+        or a larger force the contact does not come to rest.
     displacement, displacement_error : float
-        Forward displacement in u_lim from the position without a force to the position at rest,
-        with its estimated error; infinite if the contact does not come to rest.
+        Forward displacement in u_lim from the position without a force to the position at rest, and
+        its estimated error.  Infinite if the contact does not come to rest.
     pushed : float
         Part of the displacement caused by the force before the oscillation starts.
     most_after : float
-        Number of periods in which the contact covers nine tenths of the remaining displacement.
+        Number of periods in which the contact covers nine tenths of the displacement caused by the
+        oscillation.
     converged : bool
         Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
-        Why it is not converged, else empty.
+        Reason why the result is not converged, otherwise empty.
     error_resolution, error_periodicity, error_solver : float
-        Parts of the error by source; the periodicity bounds the displacement after the last period.
+        Parts of the error by source.  The part `error_periodicity` bounds the displacement after
+        the last period.
     cells, angles, steps_per_period : int
-        Resolution of the finest run.
+        Numbers of cells, of angles and of steps per period in the finest run.
     periods : float
-        Number of periods of the longest run.
+        Number of periods in the longest run.
     work : int
-        Step solves times unknowns, of all runs.
+        Step solves times unknowns, summed over all runs.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -135,20 +138,22 @@ def shakedown(
     amplitude, pressure, poisson, model, most_work, time_limit, progress
         See `microslip.solve`.
     force : float
-        0 to below the static limit, over mu times the mean normal load; the contact has no mass.
+        Force divided by mu times the mean normal load, from 0 to below the static limit.  The
+        contact has no mass.
     tolerance : float
         Absolute tolerance of the displacement, in u_lim.
 
     Returns
     -------
     Shakedown
-        The displacement is infinite, with a reason, if the contact does not come to rest.
+        The displacement.  If the contact does not come to rest, it is infinite and `reason` says
+        why.
 
     Raises
     ------
     InputError
-        For an argument out of range, or a motion that exerts a forward force by itself.  It names
-        the argument.
+        If an argument is out of range, or the motion exerts a forward force by itself.  The message
+        names the argument.
     """
     if isinstance(motion, Problem) and isinstance(motion.drive, Force):
         if force is not None:
@@ -172,7 +177,7 @@ def shakedown(
 
 
 def _answer(request: Request, force: float) -> Shakedown:
-    """The Shakedown under a force."""
+    """Compute the Shakedown under a force."""
     threshold, error, away = _threshold(request, force)
     request_fields: dict[str, Any] = {
         "motion": request.problem.motion.name,
@@ -197,7 +202,7 @@ def _answer(request: Request, force: float) -> Shakedown:
 
 
 def _threshold(request: Request, force: float) -> tuple[float, float, str]:
-    """The static limit, its error, and why the contact runs away ("" if it does not)."""
+    """Compute the static limit, its error, and a message if the contact runs away, otherwise ""."""
     problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):
@@ -210,10 +215,10 @@ def _threshold(request: Request, force: float) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Fields of a Shakedown that follow from its runs."""
+    """Compute the fields of a Shakedown that result from its runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     ladder = ladder_for(planned, request.model, request.accuracy)
-    # the contact of the coarsest run, too, must come to rest
+    # the contact must come to rest in the coarsest run too
     ladder = replace(ladder, start=2 * ladder.start)
     remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)

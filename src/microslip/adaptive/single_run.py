@@ -1,6 +1,6 @@
 """Single runs of a model and a method at one resolution, and the cost of a step.
 
-They serve to compare methods.  The result of a trial has no error estimate of the resolution.
+They are used to compare methods.  Their results have no error estimate for the resolution.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
-"""Tolerance of a step whose cost is measured, a force over mu F_z."""
+"""Tolerance of a step whose cost is measured, as a force divided by mu F_z."""
 
 
 def applies(
     motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
 ) -> str:
-    """Why a model or a method (by name) does not apply to a motion, as one line; "" if it does."""
+    """Reason why a model or a method does not apply to a motion; empty if both apply."""
     kind = motion_named(motion)
     amplitude = 1.0 if kind.periodic else None
     problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
@@ -61,22 +61,23 @@ def run_trial(
     motion, velocity, amplitude, poisson, model, method, pressure
         See `microslip.solve`.
     cells : int
-        Rings, or squares along a side.
+        Number of rings, or of squares along a side.
     angles : int
         Number of angular points on half the disc.
     steps : int
         Number of steps in a full period.
     tolerance : float
-        Tolerance of the periodic state, a force over mu F_z.
+        Tolerance of the periodic state, as a force divided by mu F_z.
 
     Returns
     -------
     dict
         - mu_macro: mean friction; NaN if the run failed.
-        - converged, reason: whether the state is periodic, else why it is not.
+        - converged, reason: whether the state is periodic, and the reason if it is not.
         - periods: number of full periods in all searches.
-        - iterations, solves, unknowns: of the step solver.
-        - work, effort: solves times unknowns, and iterations times unknowns.
+        - iterations, solves, unknowns: number of iterations of the step solver, of step solves, and
+          of unknowns in a step.
+        - work, effort: number of solves times unknowns, and of iterations times unknowns.
 
     Raises
     ------
@@ -108,23 +109,23 @@ def run_trial(
 def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
     """Measure the cost of a backward Euler step.
 
-    The path is half a period from full slip, of the transverse motion for rings, else of the bore.
-    Times are the median of three marches, after a first march that compiles.
+    The march covers half a period from full slip, of the transverse motion for rings, otherwise of
+    the bore motion.  The time is the median of three marches.  A first march compiles the code.
 
     Parameters
     ----------
     model : str
         Name in models.registry.MODELS.
     cells, angles, steps : int
-        Rings and angular points of the model, and steps in half a period.
+        Number of rings, of angular points, and of steps in half a period.
     poisson : float
         Poisson's ratio.
 
     Returns
     -------
     dict
-        unknowns; iterations and seconds of CPU time per step; memory: size of the arrays of the
-        contact in bytes.
+        Number of unknowns, iterations per step, CPU time per step in seconds, and memory used by
+        the arrays of the contact in bytes.
     """
     problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0, poisson)
     contact = build_contact(problem, model, Resolution(cells, angles, steps))
@@ -145,7 +146,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
 
 
 def held_bytes(thing: object) -> int:
-    """Size in bytes of all arrays that an object refers to, directly or not, each counted once."""
+    """Size in bytes of all arrays that an object refers to, directly or indirectly."""
     sizes, stack = {}, [thing]
     while stack:
         one = stack.pop()

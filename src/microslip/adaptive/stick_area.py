@@ -1,4 +1,4 @@
-"""Stick area over a period: fractions of the contact area, and tractions at single moments."""
+"""Stick area as a fraction of the contact area over a period, and tractions at four moments."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ def patches(
     Parameters
     ----------
     motion, velocity, amplitude, pressure, poisson, cells, angles, steps
-        See `microslip.period`; the second half of the period mirrors the first.
+        See `microslip.period`.  The second half of the period is assumed to mirror the first.
 
     Returns
     -------
     dict
         - mu_macro, converged, reason: see `microslip.solve`.
-        - phase, shape (steps + 1,).
+        - phase, shape (steps + 1,): phase in radians.
         - stick_right, stick_left, shape (steps + 1,): fractions of the contact area that stick at
           positive and at negative lateral positions.
-        - least_stick: smallest sum of both over the period.
-        - forward_position, lateral_position, area: positions and areas of the points, in units of a
-          and a^2; the sum of the areas is pi.
+        - least_stick: smallest sum of `stick_right` and `stick_left` over the period.
+        - forward_position, lateral_position, area: positions of the points in units of a and their
+          areas in units of a^2; the sum of the areas is pi.
         - moment_phase: phases of four moments: the smallest stick area in a stroke, the middle of
           the stroke, and both half a period later.
-        - moment_share, shape (moments, points): traction over the friction bound at these moments,
-          1 at points that slip.
+        - moment_share, shape (moments, points): traction divided by the friction bound at these
+          moments; 1 at points that slip.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def patches(
     cycle = period(motion, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
     sticking = np.where(cycle.slips, 0.0, cycle.area / np.pi)
     right = cycle.lateral_position > 0.0
-    # the first row repeats the last one: a stroke is rows 1 to half
+    # the first row repeats the last one, so a stroke consists of rows 1 to half
     half = steps // 2
     least = 1 + int(np.argmin(sticking[1 : half + 1].sum(axis=1)))
     moments = np.array([least, half // 2, least + half, half // 2 + half])

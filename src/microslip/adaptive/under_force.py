@@ -1,7 +1,7 @@
-"""A contact under a constant force: whether it rests or runs away, and its approximate velocity.
+"""Contact under a constant force: whether it stays at rest, its velocity, or whether it runs away.
 
-Friction never falls with the velocity (theory/bounds.py).  So the contact comes to rest under every
-force under which it could rest, and a larger force moves it faster.
+Friction never decreases with the velocity (theory/bounds.py).  So the contact comes to rest under
+every force under which it can rest, and a larger force moves it faster.
 """
 
 from __future__ import annotations
@@ -20,31 +20,33 @@ from microslip.motions.problem import Problem
 from microslip.theory import paper
 
 RETURNED = 1e-12
-"""Forward oscillation, over the amplitude, that counts as rounding."""
+"""Largest ratio of the forward oscillation to the amplitude that is treated as a rounding error."""
 
 CLOSEST_FORCE = 0.9999
-"""Smallest force, up to 1, for which no velocity is computed.  With a transverse oscillation, runs
-converged up to 0.9998, where the contact already advances 200 amplitudes in a period."""
+"""Force, divided by mu times the mean normal load, from which on (up to 1) no velocity is computed.
+With a transverse oscillation, runs converged up to 0.9998, where the contact already advances by
+200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
-"""Largest force on a steady rotation.  The friction is rounded to 1.1e-16, which changes the
-velocity by the fraction 1.1e-16 / (2 (1 - force)): the stated error of 1e-9 at this force."""
+"""Largest force on a steady rotation, divided by mu times the mean normal load.  The friction has a
+rounding error of 1.1e-16, which causes a relative error of the velocity of 1.1e-16 / (2 (1 -
+force)).  At this force it equals the stated error of 1e-9."""
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Search for the velocity: first drift in a radian, factor between two runs, and the bounds."""
+"""Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
 FLATTEST = 1e-6
-"""Smallest accepted rise of friction between two runs, over the relative rise of velocity."""
+"""Smallest accepted rise of friction between two runs, divided by the relative rise of velocity."""
 HALVINGS = 2
-"""Bisections of the last interval of velocities, on a logarithmic scale."""
+"""Number of bisections of the last interval of velocities, on a logarithmic scale."""
 
 
 def drive_of(problem: Problem) -> Drive:
-    """The drive of a problem that has one."""
+    """Return the drive of a problem with a drive."""
     assert problem.drive is not None
     return problem.drive
 
 
 def force_of(problem: Problem) -> float:
-    """The force of a problem that is under one."""
+    """Return the prescribed force of a problem with a force."""
     force = drive_of(problem).force
     assert force is not None
     return force
@@ -53,14 +55,14 @@ def force_of(problem: Problem) -> float:
 def without_forward_motion(problem: Problem) -> Problem:
     """The problem without the oscillation along the direction of the force.
 
-    Under a constant force the forward force of a contact without mass is constant.  Then the body
-    follows the forward oscillation, which has no effect.
+    Under a constant force, the forward force on a contact without mass is constant.  Then the body
+    follows the forward oscillation, so the forward oscillation has no effect.
     """
     return replace(problem, follows=True) if oscillates_forward(problem) else problem
 
 
 def oscillates_forward(problem: Problem) -> bool:
-    """Whether the oscillation of the contact, or of one of several, has a forward component."""
+    """Whether the oscillation of any contact has a forward component."""
     if problem.parts:
         return any(oscillates_forward(part.problem) for part in problem.parts)
     forward = problem.oscillation(LOOP)[0]
@@ -79,8 +81,9 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    Then the threshold of motion equals the static limit.  Several contacts are even if each of them
-    is, or if each has an opposite contact that exerts the opposite force.
+    Then the threshold of motion equals the static limit.  The oscillation of several contacts is
+    even if that of each contact is, or if for each contact there is another one that exerts the
+    opposite force.
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
@@ -93,7 +96,7 @@ def is_even(problem: Problem) -> bool:
 
 
 def least_load(problem: Problem) -> float:
-    """Least normal load in a period, over its mean."""
+    """Smallest normal load in a period, divided by the mean normal load."""
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
     loads = problem.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
@@ -103,7 +106,7 @@ def least_load(problem: Problem) -> float:
 
 
 def runs_away(problem: Problem) -> str:
-    """Why the contact has no mean velocity, as one line; "" if it has one."""
+    """Reason why the contact has no mean velocity; empty if it has one."""
     force = force_of(problem)
     if abs(force) >= 1.0:
         return f"runs away: the force {force:g} is at least full friction"
@@ -144,7 +147,7 @@ def refuse_steady(problem: Problem) -> None:
 def steady_velocity(problem: Problem) -> float:
     """Velocity of a steady rotation under a force from 0 to below 1, by Eqs 17 and 21.
 
-    The caller checks the problem by `refuse_steady` first.
+    The caller must check the problem with `refuse_steady` first.
     """
     from scipy.optimize import brentq  # imported here because it loads slowly
 
@@ -164,12 +167,12 @@ def steady_velocity(problem: Problem) -> float:
 
 
 class Near(NamedTuple):
-    """An approximate point on the curve of friction over velocity.
+    """An approximate point on the curve of friction as a function of velocity.
 
     Attributes
     ----------
     velocity : float
-        In the unit of the motion.
+        Velocity, in the unit of the motion.
     slope : float
         Approximate derivative of the friction with respect to the velocity.
     """
@@ -179,18 +182,20 @@ class Near(NamedTuple):
 
 
 def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
-    """Velocity at which the friction equals a force, to within a factor of about two.
+    """Find the velocity at which the friction equals a force, to within a factor of about two.
 
-    The search for the velocity under the force starts from it, and it sets the time steps.
+    The search for the velocity under the force starts from this velocity.  It also determines the
+    time steps.
 
     Parameters
     ----------
     problem : problem.Problem
         The problem at a prescribed velocity.
     force : float
-        Over mu times the mean normal load.
+        Force divided by mu times the mean normal load.
     friction_at : callable
-        friction_at(velocity) -> mean forward force in the same unit; NaN if a run failed.
+        `friction_at(velocity)` returns the mean forward force in the unit of `force`, or NaN if a
+        run failed.
     """
     unit = problem.unit_drift
 

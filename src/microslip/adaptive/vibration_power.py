@@ -1,7 +1,7 @@
 """Power needed to vibrate a contact: mean power of the oscillation, with an error estimate.
 
 The forward drive adds the power mu_macro v.  Elastic energy is recovered, so that friction
-dissipates the sum of both powers.
+dissipates the sum of the power of the oscillation and the power of the drive.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class Answer(NamedTuple):
     Attributes
     ----------
     value, error : float
-        The quantity, and its estimated error.
+        The quantity and its estimated error.
     reason : str
-        Why the error is above the tolerance; empty if it is not.
+        Reason why the error exceeds the tolerance; empty if it does not.
     """
 
     value: float
@@ -53,17 +53,17 @@ def vibration_power(
     motion, velocity, amplitude, pressure, poisson
         See `microslip.solve`; the motion oscillates, velocity and amplitude are above 0.
     tolerance : float
-        Largest accepted error, over the mean speed of the oscillation.
+        Largest accepted error, divided by the mean speed of the oscillation.
 
     Returns
     -------
     Answer
-        Work in a radian of phase, over mu times the mean normal load and u_lim.
+        Work per radian of phase, divided by mu times the mean normal load and by u_lim.
 
     Raises
     ------
     InputError
-        For bad input; it names the argument.
+        If an argument is invalid.  The message names the argument.
     """
     problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
     for name, value in (("velocity", problem.velocity), ("amplitude", problem.amplitude)):
@@ -81,6 +81,6 @@ def vibration_power(
 
 
 def mean_speed(problem: Problem) -> float:
-    """Mean speed of the oscillation: path length in a radian of phase, in u_lim."""
+    """Mean speed of the oscillation, as the path length per radian of phase, in u_lim."""
     moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
     return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)

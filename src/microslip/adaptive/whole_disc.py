@@ -1,4 +1,4 @@
-"""Points and fields on the whole disc, from the half disc of the polar model."""
+"""Points and fields on the whole disc, computed from the half disc of the polar model."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ def points_of(contact: PolarContact) -> list[np.ndarray]:
         return [part.ravel() for part in (forward, lateral, *every)]
     other = lateral if contact.rotates else -lateral
     bound = np.broadcast_to(contact.bound, forward.shape)
-    # the weight of a point of the half disc includes its image
+    # the weight of a point on the half disc includes its mirror image
     area = np.broadcast_to(0.5 * contact.weight, forward.shape)
     parts = (forward, -forward), (lateral, other), (bound, bound), (area, area)
     return [np.concatenate([half.ravel() for half in part]) for part in parts]
 
 
 def whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, each (n, points).
+    """Forward and lateral components, shape (n, points), of a field (n, 2, M, N) on the whole disc.
 
     For a rotation the other half is the mirror image across the lateral axis; for a translation it
     is the first half rotated by 180 degrees.

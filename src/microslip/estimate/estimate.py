@@ -6,23 +6,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 SOURCES = ("resolution", "periodicity", "solver", "model")
-"""Sources of the error of an estimate, see refine.py."""
+"""Sources of error of an estimate, see refine.py."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A quantity with its error estimate.
 
-    Estimates can be added, and multiplied by numbers.  The errors of a sum are the sums of the
-    errors of its terms, source by source.
+    Estimates can be added, and multiplied by numbers.  The error of a sum is the sum of the errors
+    of its terms, separately for each source.
 
     Attributes
     ----------
     value : float
         The quantity.
     by_source : mapping of float
-        Its error estimate by source, one of SOURCES, in the unit of the value.  A missing source
-        means no error.
+        Error estimate by source, in the unit of the value; the keys are from SOURCES.  The error of
+        a missing source is 0.
     """
 
     value: float

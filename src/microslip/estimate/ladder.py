@@ -1,13 +1,13 @@
 """Levels of resolution of a problem: cells, angles and time steps refined together.
 
-The level n is the number of cells; angles and steps are proportional to it.  So the error has one
-leading term C / n^2, which the three levels n/4, n/2 and n determine.  LEVELS are two interleaved
-series of doublings.  So the next level costs little more, and the level after it shares the coarser
-levels.
+The level n is the number of cells; angles and steps are proportional to it.  So the error has a
+single leading term C / n^2, which follows from the three levels n/4, n/2 and n.  LEVELS are two
+interleaved series of doublings.  So the next level costs little more, and the second next level
+reuses the coarser levels.
 
-The first level depends on the tolerance and on the motion.  Mesh and path adapt to the rest: rings
-are graded towards the slip front (discretise.focus_strength), and the number of time steps
-grows with the square root of the stroke, and with the natural frequency of a mass.
+The first level depends on the tolerance and on the motion.  Mesh and path also adapt to the
+problem: rings are graded towards the slip front (discretise.focus_strength), and the number of time
+steps increases with the square root of the stroke and with the natural frequency of a mass.
 """
 
 from __future__ import annotations
@@ -30,16 +30,17 @@ from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_loop import SLOW_LOOP
 
 RATIO = 2
-"""Ratio of the levels that are extrapolated.  The first level grows by it per decade of the
-tolerance: extrapolated errors fall with about the third power of the level."""
+"""Ratio of the levels that are extrapolated.  The first level is multiplied by this ratio per
+decade of the tolerance, since extrapolated errors decrease with about the third power of the
+level."""
 LEVELS = tuple(sorted(base * RATIO**k for k in range(9) for base in (RATIO, 3)))
 """Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
 LOOSEST = 1e-2
-"""Tolerance of Ladder.start; looser tolerances use the same level."""
+"""Tolerance to which Ladder.start refers.  Larger tolerances use the same level."""
 FEWEST = 4
-"""Smallest number of angles, and of steps."""
+"""Smallest number of angles and of steps."""
 MOST_MASS_STEPS = 8192
-"""Largest number of steps in half a period for a mass; runs over 24 rings then take seconds."""
+"""Largest number of steps in half a period for a mass.  Runs with 24 rings then take seconds."""
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,13 @@ class Ladder:
     start : int
         First level at the tolerance LOOSEST.
     angles, steps : float
-        Angles on half the disc, and time steps in half a period, divided by the level; 0: not
-        refined.
+        Number of angles on half the disc, and of time steps in half a period, divided by the level;
+        0 if they are not refined.
     cells : float
-        Rings, or squares across the contact, divided by the level; 0: not refined.
+        Number of rings, or of squares across the contact, divided by the level; 0 if it is not
+        refined.
     imposed : bool
-        Whether the user imposes a resolution, which then belongs to the level `start`.
+        Whether the user imposes a resolution.  If so, it is that of the level `start`.
     """
 
     start: int
@@ -68,9 +70,8 @@ class Ladder:
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
-        fewest = (
-            1 if self.imposed and self.steps else FEWEST
-        )  # so that half of the imposed steps differ
+        # an imposed number of steps below FEWEST and half of it must stay different
+        fewest = 1 if self.imposed and self.steps else FEWEST
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
             angles=max(angles, FEWEST) if self.angles else 1,
@@ -78,9 +79,9 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """Finest levels to try one after the other at a tolerance.
+        """The levels that are tried in turn as the finest level at a tolerance.
 
-        The last one is one level above the first level of SMALLEST_TOLERANCE.
+        The last one is one level above the first level for SMALLEST_TOLERANCE.
         """
         if self.imposed:
             return (self.start,)
@@ -96,7 +97,7 @@ class Ladder:
 
 
 class Kind(NamedTuple):
-    """First level and steps of a kind of problem.
+    """First level and number of time steps for a kind of problem.
 
     Calibrated by `benchmarks/error_estimates.py --seed 3 --start FACTOR`.
 
@@ -105,7 +106,8 @@ class Kind(NamedTuple):
     start : int
         Ladder.start.
     steps : int
-        Time steps in half a period, divided by the level, for a stroke of u_lim; 0: no march.
+        Number of time steps in half a period, divided by the level, for a stroke of u_lim; 0 if
+        there is no march.
     """
 
     start: int
@@ -121,17 +123,17 @@ ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotations with a lateral motion, whose slip fronts differ between the halves of a period."""
 LOAD = Kind(start=24, steps=4)
-"""Oscillating normal loads: the edge of the contact sweeps over the rings."""
+"""Oscillating normal loads, under which the edge of the contact moves across the rings."""
 SQUARES = ROTATION._replace(start=LOAD.start)
 """Squares across the diameter, which are not graded towards the slip front."""
 STATIC = Kind(start=32, steps=0)
-"""Static limit at turning points: slip fronts cut through the cells."""
+"""Static limit at turning points, where slip fronts cut through the cells."""
 COUPLED = LOAD._replace(start=STATIC.start)
-"""Several interacting contacts: which of them slides can change within a step."""
+"""Several interacting contacts.  The set of sliding contacts can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
-"""Angles on half the disc, divided by the level.  A rotation has its centre in the contact.  In a
-translation tractions depend on the angle weakly, and only at nu > 0.  Calibrated by
-`benchmarks/angles.py`."""
+"""Number of angles on half the disc, divided by the level.  A rotation has its centre in the
+contact.  In a translation the tractions depend on the angle only at nu > 0, and weakly.  Calibrated
+by `benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -141,7 +143,7 @@ def ladder_for(
     cells: int | None = None,
     steps: int | None = None,
 ) -> Ladder:
-    """The Ladder of a problem.
+    """Choose the Ladder of a problem.
 
     Parameters
     ----------
@@ -150,10 +152,10 @@ def ladder_for(
     model : str
         Name in models.registry.MODELS.
     tolerance : float
-        Absolute tolerance of the friction.  It sets the steps if only the cells are imposed, and
-        the cells if only the steps are.
+        Absolute tolerance of the friction.  It determines the steps if only the cells are imposed,
+        and the cells if only the steps are imposed.
     cells, steps : int or None
-        Imposed resolution; steps in a full period.
+        Imposed number of cells, and of steps in a full period; None if not imposed.
     """
     motion, refined = problem.motion, MODELS[model].axes(problem)
     kind = _kind(problem, model)
@@ -169,7 +171,7 @@ def ladder_for(
 
 
 def _kind(problem: Problem, model: str) -> Kind:
-    """The Kind of a problem."""
+    """Determine the Kind of a problem."""
     motion = problem.motion
     on_a_line = at_turning_points(problem)
     if motion.periodic and problem.velocity == 0.0 and on_a_line:
@@ -188,9 +190,9 @@ def _kind(problem: Problem, model: str) -> Kind:
 
 
 def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
-    """The ladder with an imposed resolution at its start.
+    """Change a ladder so that its first level has the imposed resolution.
 
-    A number that is not imposed follows from the tolerance or the imposed cells.
+    A number that is not imposed is chosen according to the tolerance or the imposed cells.
     """
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
     if cells is None and steps is None:
@@ -206,7 +208,7 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 
 
 def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
-    """Raise InputError if the cells or the steps are refined and not imposed."""
+    """Raise InputError if the cells or the steps are refined but not imposed."""
     numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
     free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
     if free:
@@ -219,31 +221,31 @@ def with_mass(
 ) -> tuple[Ladder, str]:
     """Shorten the steps of a ladder until they resolve a mass that oscillates against the contact.
 
-    The natural frequency over that of the vibration is sqrt(stiffness / mass), with the stiffness
-    of the contact (1.5 for a sphere at nu = 0).  Runs with steps longer than a radian of this
-    oscillation can agree with each other, but not with the solution.  A radian suffices for the
-    tolerance LOOSEST.  A spring s times stiffer than the contact raises the frequency by the square
-    root of s and lowers the force of this oscillation on the contact by s.  For a method of second
-    order the two effects cancel.
+    The ratio of the natural frequency to that of the vibration is sqrt(stiffness / mass), with the
+    stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
+    the natural oscillation, runs can agree with each other although they are wrong.  Steps of a
+    radian are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the
+    contact raises the natural frequency by a factor of sqrt(s) and reduces the force of this
+    oscillation on the contact by a factor of s.  For a second-order method the two effects cancel.
 
     Parameters
     ----------
     ladder : Ladder
-        Ladder for the contact without mass.
+        Ladder for the contact without a mass.
     problem : problem.Problem
         The problem.
     contact : contact.Contact
         A contact of the problem at any resolution.
     mass : float
-        Mass over mu F_z / (u_lim omega^2).
+        Mass, in units of mu F_z / (u_lim omega^2).
     tolerance : float
-        Absolute tolerance of the answer.
+        Absolute tolerance of the result.
 
     Returns
     -------
     tuple of Ladder and str
-        The ladder, and why its steps do not resolve the natural oscillation of the mass; "" if they
-        do.
+        The ladder, and the reason why its steps do not resolve the natural oscillation of the mass;
+        empty if they do.
     """
     if mass == 0.0 or not ladder.steps:
         return ladder, ""

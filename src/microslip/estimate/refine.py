@@ -6,7 +6,7 @@ The error estimate has four sources:
 - periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
   periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
 - model: a pressure measured on a grid can be interpolated in several ways.  The finest run is
-  repeated for each of them; refinement does not reduce the differences.
+  repeated for each interpolation; refinement does not reduce the differences.
 """
 
 from __future__ import annotations
@@ -26,44 +26,44 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 RUN_SHARE = 0.05
-"""Largest distance of a run from its periodic state, over the tolerance.  Times the weights of the
-runs this contributes at most a twelfth of the tolerance."""
+"""Largest distance of a run from its periodic state, divided by the tolerance.  Multiplied by the
+weights of the runs, it contributes at most a twelfth of the tolerance."""
 READING_SAFETY = 2.5
-"""Safety factor on the differences between readings of a pressure.  No reading resolves a peak or
-an edge between the points of a grid."""
+"""Safety factor on the differences between the interpolations of a measured pressure (readings).
+None of them resolves a peak or an edge between the points of a grid."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate by resolution over the tolerance, for three levels that agree by chance.
-Calibrated by benchmarks/error_estimates.py."""
+"""Smallest error estimate by resolution, divided by the tolerance, in case three levels agree by
+chance.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
-"""Largest sum of the other errors over the tolerance for which finer runs are worth their cost."""
+"""Largest sum of the other errors, divided by the tolerance, at which finer runs are worthwhile."""
 
 
 @dataclass(frozen=True)
 class Refined:
-    """A value with its error estimate; a force over mu F_z, or a velocity.
+    """A value with its error estimate: a force divided by mu F_z, or a velocity.
 
     Attributes
     ----------
     value : Estimate
-        The requested quantity, extrapolated.
+        Extrapolated value of the requested quantity.
     torque : Estimate
-        The torque, extrapolated.
+        Extrapolated torque.
     order : float
-        Observed order of convergence; NaN: unknown.
+        Observed order of convergence; NaN if unknown.
     finest : discretise.Resolution
         Resolution of the finest run.
     periods : float
-        Number of periods of the longest run.
+        Number of periods in the longest run.
     effort : Effort
         Effort of all runs.
     converged : bool
         Whether every run found its periodic state and nothing ended the refinement early.
     reason : str
-        Why it is not converged, else empty.
+        Reason why the result is not converged, otherwise empty.
     periodic : bool
         Whether every run found its periodic state.
     ladder : ladder.Ladder
-        Ladder of the runs.
+        Ladder of resolutions of the runs.
     """
 
     value: Estimate
@@ -79,11 +79,11 @@ class Refined:
 
 
 UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
-"""The estimate of an unknown quantity."""
+"""Estimate of an unknown quantity."""
 
 
 def unknown(reason: str, ladder: Ladder) -> Refined:
-    """Result of a problem whose budget ended before the first estimate."""
+    """Result of a problem whose budget was exceeded before the first estimate."""
     none = Resolution(0, 0, 0)
     return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False, ladder)
 
@@ -105,21 +105,22 @@ def refine(
     Parameters
     ----------
     run : callable
-        run(resolution, guess) -> run.Run; guess: the run at half the level, or None.
+        `run(resolution, guess)` returns a run.Run; `guess` is the run at half the level, or None.
     ladder : Ladder
         Resolutions of the problem.
     tolerance : float
         Absolute tolerance of the quantity.
     readings : sequence of callable
-        Like `run`, for other pressures that agree with the same measured values.
+        Functions like `run`, for other pressures that agree with the same measured values.
     read : callable
-        read(run) -> the quantity.
+        `read(run)` returns the quantity.
 
     Returns
     -------
     Refined
-        Not converged if a run did not converge, the finest level is not enough, or a run raised
-        budget.Spent.  In the last case it is the estimate before that run, NaN without one.
+        The value.  It is not converged if a run did not converge, if the finest level is not fine
+        enough, or if a run raised budget.Spent.  In the last case it is the estimate before that
+        run, or NaN if there is none.
     """
     levels = _Levels(run, ladder, readings, read)
     goal, refined = tolerance, None
@@ -146,7 +147,7 @@ def refine(
 
 
 class _Levels:
-    """The runs at each level, each done once."""
+    """The runs at each level.  No run is repeated."""
 
     def __init__(
         self,
@@ -160,7 +161,7 @@ class _Levels:
         self.other_runs: dict[tuple[int, int], Run] = {}
 
     def at(self, level: int) -> Run:
-        """Run at a level; its initial guess is the run at half the level."""
+        """The run at a level, whose initial guess is the run at half the level."""
         if level not in self.runs:
             guess = self.runs.get(level // 2)
             self.runs[level] = self.run(self.ladder.resolution(level), guess)
@@ -175,7 +176,8 @@ class _Levels:
         return [self.other_runs[number, level] for number in range(len(self.readings))]
 
     def estimate(self, level: int, goal: float) -> Refined:
-        """The Refined with a finest level; goal: the largest accepted error by resolution."""
+        """Estimate with `level` as the finest level; `goal` is the largest accepted error by
+        resolution."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
         value, errors, order = self._of(self.read, goal, three, others)

@@ -1,4 +1,4 @@
-"""Richardson extrapolation of three levels, each twice as fine as the last, with its error.
+"""Richardson extrapolation of three levels, each twice as fine as the last, with error estimate.
 
 The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
 levels gives the correction D / 3.  The difference of the first two levels, divided by four, is
@@ -6,8 +6,8 @@ another estimate of D.  The error estimate uses the larger one: two coarse level
 chance, but then the third one differs.  This is the grid convergence index of Roache (J. Fluids
 Eng. 116, 1994) with both pairs of levels.
 
-If the differences fall more slowly than at first order, the levels are too coarse.  Then D replaces
-D / 3, as for a method of first order.
+If the differences decrease more slowly than at first order, the levels are too coarse.  Then D is
+used instead of D / 3, as for a first-order method.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ import numpy as np
 ORDER = 2
 """Order of convergence of rings, angles and time steps."""
 SAFETY = 1.5
-"""Safety factor on the correction.  A factor of 2 would cover first order.  Calibrated by
-`benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
+"""Safety factor on the correction.  A factor of 2 would cover first-order convergence.  Calibrated
+by `benchmarks/error_estimates.py --seed 3 --safety FACTOR`."""
 
 
 WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
@@ -29,19 +29,20 @@ WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
 
 
 class Extrapolation(NamedTuple):
-    """Limit of a sequence of levels; of arrays, element by element.
+    """Limit of a sequence of levels.  Arrays are extrapolated element by element.
 
     Attributes
     ----------
     value : float or np.ndarray
         Limit at infinite n.
     error : float or np.ndarray
-        Its estimated error.
+        Estimated error of the limit.
     difference : float or np.ndarray
-        Difference of the last two levels, or a quarter of the difference before if that is larger.
-        It covers the error of the last level at first order.
+        Difference between the last two levels, or a quarter of the previous difference if that is
+        larger.  It covers the error of the last level for first-order convergence.
     order : float or np.ndarray
-        Observed order of convergence; infinite if the last two levels agree, NaN if all do.
+        Observed order of convergence.  It is infinite if the last two levels agree, and NaN if all
+        three agree.
     """
 
     value: Any

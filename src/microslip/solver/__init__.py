@@ -1,1 +1,1 @@
-"""One run at one resolution: its periodic, steady or static state."""
+"""Solver for one run at one resolution: its periodic, steady or static state."""

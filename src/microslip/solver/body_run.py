@@ -1,4 +1,4 @@
-"""One run of a body on several contacts at a prescribed velocity; contacts do not interact."""
+"""One run of a body at a prescribed velocity on several contacts, which do not interact."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from microslip.solver.simulate import simulate
 LEAD_STEPS = 8
 """Number of steps in the march of a contact to the start of the path of the body."""
 LEAD_TOLERANCE = 1e-6
-"""Tolerance of each of the LEAD_STEPS, a force over mu F_z."""
+"""Tolerance of each of these steps, as a force divided by mu F_z."""
 
 
 def simulate_each(
@@ -28,9 +28,10 @@ def simulate_each(
 ) -> Run:
     """Run a model at one resolution, for one contact or for a body on several contacts.
 
-    The arguments are those of simulate.simulate.  The forces of a body are the means of the forces
-    of its contacts, weighted by their loads.  Its state holds the tractions of all contacts side by
-    side at the start of the path of the body, or None if a contact has no state.
+    The arguments are those of simulate.simulate.  The forces on a body are the mean forces on its
+    contacts, weighted by their loads.  The state of a body consists of the tractions of all
+    contacts side by side at the start of the path of the body.  It is None if a contact has no
+    state.
     """
     if not problem.parts:
         return simulate(problem, model, resolution, tolerance, settings=settings)
@@ -76,7 +77,8 @@ def _tractions_at_start(
 ) -> np.ndarray:
     """Tractions of a contact at the start of the path of the body.
 
-    result: its own run, which gives its periodic state, and the settings.
+    `result` is the contact's own run, which contains its periodic state, and the settings of the
+    run.
     """
     run, settings = result
     alone = part.problem
@@ -86,7 +88,7 @@ def _tractions_at_start(
     interval = np.pi if alone.half_period_mirror else 2.0 * np.pi
     times, remainder = divmod(ahead, interval)
     state = run.state
-    assert state is not None  # as simulate_each looks first
+    assert state is not None  # checked by simulate_each
     if remainder > 0.0:
         phases = first + np.linspace(0.0, remainder, LEAD_STEPS + 1)
         path = make_path(alone.displacement, phases, depth=alone.depth)

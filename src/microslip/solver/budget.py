@@ -1,6 +1,6 @@
-"""Budget of a point: limits of its work and of its wall-clock time.
+"""Budget of a point: limits on its work and its wall-clock time.
 
-Both limits are checked after every march, so that they also end long searches.  The limit of the
+Both limits are checked after every march, so that they also end long searches.  The limit on the
 work gives the same result on every machine.  The time limit does not, so a result that reached it
 is not stored.
 """
@@ -17,7 +17,8 @@ from microslip.solver.effort import Effort
 
 
 class Spent(SolverError):
-    """The budget of a point is exceeded.  The message names the limit and becomes the reason."""
+    """Raised if the budget of a point is exceeded.  The message, which names the limit, becomes the
+    `reason` of the result."""
 
 
 class Budget:
@@ -26,16 +27,16 @@ class Budget:
     Parameters
     ----------
     most_work : float
-        Largest number of step solves times unknowns, over all marches.
+        Largest number of step solves times unknowns, summed over all marches.
     time_limit : float
-        Largest wall-clock time in seconds, from the construction on.
+        Largest wall-clock time in seconds since the budget was created.
 
     Attributes
     ----------
     taken : Effort
-        Effort so far.
+        Effort of all marches so far.
     exhausted : str
-        Name of the exceeded limit, "work" or "time", or empty.
+        Name of the exceeded limit, "work" or "time", otherwise empty.
     """
 
     def __init__(self, most_work: float = math.inf, time_limit: float = math.inf):
@@ -45,13 +46,13 @@ class Budget:
         self._began = time.monotonic()
 
     def renewed(self) -> Budget:
-        """A new Budget with the same limit of work; its time started with this one."""
+        """A new Budget with the same limits and no effort, whose time started with this one."""
         other = Budget(self.most_work, self.time_limit)
         other._began = self._began
         return other
 
     def metered(self, contact: Contact) -> Contact:
-        """The contact with marches that are counted."""
+        """Wrap a contact so that its marches are counted."""
         return _Metered(contact, self)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
@@ -60,7 +61,7 @@ class Budget:
         Parameters
         ----------
         solves, iterations : int
-            Step solves and step-solver iterations of the march.
+            Number of step solves and of step-solver iterations in the march.
         unknowns : int
             Number of unknowns of each step.
         """
@@ -87,7 +88,7 @@ class _Metered:
         return self._counted(self._contact.march(*path, **settings))
 
     def affordable(self, work: float) -> float:
-        """Number of marches, of `work` each, until the budget has to be checked."""
+        """Number of marches with a given `work` before the budget has to be checked."""
         budget = self._budget
         if budget.time_limit < math.inf:
             return 1

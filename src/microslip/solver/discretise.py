@@ -1,4 +1,4 @@
-"""Discretisation of a problem: the contact at a resolution, and the path in time."""
+"""Discretisation of a problem: the mesh of the contact and the path in time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Part, Problem
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Smallest and largest mesh.Focus.strength, and its value for the static limit."""
+"""Smallest and largest mesh.Focus.strength, and the value used for the static limit."""
 NEAREST_TURNS = 1e-6
 """Phase difference in radians below which two turning points count as one."""
 
@@ -54,11 +54,11 @@ class Resolution:
 def focus_strength(drift: float) -> float:
     """Strength of the grading of rings towards the stick radius.
 
-    drift: forward displacement in a radian of phase, in u_lim; 0 for the static limit.
+    `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 
     At the stick radius, slip as small as the drift fills a layer of width drift^(2/3).  Ring widths
-    grow quadratically from there, so the smallest width over the mean width should be the square
-    root of this.  It is rounded to a power of two, so that points share meshes.
+    grow quadratically from there, so the ratio of the smallest to the mean width should be the
+    square root of this width.  The ratio is rounded to a power of two, so that points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS
@@ -69,11 +69,11 @@ def focus_strength(drift: float) -> float:
 def contact_of(
     problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
 ) -> Contact:
-    """The contact of a problem, or all its contacts side by side; see build_contact."""
+    """Build the contact of a problem, or all its contacts side by side; see build_contact."""
     if not problem.contacts:
         return build_contact(problem, model, resolution, focus)
     parts, start = problem.parts, problem.start
-    from microslip.models.side_by_side import SideBySide  # only now: it takes a while to load
+    from microslip.models.side_by_side import SideBySide  # imported here because it loads slowly
 
     contacts: list[Any] = [
         build_contact(part.problem, model, resolution, focus, start + part.lead) for part in parts
@@ -83,7 +83,7 @@ def contact_of(
 
 
 def _focus(problem: Problem) -> Focus | float | None:
-    """Radius at which slip starts, with the grading of the rings towards it."""
+    """Grading of the rings towards the radius at which slip starts."""
     radius = problem.focus
     if radius is None or not problem.motion.periodic:
         return radius
@@ -102,15 +102,16 @@ def build_contact(
     Parameters
     ----------
     problem : Problem
-        If the normal load oscillates, the contact has the load at the start of a period.
+        The problem.  If its normal load oscillates, the contact carries the load at the start of a
+        period.
     model : str
         Name in models.registry.MODELS.
     resolution : Resolution
         Resolution of the model.
     focus : mesh.Focus or None
-        Grading of the rings; None: towards the radius at which slip starts.
+        Grading of the rings.  By default they are graded towards the radius at which slip starts.
     start : float or None
-        Phase at which a period starts; None: the first turning point.
+        Phase at which a period starts.  Defaults to the first turning point.
     """
     place = focus or _focus(problem)
     contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
@@ -121,7 +122,7 @@ def build_contact(
 
 
 class Graded(Protocol):
-    """A contact, or another object with a `grading` of the time steps."""
+    """Protocol of objects with a `grading` of the time steps, such as a contact."""
 
     @property
     def grading(self) -> float | None:
@@ -129,21 +130,22 @@ class Graded(Protocol):
 
 
 def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrator = SDIRK2) -> Path:
-    """Build the path of a problem, which starts at a turning point.
+    """Build the path of a problem, starting at a turning point.
 
-    The path is half a period if the second half is its mirror image, else a whole period.  For
-    several contacts it is a BodyPath, with steps graded towards the turning points of each contact.
+    The path covers half a period if the second half is its mirror image, otherwise a whole period.
+    For several contacts it is a BodyPath, with steps graded towards the turning points of each
+    contact.
 
     Parameters
     ----------
     problem : Problem
         The motion.
     contact : Contact
-        Its `grading`, if not None, replaces the grading of the problem.
+        The contact.  If its `grading` is not None, it replaces the grading of the problem.
     steps : int
         Approximate number of steps in half a period.
     integrator : path.Integrator
-        Integrator, which places the stages.
+        Time integrator; it sets the positions of the stages.
     """
     grading = turning_point_grading(problem.drift, problem.stroke)
     if contact.grading is not None:
@@ -172,7 +174,7 @@ def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) 
 
 
 def _beside(problem: Problem, part: Part) -> Callable:
-    """Displacement of a contact relative to the body, a function of the phase."""
+    """Displacement of a contact relative to the body, as a function of the phase."""
 
     def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         forward, lateral, angle = part.oscillation(phase)
@@ -191,9 +193,9 @@ def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
 
 
 def _body_phases(problem: Problem, steps: int, grading: float, width: float) -> np.ndarray:
-    """Phases of half a period or a whole one, from the first turning point of the first contact.
+    """Phases of a (half) period, from the first turning point of the first contact.
 
-    Every turning point of any contact is one of the phases.
+    The turning points of all contacts are among the phases.
     """
     interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
     turns, start = [part.turns(problem.follows) for part in problem.parts], problem.start

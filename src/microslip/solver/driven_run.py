@@ -5,15 +5,15 @@ the far end of the spring, or an approximate velocity under the force.  The numb
 search does not depend on the number of steps, so a run with many steps starts from the result of a
 run with few steps.
 
-The state is an array of one dimension: the tractions, and for bodies with a memory
-(models/driven_body.py) the position x of the body ahead of the path and its rate x'.  The mirror
-image half a period later leaves x and x' as they are.
+The state is a one-dimensional array.  It contains the tractions and, for bodies with memory
+(models/driven_body.py), the position x of the body relative to the path and its rate x'.  Mirroring
+the state after half a period does not change x and x'.
 
-During one period unbalanced forces hardly move a heavy body, and a soft spring hardly changes its
-force.  So the map multiplies the change of x and x', as if the body were no heavier and the spring
-no softer than the contact.  Its fixed point is the same.  A contact in full slip is much more
-compliant than a sticking contact.  Its stiffness is the rise of its mean force with the
-displacement.
+During one period unbalanced forces hardly move a heavy body, and the force of a soft spring hardly
+changes.  So the map multiplies the changes of x and x', as if the body were no heavier and the
+spring no softer than the contact.  The fixed point of the map stays the same.  A contact in full
+slip is much more compliant than a sticking contact.  Its stiffness is the rise of its mean force
+with the displacement.
 """
 
 from __future__ import annotations
@@ -41,16 +41,17 @@ from microslip.states.search import Inertia
 MARCHES = 2 * MOST_MARCHES
 """Largest number of marches in a search: twice the default, since the body can oscillate."""
 LOOSEST_START = 1e-4
-"""Largest tolerance of the state at a prescribed velocity, a force over mu F_z."""
+"""Largest tolerance of the state at a prescribed velocity, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
-"""Ratio of steps to the steps of the preparing run, and smallest number of steps that is prepared.
-Runs with fewer steps are cheap; a tolerance of 1e-3 needs fewer."""
+"""A run with at least PREPARED_FROM steps starts from a run with COARSENING times fewer steps.
+Runs with fewer steps are cheap and start directly; a tolerance of 1e-3 needs no more."""
 MOST_SCALED = 4.0
-"""Largest factor by which the tractions of the start are scaled to the prescribed force."""
+"""Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
 
 CAUTION = 0.3
-"""Largest effective stiffness of a soft spring over that of the contact: more would overshoot."""
+"""Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
+ratio the search would overshoot."""
 
 
 class Accuracy(NamedTuple):
@@ -59,10 +60,11 @@ class Accuracy(NamedTuple):
     Attributes
     ----------
     tolerance : float
-        Tolerance of the result: a force over mu F_z for a spring, else the mean velocity.
+        Tolerance of the result, which is a force divided by mu F_z for a spring, otherwise the mean
+        velocity.
     slope : float
-        Approximate rise of friction, over mu times the mean normal load, with the velocity.  It
-        converts an unbalanced force to an error of the velocity.
+        Approximate derivative of the friction force, divided by mu times the mean normal load, with
+        respect to the velocity.  It converts an unbalanced force to an error of the velocity.
     """
 
     tolerance: float
@@ -83,8 +85,8 @@ def simulate_driven(
     Parameters
     ----------
     problem : problem.Problem
-        The problem with a drive.  Its velocity is that of the far end of the spring, or under a
-        force an initial guess.
+        The problem with a drive.  Its velocity is that of the far end of the spring.  Under a
+        prescribed force it is an initial guess.
     model : str
         Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -94,13 +96,14 @@ def simulate_driven(
     settings : run.Settings
         Settings of the run; only the integrator of the method is used.
     guess : run.Run or None
-        Run of the same point under the same drive; used if it has the same cells and angles.
+        Run of the same point under the same drive.  It is used if it has the same numbers of cells
+        and angles.
 
     Returns
     -------
     run.Run
-        Under a force the result is `velocity`, and distance and solver_residual are velocities.
-        A failure to converge raises nothing.
+        The run.  Under a prescribed force the result is `velocity`, and `distance` and
+        `solver_residual` are velocities.  No exception is raised if the run does not converge.
 
     Raises
     ------
@@ -120,7 +123,7 @@ class _DrivenSearch:
 
     def __init__(self, problem: Problem, model: str, resolution: Resolution, settings: Settings):
         drive = problem.drive
-        assert drive is not None  # as simulate_driven demands
+        assert drive is not None  # required by simulate_driven
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
         # or a contact that counts its marches
@@ -136,12 +139,12 @@ class _DrivenSearch:
 
     @property
     def force_of_answer(self) -> float:
-        """Force over mu F_z that corresponds to a unit of the answer.
+        """Force, divided by mu F_z, that corresponds to an error of 1 in the answer.
 
-        For a spring the answer is a force.  For a prescribed force it is a velocity: a force over
-        the stiffness is a displacement, which over the interval is a velocity.  The other estimate
-        divides an unbalanced force by the rise of friction with the velocity.  The smaller unit is
-        used.
+        For a spring the answer is a force.  For a prescribed force the answer is a velocity, and
+        there are two estimates.  The first divides the force by the stiffness and by the length of
+        the interval.  The second divides the unbalanced force by the rise of friction with the
+        velocity.  The smaller force is used.
         """
         if self.drive.force is None:
             return self.problem.mean_load
@@ -150,7 +153,7 @@ class _DrivenSearch:
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance: float, guess: Run | None = None) -> Run:
-        """The Run; tolerance: a force over mu F_z; guess: see simulate_driven."""
+        """Run the search to a tolerance of the force divided by mu F_z; see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, searches = Goal(tolerance, step_tolerance, MARCHES), []
@@ -167,7 +170,7 @@ class _DrivenSearch:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
             drift_rate = DriftRate(static_force, full, rate * self.interval)
-            # 1 - mu falls at most in proportion to 1 / velocity^2, its law at large velocities
+            # 1 - mu decreases at most as fast as 1 / velocity^2, the rate at large velocities
             slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
         mirror = self.problem.half_period_mirror
         return DrivenMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
@@ -178,7 +181,7 @@ class _DrivenSearch:
     def _starts(
         self, tolerance: float, guess: Run | None
     ) -> Iterator[tuple[np.ndarray, float, float]]:
-        """Start states, the best first, each with the force of the static limit and a friction."""
+        """Initial states, best first, each with the force of the static limit and a friction."""
         if guess is not None and guess.state is not None and guess.converged:
             yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:
@@ -203,12 +206,12 @@ class _DrivenSearch:
         return run
 
     def _at_prescribed_velocity(self, tolerance: float) -> Run:
-        """The Run at the velocity of the problem, prescribed."""
+        """The Run with the velocity of the problem as a prescribed velocity."""
         share = max(tolerance, LOOSEST_START) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
-        """State from tractions whose mean force in a period is about `mean`."""
+        """State with given tractions, whose mean force over a period is about `mean`."""
         if self.drive.force is not None:
             force = self.drive.force * self.problem.mean_load
             if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
@@ -243,7 +246,7 @@ class _DrivenSearch:
 
 
 class DrivenMap(PeriodMap):
-    """The map of a contact and a body over a path; see period_map.PeriodMap.
+    """The map of the state of a contact and a body over a path; see period_map.PeriodMap.
 
     Parameters
     ----------
@@ -254,11 +257,11 @@ class DrivenMap(PeriodMap):
     body : driven_body.Body
         The body and its drive.
     drift_rate : period_map.DriftRate or None
-        Drift rate of a possibly slow motion at a known velocity.
+        Drift rate, for motions that can be slow and have a known velocity.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     slope : float
-        Largest rise of the mean forward force when the body advances by a unit of x per interval.
+        Largest rise of the mean forward force when the body advances by one unit of x per interval.
     """
 
     contact: SystemContact
@@ -292,17 +295,17 @@ class DrivenMap(PeriodMap):
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
     def state(self, tractions: np.ndarray, place_and_rate: np.ndarray) -> np.ndarray:
-        """The state array of tractions and of (x, x')."""
+        """Join tractions and (x, x') to a state array."""
         flat = tractions.ravel()
         return np.append(flat, place_and_rate) if self.body.remembers else flat
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions of a state, and (x, x'), 0 for a body without memory."""
+        """Split a state into tractions and (x, x'), which are 0 for a body without memory."""
         place_and_rate = state[self._points :] if self.body.remembers else np.zeros(2)
         return state[: self._points].reshape(self._shape), place_and_rate
 
     def inertia(self) -> Inertia:
-        """Stiffness, mass and acceleration factors of the driven body, for compiled code."""
+        """Stiffness, mass and extrapolation factors of the driven body, for compiled code."""
         return Inertia(
             self.body.along(self.path, np.zeros(2)),
             float(self._haste[0]),

@@ -1,4 +1,4 @@
-"""The effort of runs."""
+"""Computational effort of runs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 @dataclass(frozen=True)
 class Effort:
-    """The effort of one or several runs; efforts can be added.
+    """Computational effort of one or several runs; efforts can be added.
 
     Attributes
     ----------
@@ -16,9 +16,9 @@ class Effort:
     iterations : int
         Number of iterations of the step solver.
     work : int
-        Step solves times unknowns.
+        Number of step solves times number of unknowns.
     updates : int
-        Iterations times unknowns.
+        Number of iterations times number of unknowns.
     retried : int
         Number of runs that did not converge at first and had a second attempt.
     """
@@ -31,7 +31,7 @@ class Effort:
 
     @staticmethod
     def of(solves: int, iterations: int, unknowns: int) -> Effort:
-        """The effort of marches; unknowns: number of unknowns in a step."""
+        """Effort of marches; `unknowns` is the number of unknowns in a step."""
         return Effort(solves, iterations, solves * unknowns, iterations * unknowns)
 
     def __add__(self, other: Effort) -> Effort:

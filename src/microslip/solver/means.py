@@ -1,4 +1,4 @@
-"""Means over a period: forces, and the power of the oscillation."""
+"""Mean forces and mean power of the oscillation over a period."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from microslip.motions.problem import Problem
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
-    """Mean forces over a march, shape (3,); forces: at the phases of the path."""
+    """Mean forces over a march, shape (3,).  `forces` are the forces at the phases of the path."""
     if problem.depth is None:
         return path.mean(forces)
     # the trapezoidal rule integrates only the difference from full slip, whose mean is exact
-    growing = cast(GrowingContact, contact)  # since its load oscillates
+    growing = cast(GrowingContact, contact)  # because the load oscillates
     bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
@@ -25,7 +25,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
 def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float:
     """Mean power of the oscillation: work of the forces per radian of phase.
 
-    The oscillation is the motion without its mean forward velocity.  An oscillating normal load
+    The oscillation is the motion minus its mean forward velocity.  An oscillating normal load
     does no work over a period, since it is a function of the indentation.
 
     Parameters
@@ -33,14 +33,16 @@ def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float
     problem : problem.Problem
         The problem.
     path : path.Path
-        A period, or half of one where the second half is the mirror image of the first.
+        Path over a period, or over half a period if the second half is the mirror image of the
+        first.
     forces : np.ndarray, shape (steps + 1, 3)
-        Forward force, lateral force and torque at its phases, over mu F_z and mu F_z a.
+        Forward and lateral force divided by mu F_z, and torque divided by mu F_z a, at the phases
+        of the path.
 
     Returns
     -------
     float
-        Power over mu times the mean normal load and u_lim.
+        Power divided by mu times the mean normal load and by u_lim.
     """
     displacement = np.diff(path.positions, axis=0)
     work = 0.5 * np.vdot(forces[1:] + forces[:-1], displacement)

@@ -1,7 +1,8 @@
 """A numerical method: integrator, step solver and search for the periodic state.
 
-SHIPPED is the method of `microslip.solve`.  The package `methods` contains others for comparison,
-each of which replaces the integrator, the step solver, the search, or the start of the search.
+SHIPPED is the default method of `microslip.solve`.  The package `methods` contains others for
+comparison.  Each of them replaces the integrator, the step solver, the search, or its initial
+state.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from microslip.models.path import SDIRK2, Integrator
 class Method:
     """The parts of a method; the defaults are those of the shipped method.
 
-    In the file of a method `requires`, `resolution`, `turns`, `model` and `parameters` are
+    In the file of a method, `requires`, `resolution`, `turns`, `model` and `parameters` must be
     literals, since method_names.declared reads them without running the file.
 
     Attributes
@@ -27,21 +28,21 @@ class Method:
     integrator : path.Integrator
         Time integrator of a step.
     dress : callable or None
-        dress(contact, **parameters) -> a contact with another step solver.
+        `dress(contact, **parameters)` returns the contact with another step solver.
     parameters : mapping of str to float
         Keyword arguments of `dress`, with their defaults.
     search : callable or None
-        Replaces periodic.find_periodic_state.
+        Function that replaces periodic.find_periodic_state.
     prepared : bool
-        Whether the search starts near the static limit; else it starts from full slip.
+        Whether the search starts near the static limit.  Otherwise it starts from full slip.
     extrapolated : bool
-        Whether the result is extrapolated with a run of half as many steps.
+        Whether the result is extrapolated using a second run with half as many steps.
     run : callable or None
-        Replaces the whole simulation, as in methods/paper.py.
+        Function that replaces the whole simulation, as in methods/paper.py.
     model : str
         The only model that `run` supports.
     resolution : tuple of int or None
-        Fixed resolution of `run`: cells, angles and steps in a period.
+        Fixed resolution of `run`: number of cells, of angles and of steps in a period.
     requires : str
         Package that the method needs in addition to the dependencies of microslip.
     turns : bool

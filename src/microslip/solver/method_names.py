@@ -1,12 +1,12 @@
-"""Names of the methods that can be compared with the shipped one: one file a method.
+"""Names of the methods that can be compared with the shipped one; each method is one file.
 
 The file `some_name.py` in the folder `methods` defines METHOD, a `method.Method`.  Its name is
 `some-name` in `microslip.solve` and in configurations.  Files whose names start with an underscore
-are shared by methods.  Parameters of a method can follow its name, for example
+contain shared code.  The name of a method can be followed by parameters, for example
 "admm:penalty=0.1,relaxation=1.5".  A method can require a package that microslip does not depend
-on; studies leave it out if the package is not installed.
+on; studies omit the method if the package is not installed.
 
-Listing and checking names imports no solver.
+Listing and checking names does not import the solver.
 """
 
 from __future__ import annotations
@@ -32,16 +32,17 @@ METHODS = Path(methods.__file__).parent
 
 @cache
 def names() -> tuple[str, ...]:
-    """Names of all methods, the shipped one first, without files that cannot be parsed."""
+    """Names of all methods, the shipped one first.  Files that cannot be parsed are omitted."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
-    # copies and checkpoints of files are no methods
+    # copies and checkpoints of files are not methods
     every = sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier())
     return (SHIPPED, *(name for name in every if not isinstance(_parsed(name), str)))
 
 
 @cache
 def _parsed(name: str) -> ast.Module | str | None:
-    """The syntax tree of a method's file; a text if it cannot be parsed; None without a file."""
+    """Syntax tree of a method's file, the error message if parsing fails, or None without a
+    file."""
     file = METHODS / f"{name.replace('-', '_')}.py"
     try:
         return ast.parse(file.read_text(encoding="utf-8"), file)
@@ -63,15 +64,15 @@ def split(text: str) -> tuple[str, dict[str, float]]:
 
 
 def check(text: str) -> None:
-    """Raise InputError if a text is not the name of a method.  Imports no solver."""
+    """Raise InputError if a text is not the name of a method.  Does not import the solver."""
     name, numbers = split(text)
     spec.refuse_unknown(text, "method", numbers, tuple(declared(name, "parameters") or ()))
 
 
 def missing(text: str) -> str:
-    """Why a method cannot run: a required package is not installed; "" if it can.
+    """Message that a package required by a method is not installed; empty if the method can run.
 
-    Imports neither the solver nor the package.  Raises InputError as `split` does.
+    Neither the solver nor the package is imported.  Raises InputError as `split` does.
     """
     package = declared(split(text)[0], "requires")
     if package and find_spec(package) is None:
@@ -80,7 +81,7 @@ def missing(text: str) -> str:
 
 
 def method_named(text: str) -> Method:
-    """The method.Method with a name; raises InputError, which lists the allowed names."""
+    """Return the method.Method with a name, or raise an InputError that lists the allowed names."""
     check(text)
     from dataclasses import replace
 
@@ -90,7 +91,7 @@ def method_named(text: str) -> Method:
     file = name.replace("-", "_")
     try:
         method = import_module(f"{methods.__name__}.{file}").METHOD
-    except (Exception, SystemExit) as error:  # the code of a user can raise anything
+    except (Exception, SystemExit) as error:  # code written by users can raise any exception
         path = METHODS / f"{file}.py"
         reason = f"{path} cannot be imported: {described(error, path)}"
         raise InputError("method", text, reason) from error
@@ -99,9 +100,9 @@ def method_named(text: str) -> Method:
 
 @cache
 def declared(name: str, field: str) -> Any:
-    """Value of a field of METHOD in the file of a method, read without running it; None: not set.
+    """Value of a field of METHOD, read from the file of a method without running it.
 
-    name: name without parameters.  The value has to be a literal.
+    Returns None if the field is not set.  `name` has no parameters.  The value must be a literal.
     """
     if name == SHIPPED:
         return None

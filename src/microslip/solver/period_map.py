@@ -1,5 +1,4 @@
-"""The map of tractions over one (half) period, and the goal and result of a search for its fixed
-point."""
+"""Map of tractions over a (half) period, and goal and result of the search for its fixed point."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from microslip.states.search import Inertia
 
 MOST_MARCHES = 200
-"""Default for the largest number of marches in a search."""
+"""Default of the largest number of marches in a search."""
 
 
 class Goal(NamedTuple):
@@ -24,12 +23,12 @@ class Goal(NamedTuple):
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
     most_marches : int
         Largest number of marches.
     near : bool
-        Whether the start is near the periodic state; then the first steps are solved more
-        accurately.
+        Whether the initial state is near the periodic state.  In this case the first steps are
+        solved more accurately.
     """
 
     tolerance: float
@@ -49,21 +48,22 @@ class PeriodicState:
     start : np.ndarray
         State at the beginning of the last (half) period.
     residual : float
-        Change of the state by the plain map, a bound on a force over mu F_z.
+        Upper bound on the change of the state by the plain map, as a force divided by mu F_z.
     distance : float
-        Estimated distance from the fixed point, a force over mu F_z.
+        Estimated distance from the fixed point, as a force divided by mu F_z.
     solver_residual : float
         Residual of the step solver summed over the stages of the last (half) period.
     marches : int
         Number of marches.
     iterations, solves : int
-        Iterations of the step solver and number of stages, over all marches.
+        Number of iterations of the step solver and number of stages, summed over all marches.
     converged : bool
         Whether the distance is within the tolerance.
     body : np.ndarray or None, shape (steps + 1, 2)
         x and x' of a driven body at the phases of the last (half) period; None without a drive.
     fields : np.ndarray or None
-        contact.March.fields of the last (half) period: initial guess of a march from `start`.
+        contact.March.fields of the last (half) period, used as initial guess of a march from
+        `start`.
     """
 
     forces: np.ndarray
@@ -83,21 +83,22 @@ class PeriodicState:
 class DriftRate:
     """Data for the error estimate of slow motions, whose states change little in a period.
 
-    If the plain map still changes the state by a fraction of `gain`, the velocity of the state is
-    wrong by that fraction.  The force depends on the velocity only through its excess over the
-    static limit, so its error is at most the same fraction of the excess.
+    If the plain map still changes the state by a fraction of `gain`, the velocity of the state has
+    a relative error of that size.  Only the difference between the force and the static limit
+    depends on the velocity.  So the error of the force is at most the same fraction of this
+    difference.
 
     Attributes
     ----------
     static_force : float
-        Mean forward force of the static limit, over mu F_z; NaN: unknown.
+        Mean forward force of the static limit, divided by mu F_z; NaN if unknown.
     full : float
-        Mean forward force of full slip, the largest one.
+        Mean forward force in full slip, the largest possible force.
     gain : float
-        Rise of the force of a contact without slip in a (half) period.
+        Rise of the force in a (half) period for a contact without slip.
     least : float
-        Mean forward force below which a state sticks and changes slowly, roughly the static limit;
-        NaN: equal to `static_force`.
+        Mean forward force below which a state sticks and changes slowly, roughly the static limit.
+        NaN means that `static_force` is used.
     """
 
     static_force: float
@@ -114,10 +115,10 @@ class PeriodMap:
     contact : contact.Contact
         The contact.
     path : path.Path
-        Path over half a period, from turning point to turning point, or without `mirror` over a
-        whole period.
+        Path.  With `mirror` it covers half a period, from turning point to turning point, otherwise
+        a whole period.
     drift_rate : DriftRate or None
-        Data for slow motions; None: the motion is not slow.
+        Data for slow motions, or None if the motion is not slow.
     mirror : bool
         Whether the other half of the period is the lateral mirror image of the path.
     """
@@ -128,17 +129,20 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
 
     def image(self, state: np.ndarray) -> np.ndarray:
-        """Tractions at the start of the next interval, linear in those at the end of one."""
+        """Tractions at the start of the next interval, from those at the end of an interval.
+
+        The map is linear.
+        """
         return self.contact.mirrored(state) if self.mirror else state
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions of a state, and (x, x') of a driven body, here 0."""
+        """Split a state into its tractions and (x, x') of a driven body, which are 0 here."""
         return state, np.zeros(2)
 
     def state(self, tractions: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """The state with given tractions; place: (x, x') of a driven body, not used here."""
+        """State with given tractions.  `place` is (x, x') of a driven body and is not used here."""
         return tractions
 
     def inertia(self) -> Inertia | None:
-        """Extrapolation of the motion of a driven body; None: there is none."""
+        """Extrapolation of the motion of a driven body; None without a driven body."""
         return None

@@ -1,8 +1,8 @@
-"""Search for the periodic state: the fixed point of the march over one (half) period.
+"""Search for the periodic state, the fixed point of the march over a period or half a period.
 
 The transients of a plain march last about 1/(2 pi v~) periods.  Anderson acceleration of the map
-finds its fixed point much sooner, in compiled code (states/search.py).  Reduced models without a
-system compute their periodic state directly.
+finds its fixed point much sooner, in compiled code (states/search.py).  Reduced models that have no
+compiled system of equations compute their periodic state directly.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     Returns
     -------
     period_map.PeriodicState
-        Its `converged` is False if the search failed.
+        The result of the search.  `converged` is False if the search failed.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     """
     if not period_map.contact.compiled:
         return _direct_state(period_map, goal)
-    contact = cast("SystemContact", period_map.contact)  # or a contact that counts its marches
+    contact = cast("SystemContact", period_map.contact)  # or a contact wrapped to count its marches
     path, rate = period_map.path, period_map.drift_rate
     slow = rate or DriftRate(0.0, 0.0, np.inf)
     target = search.Goal(

@@ -1,4 +1,4 @@
-"""Settings of a run, and its result."""
+"""Settings and result of a run."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Settings:
     Attributes
     ----------
     method : method.Method
-        Solver of the steps and search for the periodic state.
+        Method, which contains the step solver and the search for the periodic state.
     tighter : bool
         Whether the steps of slow motions are solved to a smaller tolerance.
     budget : budget.Budget or None
-        Budget of the marches; None: unlimited.
+        Budget of the marches.  None means unlimited.
     focus : mesh.Focus or None
-        Grading of the rings; None: towards the radius at which slip starts.
+        Grading of the rings.  By default they are graded towards the radius at which slip starts.
     """
 
     method: Method = SHIPPED
@@ -42,7 +42,8 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """The contact of a problem with the step solver of the method; its marches are counted."""
+        """Build the contact of a problem with the method's step solver.  Its marches are
+        counted."""
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
@@ -52,7 +53,7 @@ AS_SHIPPED = Settings()
 
 @dataclass(frozen=True)
 class Run:
-    """Result of one run: forces over their full-slip values, and the effort.
+    """Result of one run: forces divided by their full-slip values, and the effort.
 
     If the normal load oscillates, forces are divided by mu times its mean.
 
@@ -61,9 +62,9 @@ class Run:
     mu, torque : float
         Mean forward friction and torque.
     distance : float
-        Estimated distance from the periodic (steady) state, a force over mu F_z.
+        Estimated distance from the periodic (or steady) state, as a force divided by mu F_z.
     solver_residual : float
-        Residual of the step solver summed over the last period, a force over mu F_z.
+        Residual of the step solver summed over the last period, as a force divided by mu F_z.
     periods : float
         Number of full periods marched in search of the periodic state; 0 for a steady motion.
     effort : Effort
@@ -71,15 +72,16 @@ class Run:
     converged : bool
         Whether the state is periodic (or steady) and every step was solved.
     reason : str
-        Why it is not converged, else empty.
+        Reason why the run is not converged, otherwise empty.
     state : np.ndarray or None
-        Periodic or steady tractions, the initial guess of other runs; None: unknown.
+        Periodic or steady tractions, which other runs use as initial guess; None if unknown.
     static_force : float
-        Mean forward force of the static limit, also used by other runs; NaN: unknown.
+        Mean forward force of the static limit, also used by other runs; NaN if unknown.
     velocity : float
-        Mean forward velocity under a force, in the unit of the motion; else NaN.
+        Mean forward velocity under a prescribed force, in the unit of the motion; otherwise NaN.
     power : float
-        Mean power of the oscillation, over u_lim, see means.oscillation_power; NaN: not computed.
+        Mean power of the oscillation, divided by u_lim, see means.oscillation_power; NaN if not
+        computed.
     """
 
     mu: float
@@ -97,16 +99,16 @@ class Run:
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
-    """Why the stages are not solved to their tolerance, as one line; "" if they are.
+    """Reason why the stages are not solved to their tolerance; empty if they are.
 
     Parameters
     ----------
     residual : float
-        Residual force of the step solver over mu F_z, summed over the stages.
+        Residual of the step solver summed over the stages, as a force divided by mu F_z.
     solves : int
         Number of stages.
     step_tolerance : float
-        Tolerance of each stage, a force over mu F_z.
+        Tolerance of each stage, as a force divided by mu F_z.
     """
     if residual <= solves * step_tolerance:
         return ""
@@ -114,5 +116,5 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """The Run of a march that failed, without numbers; reason: why."""
+    """The Run of a march that failed.  Its numbers are NaN or infinite."""
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, Effort(), False, reason)

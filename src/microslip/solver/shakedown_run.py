@@ -2,8 +2,8 @@
 
 First the force alone displaces the contact by partial slip.  Then the oscillation begins at its
 mean position, and each period displaces the contact by less than the period before.  The remaining
-displacement falls at least with a power of the number of periods.  So the displacements between
-successive doublings of this number fall at least like a geometric series.
+displacement decays at least as fast as a power of the number of periods.  So the displacements
+between successive doublings of this number decay at least as fast as a geometric series.
 """
 
 from __future__ import annotations
@@ -25,34 +25,37 @@ from microslip.solver.period_map import PeriodMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
-"""Number of (half) periods before the first check of the rest, and the largest number."""
+"""Number of (half) periods before the first check for rest, and largest number of them."""
 LOOKS = 1.5, 4.0 / 3.0
-"""Ratios of successive numbers of (half) periods at a check, alternately: multiples of four."""
+"""Factors by which the number of (half) periods grows from check to check, used alternately.  They
+keep this number a multiple of four."""
 STEP_SHARE = 1e-4
-"""Tolerance of a step, a force over mu F_z, divided by the tolerance of the displacement."""
+"""Ratio of the tolerance of a step (as a force divided by mu F_z) to the tolerance of the
+displacement (in u_lim)."""
 SLOWEST_RATIO = 0.9
-"""Largest ratio of the displacements in two successive doublings of the number of periods for which
-the rest is extrapolated."""
+"""Largest ratio of the displacements in two successive doublings of the number of periods at which
+the remaining displacement is extrapolated."""
 LONG, DRIFTING = 200, 1.8
-"""After this number of (half) periods, a larger ratio means that the contact drifts on; a steady
+"""After LONG (half) periods, a ratio above DRIFTING means that the contact keeps drifting; a steady
 drift has the ratio 2.  On a coarse mesh the threshold can be below the force."""
 MOST_SHARE = 0.9
-"""Fraction of the displacement by the oscillation that defines `most_after`."""
+"""Fraction of the displacement caused by the oscillation that defines `most_after`."""
 
 
 @dataclass(frozen=True)
 class ShakedownRun(Run):
-    """A Run with the displacement of the contact; `distance` bounds the remaining displacement.
+    """A Run with the displacement of the contact.  `distance` bounds the remaining displacement.
 
     Attributes
     ----------
     displacement : float
-        Displacement of the contact at rest from its position without a force, in u_lim.
+        Displacement of the contact from its position without a force to its position at rest, in
+        u_lim.
     pushed : float
         Part of the displacement that the force alone causes.
     most_after : float
-        Number of periods in which the contact covers MOST_SHARE of the displacement by the
-        oscillation.
+        Number of periods in which the contact covers the fraction MOST_SHARE of the displacement
+        caused by the oscillation.
     """
 
     displacement: float = np.nan
@@ -73,9 +76,9 @@ def run_to_rest(
     Parameters
     ----------
     problem : problem.Problem
-        The problem at velocity 0; its motion is even (under_force.is_even).
+        The problem at velocity 0.  Its motion must be even, see under_force.is_even.
     force : float
-        Over mu times the mean normal load, below the static limit.
+        Force divided by mu times the mean normal load.  It is below the static limit.
     model : str
         Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -88,9 +91,9 @@ def run_to_rest(
     Returns
     -------
     ShakedownRun
-        Not converged if the contact does not come to rest or a step failed.
+        The run.  It is not converged if the contact does not come to rest or a step failed.
     """
-    # or a contact that counts its marches
+    # or a contact wrapped to count its marches
     contact = cast(SystemContact, settings.contact(problem, model, resolution))
     body = Body(0.0, 0.0, 0.0, force * problem.mean_load)
     try:
@@ -112,7 +115,7 @@ class _Walk:
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
     def to_rest(self, tolerance: float) -> ShakedownRun:
-        """The ShakedownRun; tolerance: of the remaining displacement."""
+        """March to rest; `tolerance` is that of the remaining displacement."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
         still, pushed = self._march(self._still(), state, step_tolerance)
@@ -144,7 +147,7 @@ class _Walk:
         return float(self.marches * self.interval / (2.0 * np.pi))
 
     def _still(self) -> Path:
-        """The path without oscillation: one step suffices, since slip only grows with the force."""
+        """Path without oscillation.  One step suffices, since slip only grows with the force."""
         of_phase, depth = self.problem.depth, None
         if of_phase is not None:
 
@@ -157,7 +160,7 @@ class _Walk:
         return make_path(displacement, np.array([0.0, 1.0]), EULER, depth)
 
     def _first_part(self) -> tuple[Path, int]:
-        """The path from the mean position to the start of an interval of the map.
+        """Path from the mean position to the start of an interval of the map.
 
         Also returns the number of mirror images between the first interval and that start.
         """
@@ -175,7 +178,7 @@ class _Walk:
         step_tolerance: float,
         previous: March | None = None,
     ) -> tuple[March, float]:
-        """A march along a path, and the displacement of the contact.
+        """March along a path; returns the march and the displacement of the contact.
 
         Raises StepFailure if the tractions diverge.
         """
@@ -188,15 +191,15 @@ class _Walk:
         return march, float(march.body[-1, 0] - march.body[0, 0])
 
     def _drifts(self) -> bool:
-        """Whether the contact moves on at a nearly constant velocity."""
+        """Whether the contact keeps moving at a nearly constant velocity."""
         before, last = self._last_two()
         return len(self.ways) >= LONG and last > DRIFTING * before
 
     def _remaining(self) -> float:
-        """Bound of the remaining displacement, by extrapolation of a geometric series.
+        """Upper bound on the remaining displacement, extrapolated as a geometric series.
 
-        Its terms are the displacements between doublings of the number of intervals.  The bound is
-        infinite if the ratio of the last two terms is above SLOWEST_RATIO.
+        The terms of the series are the displacements between doublings of the number of intervals.
+        The bound is infinite if the ratio of the last two terms is above SLOWEST_RATIO.
         """
         before, last = self._last_two()
         if (

@@ -1,4 +1,4 @@
-"""One run at one resolution, from the contact and the path to the periodic or steady state."""
+"""One run at one resolution: builds the contact and the path, and finds the periodic state."""
 
 from __future__ import annotations
 
@@ -29,20 +29,22 @@ from microslip.solver.static_loop import SLOW_LOOP, loop_limit
 from microslip.solver.steady import steady_state
 
 STEP_SHARE = 1e-2
-"""Largest tolerance of a step over that of the periodic state."""
+"""Largest ratio of the tolerance of a step to that of the periodic state."""
 SLOW_STEP_SHARE = 3e-4
-"""Smallest tolerance of a step over that of the periodic state.  The slower the motion, the longer
-its transients, and the more the errors of the steps add up."""
+"""Smallest ratio of the tolerance of a step to that of the periodic state.  The slower the motion,
+the longer its transients, and the more the errors of the steps accumulate."""
 TIGHTER = 0.1
-"""Smallest tolerance of a step in a second attempt, over that in the first attempt."""
+"""Smallest ratio of the tolerance of a step in a second attempt to that in the first attempt."""
 MARCH_SHARE = 0.16
-"""Largest tolerance of a step, times the steps in half a period, over that of the periodic state.
-With two stages in a step the residuals add up to a third of the tolerance."""
+"""Largest ratio of the tolerance of a step, times the number of steps in half a period, to the
+tolerance of the periodic state.  With two stages per step the residuals add up to a third of the
+tolerance."""
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
-"""Forward traction that is added to the static limit for the start of a search, over the bound: the
-factor of drift^(2/3), and the largest value.  Friction rises with the same power of the drift.  So
-the start has too much forward traction, from which an accelerated search converges faster."""
+"""Forward traction, divided by the friction bound, that is added to the static limit at the start
+of a search: SLOW_EXCESS times drift^(2/3), at most LARGEST_EXCESS.  Friction rises with the same
+power of the drift.  So the start has too much forward traction, from which an accelerated search
+converges faster."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If it needs more,
@@ -62,24 +64,25 @@ def simulate(
     Parameters
     ----------
     problem : problem.Problem
-        Velocity and amplitude are above 0 (amplitude None for steady motions), already checked.
+        The problem, already checked.  Its velocity and amplitude are above 0; for steady motions
+        the amplitude is None.
     model : str
         Name in models.registry.MODELS.
     resolution : discretise.Resolution
         Resolution of the model.
     tolerance : float
-        Tolerance of the periodic state, a force over mu F_z.  The tolerance of a step is at least
-        100 times smaller.
+        Tolerance of the periodic state, as a force divided by mu F_z.  The tolerance of a step is
+        at least 100 times smaller.
     guess : Run or None
-        Initial guess: run of the same point.  It is used if it has the same cells and angles, or
-        if the contact can interpolate its tractions.
+        Run of the same point as initial guess.  It is used if it has the same numbers of cells and
+        angles, or if the contact can interpolate its tractions.
     settings : Settings
         Settings of the run.
 
     Returns
     -------
     Run
-        See `converged` there; a failure to converge raises nothing.
+        The run.  If it did not converge, `converged` is False; no exception is raised.
 
     Raises
     ------
@@ -87,7 +90,7 @@ def simulate(
         If the budget is exceeded.
     """
     method = settings.method
-    absolute = tolerance * problem.mean_load  # inside a run forces are over mu F_z
+    absolute = tolerance * problem.mean_load  # inside a run forces are divided by mu F_z
     try:
         if method.run is not None:
             return method.run(problem, model, resolution, absolute)
@@ -109,7 +112,7 @@ def _run(
     guess: Run | None,
     settings: Settings,
 ) -> Run:
-    """Like `simulate`, but the tolerance is a force over mu F_z, and failures raise StepFailure."""
+    """Run as in `simulate`, but with a tolerance in units of mu F_z; can raise StepFailure."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return steady_state(contact, problem, tolerance, STEP_SHARE * tolerance)
@@ -120,9 +123,10 @@ def _run(
 
 
 def step_share(force_rate: float, steps: int, tighter: bool) -> float:
-    """Tolerance of a step over that of the periodic state.
+    """Ratio of the tolerance of a step to that of the periodic state.
 
-    force_rate: rise of the force over mu F_z in a radian of phase, for a contact without slip.
+    `force_rate` is the rise of the force per radian of phase, divided by mu F_z, for a contact
+    without slip.
     """
     slow_share = force_rate * np.pi * STEP_SHARE
     floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
@@ -130,7 +134,7 @@ def step_share(force_rate: float, steps: int, tighter: bool) -> float:
 
 
 def _extrapolated(fine: Run, coarse: Run) -> Run:
-    """Extrapolate two runs of first order, the coarse one with half as many steps."""
+    """Extrapolate two first-order runs, of which the coarse one has half as many steps."""
     return replace(
         fine,
         mu=2.0 * fine.mu - coarse.mu,
@@ -146,7 +150,7 @@ def _extrapolated(fine: Run, coarse: Run) -> Run:
 
 
 class _Search:
-    """Search for the periodic state of one run, from several starts one after the other."""
+    """Search for the periodic state of one run, trying several initial states in turn."""
 
     def __init__(
         self,
@@ -160,7 +164,8 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
-        # a prepared search computes the limit on a line; the limit of a slow loop only sets `least`
+        # for motions on a line a prepared search computes the limit;
+        # for slow loops the limit only sets `least`
         limit = 0.0 if problem.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.drift * interval
         self.drift_rate = DriftRate(limit, problem.mean_load, gain)
@@ -168,7 +173,7 @@ class _Search:
         self.searches: list[PeriodicState] = []
 
     def run(self, guess: Run | None = None) -> Run:
-        """The Run; guess: see simulate."""
+        """Run the search; `guess`: see simulate."""
         periodic, start = None, self._start_from(guess)
         if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
@@ -187,7 +192,7 @@ class _Search:
         )
 
     def _start_from(self, guess: Run | None) -> np.ndarray | None:
-        """Tractions of a guess on the points of this contact; None: not usable."""
+        """Tractions of a guess at the points of this contact, or None if they are not usable."""
         if guess is None or guess.state is None or not guess.converged:
             return None
         if guess.state.shape == (2, *self.contact.forward_position.shape):
@@ -206,9 +211,9 @@ class _Search:
         return periodic
 
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
-        """The static limit plus forward tractions, or full slip if nothing sticks.
+        """Tractions of the static limit plus forward tractions, or of full slip if no point sticks.
 
-        Stores the force at the limit in `drift_rate`.
+        The force at the static limit is stored in `drift_rate`.
         """
         slow_loop = not self.problem.straight and self.problem.drift < SLOW_LOOP
         if not self.contact.sticks or not (self.problem.straight or slow_loop):
@@ -228,9 +233,10 @@ class _Search:
         return limit.residual + limit.oscillating
 
     def _limit_of_a_loop(self, rise: float) -> np.ndarray:
-        """Tractions of the limit, only as accurate as the rise of friction above it requires.
+        """Tractions of the static limit, computed with reduced accuracy.
 
-        Therefore the force of the limit only sets `least`.
+        The rise of friction above the limit determines the accuracy.  Because of the reduced
+        accuracy, the force of the limit only sets `least`.
         """
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.steps, self.method.integrator)
@@ -260,10 +266,10 @@ def run_of_searches(
     unit: float,
     **others: float,
 ) -> Run:
-    """The Run of the last search, with the effort of all searches.
+    """Build the Run of the last search, with the effort of all searches.
 
-    unit: force over mu F_z by which its distance and residual are divided; others: further fields
-    of the Run.
+    `unit` is a force divided by mu F_z; the distance and the residual are divided by it.  `others`
+    are further fields of the Run.
     """
     periodic = searches[-1]
     forward, _, torque = mean_forces(contact, problem, path, periodic.forces)
@@ -288,5 +294,5 @@ def run_of_searches(
 
 
 def periods_of(marches: int, problem: Problem) -> float:
-    """Number of full periods in a number of marches, each of which can be half a period."""
+    """Number of full periods in a number of marches, each over a period or half a period."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)

@@ -22,7 +22,7 @@ class Frames(NamedTuple):
     forces : np.ndarray, shape (steps + 1, 3)
         Forces at every phase, see contact.March.
     residual : float
-        Residual of the step solver summed over the stages, a force over mu F_z.
+        Residual of the step solver summed over the stages, as a force divided by mu F_z.
     solves : int
         Number of stages.
     """
@@ -51,7 +51,7 @@ def frames(
     state : np.ndarray
         Tractions at the first phase.
     tolerance : float
-        Tolerance of a step, a force over mu F_z.
+        Tolerance of a step, as a force divided by mu F_z.
     previous : contact.March or None
         Initial guess, see contact.Contact.march.
 
@@ -62,7 +62,7 @@ def frames(
     """
     if contact.compiled and path.end == 1.0:
         march = contact.march(path, state, tolerance, previous)
-        assert march.fields is not None  # all compiled contacts have fields
+        assert march.fields is not None  # true for all compiled contacts
         stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
         at_phases = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
         return Frames(at_phases, march.forces, march.residual, march.solves)
@@ -84,7 +84,7 @@ def frames(
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
-    """Friction bounds at every phase, shape (steps + 1, 1, n), or constant ones, (1, ...)."""
+    """Friction bounds at every phase, shape (steps + 1, 1, n), or (1, ...) if they are constant."""
     if path.depth is None:
         return contact.bound[None]
     growing = cast(GrowingContact, contact)  # since the path has a depth

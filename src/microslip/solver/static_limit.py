@@ -1,15 +1,15 @@
-"""The static limit: friction of a forward motion infinitely slower than the oscillation.
+"""The static limit: friction of a forward motion that is infinitely slow.
 
-Let +-q_osc be the tractions at the two turning points of the oscillation alone, without their mean.
-As the forward velocity vanishes, every point slips forward a little in each period, when
-|R + q_osc| reaches the friction bound g; R is the constant part of its traction.  So slow a drift
-does not change q_osc, and by the flow rule R solves the problem
+Let +-q_osc be the tractions at the two turning points of the oscillation alone, minus their mean,
+and R the constant part of the traction at a point.  As the forward velocity vanishes, every point
+slips forward a little in each period, when |R + q_osc| reaches the friction bound g.  Such a slow
+drift does not change q_osc, and by the flow rule R solves the problem
 
-    maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
+    maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point.
 
-a counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points q_osc moves
-along the segment that joins them, so only these two instants matter.  For motions on a loop and for
-oscillating loads see static_loop.py.
+This is the counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points the
+oscillating traction moves along the segment from -q_osc to q_osc, so only these two instants
+matter.  For motions on a loop and for oscillating loads see static_loop.py.
 """
 
 from __future__ import annotations
@@ -26,14 +26,15 @@ from microslip.motions.problem import Problem
 
 STEPS = 4
 """Number of steps from one turning point to the next.  Between them the slip of each point grows in
-a constant direction, so backward Euler gives the same tractions for any number of steps.  A method
-of second order can end a step below the bound, and R depends on the square root of the gap."""
+a constant direction, so backward Euler gives the same tractions for any number of steps.  A
+second-order method can end a step below the bound, and R depends on the square root of the distance
+from the bound."""
 
 
 def at_turning_points(problem: Problem) -> bool:
-    """Whether the static limit follows from the turning points.
+    """Whether the tractions at the turning points determine the static limit.
 
-    It does for a motion on a line under a constant load.
+    They do for a motion on a line under a constant load.
     """
     return problem.straight and not problem.motion.loads
 
@@ -44,9 +45,9 @@ class StaticState(NamedTuple):
     Attributes
     ----------
     residual, oscillating : np.ndarray
-        Constant tractions R, and tractions q_osc; shape of the contact's states.
+        Constant tractions R, and tractions q_osc, in the shape of the contact's states.
     solver_residual : float
-        Residual of the step solver summed over the steps, a force over mu F_z.
+        Residual of the step solver summed over the steps, as a force divided by mu F_z.
     solves : int
         Number of steps.
     """
@@ -58,13 +59,13 @@ class StaticState(NamedTuple):
 
 
 def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:
-    """Tractions at the first turning point under the oscillation alone, without their mean.
+    """Tractions at the first turning point under the oscillation alone, minus their mean.
 
-    oscillation(phase) -> rigid displacement without forward motion; the first turning point is at
-    the phase -pi/2.  The result has the shape of the states of the contact.
+    `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
+    point is at the phase -pi/2.  The result has the shape of the states of the contact.
     """
-    # by Masing's rule the first quarter from a stress-free start ends on the closed loop; the
-    # tractions at the other turning point have the opposite sign
+    # by Masing's rule the first quarter period from a stress-free start ends on the closed loop;
+    # the tractions at the other turning point have the opposite sign
     return -_quarter_march(contact, oscillation, step_tolerance).state
 
 
@@ -81,10 +82,10 @@ def _quarter(oscillation: Callable) -> Path:
 
 
 def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """The constant tractions R at every point; arrays of shape (2, ...), forward component first.
+    """Constant tractions R at every point; arrays of shape (2, ...), forward component first.
 
     The two discs |R +- q| <= g intersect in a lens.  R is the forward tip of one disc if the other
-    disc contains it, else the forward corner of the lens.
+    disc contains it, otherwise the forward corner of the lens.
     """
     q_forward, q_lateral = oscillating
     size = np.hypot(q_forward, q_lateral)
@@ -93,7 +94,7 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
         slope = np.where(size > 0.0, np.abs(q_lateral) / size, 1.0)
         turn = np.where(size > 0.0, -np.sign(q_lateral) * q_forward / size, 0.0)
     corner = height * np.stack([slope, turn])
-    # only the disc with the centre further back can have its tip inside the other disc
+    # only the disc whose centre is further back can have its tip inside the other disc
     ahead = np.abs(q_forward)
     tip = np.stack([bound - ahead, -np.sign(q_forward) * q_lateral])
     other = np.hypot(bound - 2.0 * ahead, 2.0 * q_lateral)
@@ -102,7 +103,7 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
 
 
 def static_state(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticState:
-    """The StaticState of a contact; for the arguments see `oscillating_part`."""
+    """Compute the StaticState of a contact; for the arguments see `oscillating_part`."""
     march = _quarter_march(contact, oscillation, step_tolerance)
     residual = residual_part(-march.state, contact.bound)
     return StaticState(residual, -march.state, march.residual, march.solves)

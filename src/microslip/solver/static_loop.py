@@ -1,17 +1,17 @@
-"""The static limit of motions on a loop and of oscillating normal loads.
+"""The static limit for motions on a loop and for oscillating normal loads.
 
-As static_limit.py explains, the limit is a separate problem at every point.  On a line two instants
-matter; here the whole period does.  Let q(t) be the periodic tractions of the oscillation alone and
-g(t) the friction bound.  A constant traction s can be added if |q + s| <= g at all times.  At a
-point that drifts forward, s has the largest forward component:
+The limit is a separate problem at every point, see static_limit.py.  For a motion on a line only
+two instants of the period matter; here all of them do.  Let q(t) be the periodic tractions of the
+oscillation alone and g(t) the friction bound.  A constant traction s can be added if |q + s| <= g
+at all times.  At a point that drifts forward, s has the largest forward component:
 
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
 At points that slip in every period of the oscillation alone, s is 0, since q reaches the bound in
-directions that balance.  There the mean of q remains: a loop that differs from its image half a
-period later drags the contact along.  At points that never slip, q has an arbitrary constant part,
-and the maximum does not depend on it.
+directions that balance.  At these points the mean of q remains: a loop without half-period symmetry
+drags the contact along.  At points that never slip, q has an arbitrary constant part, and the
+maximum does not depend on it.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02
-"""Drift in a radian of phase, in u_lim, below which a loop has its rings graded by the static
-limit."""
+"""Drift per radian of phase, in u_lim, below which the rings of a loop are graded towards the stick
+zone of the static limit."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Largest number of marches in a search for the periodic state, and largest number of searches.  An
-accelerated search that stalls on rounding starts again."""
+accelerated search that stalls because of rounding errors is restarted."""
 HALVINGS = 50
-"""Bisections of the interval with the largest shift: enough to reach rounding."""
+"""Number of bisections for the largest shift, enough to reach the rounding error."""
 
 
 class LoopLimit(NamedTuple):
-    """The static limit of a contact, see the head of this module.
+    """The static limit of a contact, see the docstring of this module.
 
     Attributes
     ----------
@@ -49,12 +49,12 @@ class LoopLimit(NamedTuple):
     shift : np.ndarray, shape (2, ...)
         Shift s at every point.
     force : float
-        Mean forward force, over mu F_z.
+        Mean forward force, divided by mu F_z.
     solver_residual : float
-        Residual of the steps, summed over the last march of the search and the march that computes
-        the tractions, a force over mu F_z.
+        Residual of the steps as a force divided by mu F_z.  It is summed over the last march of the
+        search and the march that computes the tractions.
     solves : int
-        Number of stages in these two marches.
+        Number of stages in the two marches over which `solver_residual` is summed.
     """
 
     periodic: PeriodicState
@@ -78,7 +78,7 @@ def loop_limit(
     path : path.Path
         Path over a period, or half a period.
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def loop_limit(
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """The shift s with the largest forward component for which |q + s| <= g at all phases.
+    """Compute the shift s with the largest forward component that keeps |q + s| <= g at all phases.
 
     The discs |q + s| <= g are convex, and so is their intersection.  Since it contains s = 0, it
     contains every forward shift below the largest one.
@@ -125,7 +125,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     tractions : np.ndarray, shape (phases, 2, ...)
         Tractions q, forward component first.
     bounds : np.ndarray, shape (phases, ...) or broadcast to it
-        Friction bounds g, exceeded by q only by rounding.
+        Friction bounds g; q exceeds them by rounding errors at most.
 
     Returns
     -------
@@ -138,7 +138,8 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift fits the discs of all phases, and the lateral bounds."""
+        """Whether a forward shift lies in the discs of all phases, and bounds of the lateral
+        shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

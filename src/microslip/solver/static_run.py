@@ -20,22 +20,22 @@ from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""Error of the limit over the distance from the periodic state of the oscillation alone.  Tests
-found at most 3.  Slipping points are on the bound after every step, and have no shift."""
+"""Ratio of the error of the limit to the distance from the periodic state of the oscillation alone.
+Tests found at most 3.  Slipping points are on the bound after every step, so their shift is 0."""
 LOOP_STEP_SHARE = 1e-4
-"""Tolerance of a step over that of the periodic state.  The shift of a point depends on the square
-root of its distance from the bound."""
+"""Ratio of the tolerance of a step to that of the periodic state.  The shift of a point depends on
+the square root of the distance of its traction from the bound."""
 ENOUGH = 4.0
-"""Largest accepted distance over the requested one, since rounding limits the search."""
+"""Largest accepted ratio of the distance to the requested one; rounding limits the search."""
 MOST_PASSES = 4
 """Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
-"""Largest number of edges of the stick zone; more edges count as scatter."""
+"""Largest number of edges of the stick zone.  More edges are treated as scatter."""
 SLIVER = 1e-3
-"""Largest distance of two edges that counts as scatter, over the contact radius.  With little slip,
-the rings next to an edge have almost no shift on either side."""
+"""Largest distance between two edges that is treated as scatter, divided by the contact radius.  If
+there is little slip, the shift of the rings on either side of an edge is almost 0."""
 NOTHING_LEFT = 1e-2
-"""Largest shift of a ring outside the stick radius, over the largest bound."""
+"""Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 
 
 def simulate_static(
@@ -45,7 +45,7 @@ def simulate_static(
     tolerance: float,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """Run the static limit at one resolution; arguments and result are those of simulate.simulate.
+    """Compute the static limit at one resolution; for arguments and result see simulate.simulate.
 
     The velocity of the problem is 0.  For a rigid contact and an oscillation on a line the limit
     is 0.
@@ -70,7 +70,7 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
         torque=0.0,
         distance=0.0,
         solver_residual=residual / problem.mean_load,
-        periods=0.0,  # the limit takes a quarter of a period without a search
+        periods=0.0,  # the limit needs a march of a quarter period and no search
         effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
         reason=reason,
@@ -96,11 +96,12 @@ def edges_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Find the edges of the stick zone of a motion on a loop; no formula gives them.
+    """Find the edges of the stick zone of a motion on a loop, for which there is no formula.
 
-    The arguments are those of `simulate_static`, and progress: called with the Resolution of every
-    run before it starts.  Returns the Runs, of which the last one is the answer, and the radii of
-    the edges; there are none if the whole contact sticks or slips, or if it has no rings.
+    The arguments are those of `simulate_static`, and `progress`, which is called with the
+    Resolution of every run before it starts.  Returns the Runs, the last of which is the result,
+    and the radii of the edges.  There are no radii if the whole contact sticks or slips, or if the
+    contact has no rings.
     """
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
@@ -124,7 +125,7 @@ def edges_on_a_line(
 ) -> tuple[float, ...]:
     """Radii of the edges of the stick zone of a motion on a line, from its turning points.
 
-    The arguments are those of `edges_on_a_loop`, and near: approximate radii, if they are known.
+    The arguments are those of `edges_on_a_loop`, and `near`: approximate radii, empty if unknown.
     """
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
@@ -149,8 +150,9 @@ def _edges(
 ) -> tuple[float, ...]:
     """Radii of the edges of the stick zone on rings that are graded towards them.
 
-    Repeats the run on new rings until the radii stay the same, or MOST_PASSES times.
-    points_that_stick(contact) -> which points stick, None: unknown; radii: first grading.
+    Repeats the run on new rings until the radii stay the same, or at most MOST_PASSES times.
+    `points_that_stick(contact)` returns a mask of the sticking points, or None if it is unknown.
+    `radii` are the edges for the first grading.
     """
     for _ in range(MOST_PASSES):
         if progress is not None:
@@ -166,7 +168,8 @@ def _edges(
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
     """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
 
-    Returns the outermost radius alone if there are more than MOST_EDGES, none if `sticks` is None.
+    Returns only the outermost radius if there are more than MOST_EDGES, and no radius if `sticks`
+    is None.
     """
     edges = contact.edges
     if sticks is None or edges is None:
@@ -189,7 +192,7 @@ def _without_slivers(radii: list[float]) -> list[float]:
 def _on_these_points(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """The Run on one contact, and a mask of the points that stick (None if the contact cannot)."""
+    """The Run on one contact, and a mask of sticking points (None if the contact cannot stick)."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance

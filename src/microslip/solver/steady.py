@@ -11,11 +11,11 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 STEADY_STRETCH = 8
-"""Number of steps between two checks of the steady state."""
+"""Number of steps in a stretch, after which the state is checked."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
-"""Largest number of such stretches of steps."""
+"""Largest number of stretches."""
 
 
 def steady_state(
@@ -26,17 +26,17 @@ def steady_state(
     Parameters
     ----------
     contact : contact.Contact
-        In full forward slip at the start.
+        The contact, in full forward slip at the start.
     problem : problem.Problem
         The steady motion; its velocity sets the length of a step.
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
 
     Returns
     -------
     Run
-        Forces and tractions at the end, with the residual of the last stretch.  It is not converged
-        if the tractions still change after MAX_STRETCHES stretches.
+        Forces and tractions at the end of the march, and the residual of the last stretch.  The run
+        is not converged if the tractions still change after MAX_STRETCHES stretches.
     """
     step = STEADY_TRAVEL / max(1.0, problem.velocity)
     state, iterations, solves = forward_slip(contact), 0, 0

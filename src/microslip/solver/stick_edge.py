@@ -1,7 +1,7 @@
-"""Radius of the slip front of slow motions, by a coarse run of the static limit.
+"""Radius of the slip front of slow motions, computed by a coarse run of the static limit.
 
-The run serves pressures without a closed form.  For rotating indenters the radius is also the root
-of an integral (indenters.torsion_stick_radius); a test compares the two."""
+The run is needed for pressures without a closed form.  For rotating indenters the radius is also
+the root of an integral (indenters.torsion_stick_radius); a test compares the two results."""
 
 from __future__ import annotations
 
@@ -21,18 +21,19 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 
 SLOW_LINE = 0.01
-"""Drift in a radian of phase, in u_lim, below which a motion on a line has its rings graded by the
-static limit; for loops see static_loop.SLOW_LOOP."""
+"""Drift per radian of phase, in u_lim, below which the rings of a motion on a line are graded
+towards the stick zone of the static limit; for loops see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
-"""Resolutions and tolerance of the search on a loop.  Under an oscillating load the edge of the
-contact sweeps over the rings, which needs more steps."""
+"""Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load the
+edge of the contact moves across the rings, so more steps are needed."""
 LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
-"""Resolutions of the search on a line, which needs no march, so that many rings are cheap.  With
-edges accurate to 5e-4 of the radius, the limit of a translation is accurate to 1e-4."""
+"""Resolutions of the search for motions on a line.  It needs no march, so that many rings are
+cheap.  If the edges are accurate to 5e-4 of the radius, the static limit of a translation is
+accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
-"""Tolerance at the fine resolution.  At a larger one some sticking rings seem to slip, and the
-search does not converge."""
+"""Tolerance at FINE_RESOLUTION.  With a larger tolerance some sticking rings appear to slip, and
+the search does not converge."""
 
 
 def edge_focus(
@@ -43,9 +44,9 @@ def edge_focus(
 ) -> Focus | None:
     """Grading of the rings of a slow motion towards the stick zone of the static limit.
 
-    The stick zone of a circular motion is smaller than that of a motion of the same amplitude along
-    a line, since the slip never stops.  A contact with a hole sticks on a ring with two edges.
-    Under an oscillating load the edges are computed for the static limit only.
+    The stick zone of a circular motion is smaller than that of a linear motion of the same
+    amplitude, since the slip never stops.  The stick zone of a contact with a hole is a ring with
+    two edges.  Under an oscillating load the edges are computed for the static limit only.
 
     Parameters
     ----------
@@ -54,15 +55,15 @@ def edge_focus(
     model : str
         Name in models.registry.MODELS.
     budget : budget.Budget or None
-        Budget of the runs of the search; None: unlimited.
+        Budget of the runs of the search.  None means unlimited.
     progress : callable or None
         Called with the Resolution of every run of the search before it starts.
 
     Returns
     -------
     mesh.Focus or None
-        None if Motion.focus gives the radius, the motion is fast, the model has no rings, the stick
-        zone is not round, or the whole contact slips.
+        The grading.  It is None if Motion.focus gives the radius, the motion is fast, the model has
+        no rings, the stick zone is not round, or the whole contact slips.
 
     Raises
     ------
@@ -79,7 +80,7 @@ def edge_focus(
         needed = drift == 0.0 or slow
     if not needed:
         return None
-    # at nu = 0, since Poisson's ratio moves the edges little
+    # at nu = 0, since Poisson's ratio hardly changes the edges
     limit = replace(problem, velocity=0.0, poisson=0.0, drive=None, contacts=())
     radii = _search_of(limit).within(budget or Budget(), progress)
     return Focus(radii, focus_strength(drift)) if radii else None
@@ -88,9 +89,9 @@ def edge_focus(
 class _EdgeSearch:
     """A search for the edges of the stick zone of a static limit, done once.
 
-    `radii` are these edges over the contact radius, None before the search.  The effort of the
-    search is charged to every point that uses its result, so that the work allowed for a point does
-    not depend on the points before it.
+    `radii` are the radii of these edges divided by the contact radius, or None before the search.
+    The effort of the search is charged to every point that uses its result.  So the work left for a
+    point does not depend on the points before it.
     """
 
     def __init__(self, limit: Problem):
@@ -99,7 +100,7 @@ class _EdgeSearch:
         self.marches: list[tuple[int, int, int]] = []
 
     def within(self, budget: Budget, progress: Callable | None) -> tuple[float, ...]:
-        """The radii; raises Spent if the budget is exceeded."""
+        """Return the radii; raises Spent if the budget is exceeded."""
         if self.radii is None:
             metered = _Recorder(budget)
             try:
@@ -120,7 +121,7 @@ class _EdgeSearch:
             resolution = replace(resolution, steps=resolution.steps * motion.cycles)
             return edges_on_a_loop(limit, model, resolution, TOLERANCE, settings, progress)[1]
         if limit.focus is not None and not motion.rotates:
-            return ()  # the motion has a closed form of the edge under this pressure
+            return ()  # the edge has a closed form for this motion and pressure
         search = partial(edges_on_a_line, limit, model, settings=settings, progress=progress)
         radii = search(LINE_RESOLUTION, TOLERANCE)
         if radii and not motion.rotates:
@@ -129,7 +130,7 @@ class _EdgeSearch:
 
 
 class _Recorder(Budget):
-    """A budget that records what each march takes from another budget."""
+    """A budget that records the effort that each march takes from another budget."""
 
     def __init__(self, budget: Budget):
         super().__init__()

@@ -1,1 +1,1 @@
-"""States that a contact settles into: periodic, steady, static."""
+"""Searches for the periodic state of a contact."""

@@ -1,4 +1,4 @@
-"""Anderson acceleration of a fixed-point map, compiled (Walker and Ni 2011)."""
+"""Compiled Anderson acceleration of a fixed-point map (Walker and Ni 2011)."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 DEPTH = 12
-"""Number of differences in memory; of 5, 8 and 12 it needs the fewest marches for bores and
+"""Number of differences in memory.  Among 5, 8 and 12, it needs the fewest marches for bores and
 loops."""
 DEPENDENT = 1e-8
-"""A difference is dropped if its part orthogonal to newer ones is below this share of it; about the
-square root of the rounding error."""
+"""A difference is dropped if the norm of its part orthogonal to newer differences is below this
+fraction of its norm.  The value is about the square root of the rounding error."""
 
 
 @kernel
 def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
-    """Add an image and a change to pairs (2, DEPTH + 1, n), and drop the oldest pair if it is full.
+    """Add an image and a change to `pairs`, shape (2, DEPTH + 1, n).
 
-    Returns the number of pairs.
+    If `pairs` is full, the oldest pair is dropped.  Returns the number of pairs.
     """
     most, n = pairs.shape[1], pairs.shape[2]
     if count == most:
@@ -34,10 +34,11 @@ def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarra
 
 @kernel
 def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarray) -> None:
-    """Fill out (n,) with the combination of images that has the smallest change.
+    """Fill `out`, shape (n,), with the combination of images that has the smallest change.
 
-    The least-squares problem is solved by modified Gram-Schmidt, from the newest difference on.
-    pairs: images and changes, the newest last; scale: square root of the metric of changes, (n,).
+    The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
+    difference.  `pairs` holds images and changes, the newest last.  `scale`, shape (n,), is the
+    square root of the metric of changes.
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(out)

@@ -1,14 +1,14 @@
-"""Compiled search for the periodic state, the fixed point of a march over a period or half of it.
+"""Compiled search for the periodic state, the fixed point of a march over a (half) period.
 
 Anderson's method accelerates the iteration.  Convergence is judged by three quantities: the
 residual of the plain map, the distance to the next state, and an error computed from the residual
-and the drift rate of the motion (`Goal`).  The last one is needed near the static limit, where a
-state changes so slowly that a small residual is no evidence of convergence.
+and the drift rate of the motion (`Goal`).  The last quantity is needed near the static limit, where
+the state changes so slowly that a small residual is no evidence of convergence.
 
-The state of a driven body has two more numbers, x and x' (contacts/drive.py).  Unbalanced forces
-change the state of a heavy body, or of a body on a soft spring, by little in one period.  Therefore
-the map extrapolates the changes of x and x' by the factors of `Inertia`, which does not change its
-fixed point.
+The state of a driven body includes two more numbers, its position x and rate x'
+(contacts/drive.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
+a body on a soft spring.  Therefore the map extrapolates the changes of x and x' by the factors of
+`Inertia`, which does not change its fixed point.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from microslip.foundation.compiled import kernel
 from microslip.states.anderson import DEPTH, accelerated, remember
 
 FORCING = 1e-3
-"""Tolerance of the steps of a march over the last change of the state."""
+"""Ratio of the tolerance of the steps of a march to the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""Largest tolerance of a step, for a start far from the periodic state and for one near it."""
+"""Largest tolerance of a step, for an initial state far from and near the periodic state."""
 NOISE = 1e-2
-"""Largest residual of a march over the force gained by the drift in this march.  An error of the
-state decays at the rate of the drift only."""
+"""Largest ratio of the residual of a march to the force gained by the drift in this march.  An
+error of the state decays only as fast as the state drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
-"""DRIFTING: a state below the static limit is stuck if its residual exceeds this share of the force
-gained by the drift.  Such a state drifts without slip, so that its change is no measure of the
-distance to the periodic state.  MOST_RETURNS: how often in a row the search then goes halfway back
-to the last state that was not stuck."""
+"""DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
+force gained by the drift.  Such a state drifts without slip, so its change does not measure the
+distance to the periodic state.  The search then goes halfway back to the last state that was not
+stuck, at most MOST_RETURNS times in a row."""
 FORGETFUL = 0.2
-"""Contraction of the plain map below which it is not accelerated."""
+"""Contraction factor of the plain map below which it is not accelerated."""
 
 
 class Goal(NamedTuple):
@@ -45,20 +45,20 @@ class Goal(NamedTuple):
     Attributes
     ----------
     tolerance, step_tolerance : float
-        Tolerances of the state and of a step, forces over mu F_z.
+        Tolerances of the state and of a step, as forces divided by mu F_z.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     near : bool
         Whether the initial state is near the periodic state.
     share : np.ndarray, shape (steps,)
-        Duration of each step over that of the path.
+        Duration of each step divided by that of the path.
     static_force : float
         Mean forward force of the static limit; NaN if unknown.
     least : float
-        Mean forward force below which a state is stuck and changes slowly, about that of the static
-        limit; NaN if unknown.
+        Mean forward force below which a state is stuck and changes slowly.  It is about the force
+        of the static limit; NaN if unknown.
     full : float
-        Largest possible mean forward force, which is that of full slip.
+        Largest possible mean forward force, that of full slip.
     gain : float
         Force that a contact without slip gains along the path; infinite unless the drift is slow.
     """
@@ -75,18 +75,19 @@ class Goal(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """Extrapolation and norm of the change of a driven body in a period.
+    """Data to extrapolate the change of a driven body in a period, and to compute its norm.
 
     Attributes
     ----------
     drive : drive.Drive
-        Equation of the body; its `start` is not used.
+        Equation of motion of the body; the field `start` is not used.
     place, rate : float
         Factors that extrapolate the changes of x and x'.
     held, mass : float
-        Weights of the squared changes of x and x' in the norm of a state, a stiffness and a mass.
+        Weights of the squared changes of x and x' in the norm of a state.  They are a stiffness and
+        a mass.
     spread : np.ndarray, shape (points,)
-        Forward tractions with a unit force.
+        Forward tractions that exert a unit force.
     """
 
     drive: Drive
@@ -98,7 +99,7 @@ class Inertia(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """Data of a search between calls; each call changes them.
+    """Data of a search that are kept between calls; each call changes them.
 
     Attributes
     ----------
@@ -107,14 +108,14 @@ class Memory(NamedTuple):
     place : np.ndarray, shape (2,)
         x and x' at the start of the next march.
     guess : np.ndarray
-        march.Trace.fields of the last march.
+        Field march.Trace.fields of the last march.
     pairs : np.ndarray, shape (2, DEPTH + 1, state.size + 2)
-        See anderson.remember.
+        Images and changes, see anderson.remember.
     above : np.ndarray, field
         Last state that was not stuck; initially the first state.
     counts : np.ndarray of int, shape (5,)
-        Numbers of marches, iterations and pairs; 1 while the plain map contracts fast, otherwise
-        0; and how often in a row the search went back.
+        Number of marches, of iterations and of pairs; 1 while the plain map contracts fast,
+        otherwise 0; and number of successive times that the search went back.
     numbers : np.ndarray, shape (2,)
         Tolerance of the steps of the next march, and residual of the last march.
     best : tuple of np.ndarray
@@ -162,7 +163,7 @@ def state_norm(
     moved: np.ndarray,
     scratch: np.ndarray,
 ) -> float:
-    """Upper bound on the force of a change of tractions, and of x and x' (`moved`)."""
+    """Upper bound on the force due to a change of tractions and a change of x and x' (`moved`)."""
     norm = force_norm(system, change, scratch)
     if inertia is None:
         return norm
@@ -178,7 +179,7 @@ def state_norm(
 
 @kernel
 def largest_excess(force: float, static_force: float, full: float) -> float:
-    """Largest possible distance of a mean force to the static limit; static_force can be NaN."""
+    """Largest possible difference between a mean force and the static limit, which can be NaN."""
     if np.isnan(static_force):  # the limit can be any force from 0 to full slip
         return max(abs(force), abs(full - force))
     return abs(force - static_force)
@@ -245,7 +246,7 @@ def search(
             if not (d.mass > 0.0 or d.damping > 0.0):
                 moved[0], moved[1] = 0.0, 0.0
                 if inertia.place > 1.0:
-                    # from the motion of the body, which is more accurate than the force of steps
+                    # from the motion of the body, more accurate than from the forces of the steps
                     force = trace.forces[0, 0] - inertia.place * d.stiffness * advance
                     force -= trace.forces[last, 0]
                     for i in range(image.shape[1]):
@@ -299,7 +300,7 @@ def search(
             distance = max(distance, excess * gained / goal.gain)
         near_enough = distance <= goal.tolerance
         converged = solved and near_enough
-        if near_enough:  # solve the steps of the next march to the end
+        if near_enough:  # solve the steps of the next march to the final tolerance
             numbers[0] = goal.step_tolerance
         if converged or distance < best[3][0]:
             copy(best[0], state)

@@ -1,1 +1,1 @@
-"""Methods to compare with the one that ships: one file a method, see method_names."""
+"""Methods for comparison with the shipped one.  Each method is one file, see method_names."""

@@ -4,8 +4,8 @@ The step solver is a compiled function
 
     solve(points: Points, stage: Stage, settings) -> (iterations, residual)
 
-settings: the return value of `prepare(matrix, scale, **parameters)`.  The residual is that of
-coulomb.coulomb_residual.
+where `settings` is the return value of `prepare(matrix, scale, **parameters)`.  The residual is
+defined by coulomb.coulomb_residual.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from microslip.models.contact import Contact, Guess, March, StepFailure, forces
 from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
-"""Residual of a step, over mu F_z, above which the solver counts as diverged."""
+"""Residual of a step, divided by mu F_z, above which the solver is considered diverged."""
 MAX_DESCENTS = 3000
 """Largest number of gradient steps in `descend`."""
 
 
 class Points(NamedTuple):
-    """Data of the K points of a contact, for compiled code.
+    """Data on the K points of a contact, for compiled code.
 
     Attributes
     ----------
@@ -46,18 +46,18 @@ class Points(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """Data of one stage, for compiled code.
+    """Data on one stage, for compiled code.
 
     Attributes
     ----------
     b : np.ndarray, shape (2, K)
         Imposed displacement.
     q : np.ndarray, shape (2, K)
-        Tractions: the initial guess, replaced by the solution.
+        Tractions.  The initial guess is overwritten with the solution.
     slip : np.ndarray, shape (2, K)
-        Receives b - A q.
+        Slip b - A q, written by the solver.
     tolerance : float
-        Largest accepted residual, a force over mu F_z.
+        Largest accepted residual, as a force divided by mu F_z.
     """
 
     b: np.ndarray
@@ -67,7 +67,7 @@ class Stage(NamedTuple):
 
 
 def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
-    """The settings of a step solver without settings."""
+    """Stand-in for `prepare` if the step solver has no settings."""
     return 0.0
 
 
@@ -150,17 +150,17 @@ class DenseContact:
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
-    """`Method.dress` with a step solver: dress(contact, **parameters) -> DenseContact."""
+    """Make a `Method.dress` from a step solver: dress(contact, **parameters) -> DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 
 def safe_length(matrix: np.ndarray) -> float:
-    """Length of a gradient step that always lowers the energy: 1 / largest eigenvalue."""
+    """Inverse of the largest eigenvalue, a gradient step length that always lowers the energy."""
     return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
 
 
 def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
-    """The influence matrix of a contact; shape: of its states."""
+    """Influence matrix of a contact; `shape` is the shape of its states."""
     size = int(np.prod(shape))
     columns = np.empty((size, size))
     unit = np.zeros(size)
@@ -185,7 +185,7 @@ def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> flo
 
 @kernel
 def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
-    """Project the tractions q, shape (2, K), on the friction bound."""
+    """Project the tractions q, shape (2, K), onto the disc of radius `bound` at every point."""
     for i in range(q.shape[1]):
         f = shrink(q[0, i], q[1, i], bound[i])
         q[0, i] *= f
@@ -194,7 +194,7 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel
 def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps; length, shape (K,): fixed step of each point."""
+    """Solve a step by projected gradient steps of fixed `length`, shape (K,), for each point."""
     b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

@@ -1,6 +1,7 @@
-"""Simple searches for the periodic state, for comparison, and the marches in Python that they use.
+"""Simple searches for the periodic state, for comparison, and the Python marches that they use.
 
-Every search takes a period_map.PeriodMap, a start and a Goal, and returns a PeriodicState.
+The arguments of every search are a period_map.PeriodMap, an initial state and a Goal.  Every search
+returns a PeriodicState.
 """
 
 from __future__ import annotations
@@ -16,34 +17,35 @@ from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 from microslip.states.search import largest_excess
 
 SLOWEST = 1.0 - 1e-6
-"""Largest ratio of two successive changes in an extrapolation; by rounding it can be 1."""
+"""Largest ratio of two successive changes used in an extrapolation.  Rounding can make it 1."""
 FORCING = 1e-3
-"""Tolerance of a step over the last change of the state, far from the periodic state."""
+"""Ratio of the tolerance of a step to the last change of the state, far from the periodic state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""First tolerance of a step, for a distant start and for a near start."""
+"""First tolerance of a step, for an initial state far from and near the periodic state."""
 DEPTH = 12
 """Number of differences in the least-squares problem of Anderson acceleration."""
 NOISE = 0.1
-"""Largest residual of the steps over the change of the state; above it the march is repeated with a
-smaller tolerance of the steps."""
+"""Largest ratio of the residual of the steps to the change of the state.  Above it the march is
+repeated with a smaller tolerance of the steps."""
 QUIET = 0.25
-"""Fraction of NOISE that sets the tolerance of the steps after a near start."""
+"""Fraction of NOISE that sets the tolerance of the steps if the initial state is near."""
 FORGETFUL = 0.2
-"""Contraction of the plain map from march to march below which it needs no acceleration."""
+"""Contraction factor per march of the plain map below which acceleration is not needed."""
 
 
 @dataclass(frozen=True, eq=False)
 class MarchInterval:
-    """One march over a (half) period.
+    """Result of one march over a period or half a period.
 
     Attributes
     ----------
     state : np.ndarray
-        Tractions at the start.
+        Tractions at the start of the march.
     image : np.ndarray
-        Tractions at the start of the next march: those at the end, mirrored for half a period.
+        Tractions at the start of the next march.  They equal the tractions at the end of this
+        march, mirrored if the march covers half a period.
     residual : float
-        Size of image - state, as a force over mu F_z.
+        Norm of image - state, as a force divided by mu F_z.
     march : contact.March
         The march itself.
     """
@@ -55,10 +57,10 @@ class MarchInterval:
 
 
 class Marches:
-    """Marches of a period_map.PeriodMap, one by one, with their effort.
+    """Performs the marches of a period_map.PeriodMap one by one and records their effort.
 
-    The estimated distance from the fixed point, a force, is the largest of three numbers: the
-    residual, the last correction, and the excess of the force over the static limit times
+    The estimated distance from the fixed point is a force.  It is the largest of three numbers: the
+    residual, the last correction, and the difference between the force and the static limit times
     residual / gain, see search.largest_excess.
     """
 
@@ -87,7 +89,7 @@ class Marches:
         return MarchInterval(state, image, energy_norm(self.contact, change), march)
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
-        """The state, projected on the friction bound if the integrator keeps to the bound."""
+        """The state, limited to the friction bound if the integrator never exceeds the bound."""
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
@@ -118,7 +120,7 @@ class Marches:
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Search by Anderson acceleration of marches in Python.
 
-    The start should have too much forward traction rather than too little, which prevents
+    The initial state should have too much forward traction rather than too little.  This prevents
     convergence to a state without slip.
 
     Parameters
@@ -126,7 +128,7 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
     period_map : period_map.PeriodMap
         The map over a (half) period.
     start : np.ndarray
-        Tractions at the start.
+        Tractions at the start of the march.
     goal : period_map.Goal
         Tolerances and largest number of marches.
 
@@ -187,7 +189,7 @@ def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState
 
 
 def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Search by the plain march until the mean forces of two intervals differ by the tolerance."""
+    """Search by the plain march until two successive mean forces agree within the tolerance."""
     marches, state, last = Marches(period_map), start, float("inf")
     for _ in range(goal.most_marches):
         interval = marches(state, goal.step_tolerance)
@@ -200,7 +202,7 @@ def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
 
 
 def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Search by Anderson acceleration until the plain map changes less than the tolerance."""
+    """Search by Anderson acceleration until the residual of the plain map is small."""
     marches = Marches(period_map)
     accelerate, state = Anderson(marches.metric, DEPTH), start
     for _ in range(goal.most_marches):
@@ -212,7 +214,7 @@ def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Peri
 
 
 class Anderson:
-    """Anderson acceleration of a map of tractions; metric: weights of the least squares."""
+    """Anderson acceleration of a map of tractions; `metric` holds the least-squares weights."""
 
     def __init__(self, metric: np.ndarray, depth: int):
         self.scale = np.sqrt(metric)

@@ -1,7 +1,8 @@
-"""ADMM on the dense matrix: alternately a linear solve, factorised once, and a projection.
+"""ADMM on the dense matrix, which alternates a linear solve and a projection.
 
-penalty: over the self-influence of each point; it changes the rate of convergence only.
-relaxation: between 1 (none) and 2.
+The matrix is factorised once.  The parameter `penalty` is in units of the self-influence of each
+point; it changes only the rate of convergence.  The parameter `relaxation` is between 1 (no
+relaxation) and 2.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ MAX_ITERATIONS = 2000
 def _inverse(
     matrix: np.ndarray, scale: np.ndarray, penalty: float, relaxation: float
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """(A + penalty)^-1, the penalty of every point, and the relaxation."""
+    """(A + penalty)^-1, the penalty of every point, and the relaxation factor."""
     added = penalty * scale
     return np.linalg.inv(matrix + np.diag(np.tile(added, 2))), added, relaxation
 

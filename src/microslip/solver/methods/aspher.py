@@ -1,20 +1,21 @@
-"""The incremental frictional solver of the package aspher, on the same squares and the same path.
+"""The incremental frictional solver of the package aspher, on the same squares and path as ours.
 
-V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The method needs this package.
-It solves the normal contact on the squares, then one tangential problem per step of backward Euler
-by a projected conjugate gradient method.  It supports translations only, at any nu.
+V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
+It solves the normal contact on the squares, then one tangential problem per backward Euler step by
+a projected conjugate gradient method.  It supports translations only, at any nu.
 
 The march starts without tractions and ends when the means of two periods agree, or after
-MOST_PERIODS.  In that time only fast forward motions become periodic.  Two settings differ from the
-defaults of the package:
+MOST_PERIODS.  Within so few periods only fast forward motions become periodic.  Two settings differ
+from the defaults of the package:
 
-- The preconditioner is off.  It suits sticking points; when the slip changes its direction, it
-  takes about five times as many iterations for means that are no better.
+- The preconditioner is off.  It is designed for sticking points.  When the slip changes its
+  direction, it needs about five times as many iterations, and the means are no more accurate.
+
 - A step that the package rejects counts as failed, and the march continues from its best tractions.
   By default the package returns to the tractions before the step, and the means become wrong.
 
-An iteration takes two products with the influence operator, one more than ours.  The effort counts
-iterations.
+An iteration computes two products with the influence operator, one more than our solvers.  The
+effort counts iterations.
 """
 
 from __future__ import annotations
@@ -36,17 +37,17 @@ from microslip.theory.hertz import G_STAR
 MOST_PERIODS = 6
 """Largest number of periods marched."""
 ACCEPTED = 1e-2
-"""Limit of a solved step in the package: largest change of a traction in a projected step, over the
-largest bound."""
+"""Stopping criterion of the package for a step: largest change of a traction in a projected step,
+divided by the largest friction bound."""
 
 
 class Solver:
-    """A loaded sphere on `cells` x `cells` squares over [-1, 1]^2; working units, mu = 1."""
+    """A loaded sphere on `cells` x `cells` squares over [-1, 1]^2, in working units with mu = 1."""
 
     def __init__(self, cells: int, poisson: float):
         import aspher
 
-        # G* = 4G/(2 - nu) is given, G = E* (1 - nu)/2; the load of radius 1 is 4/3 E*/R = 1
+        # G* = 4G/(2 - nu) is known, G = E* (1 - nu)/2; the load at contact radius 1 is 4/3 E*/R = 1
         modulus = G_STAR * (2.0 - poisson) / (2.0 * (1.0 - poisson))
         self.size = 2.0 / cells
         self.scale = square_convolution(cells, poisson)[1]
@@ -61,15 +62,15 @@ class Solver:
             precond=False,
         )
         centres = (np.arange(cells) + 0.5) * self.size - 1.0
-        forward, lateral = np.meshgrid(centres, centres)  # its first component is along axis 1
+        forward, lateral = np.meshgrid(centres, centres)  # component 1 is along axis 1
         self._solver.set_gap((forward**2 + lateral**2) / (2.0 * 4.0 / 3.0 * modulus))
         self.loaded = self._solver.step(p_bar=1.0 / 4.0).converged
         self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
 
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
-        """Move to a rigid displacement (in u_lim) and count the step, also if it failed.
+        """Move to a rigid displacement (in u_lim) and count the step, even if it failed.
 
-        Returns the forward force (over mu F_z) and the residual, see coulomb.coulomb_residual.
+        Returns the forward force divided by mu F_z, and the residual, see coulomb.coulomb_residual.
         """
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters
@@ -82,7 +83,7 @@ class Solver:
 
 
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
-    """March a half period; number: 0, 1, ....
+    """March one half period; `number` counts the half periods from 0.
 
     Returns the forward forces at its phases, except the first, and the sum of the residuals.
     """

@@ -1,6 +1,6 @@
-"""Plain march until the mean friction of two half periods agrees.
+"""Plain march until the mean friction forces of two half periods agree.
 
-The state of slow motions drifts on long after two means agree.
+The state of slow motions keeps drifting long after two means agree.
 """
 
 from __future__ import annotations

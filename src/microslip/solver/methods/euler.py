@@ -1,4 +1,4 @@
-"""Backward Euler: robust, tractions never exceed the bound, first order."""
+"""Backward Euler method: robust and first order; tractions never exceed the friction bound."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Backward Euler extrapolated from two runs, one with half as many steps as the other."""
+"""Backward Euler method, extrapolated from two runs, one with half as many steps as the other."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Semismooth Newton method for q = P(q + slip / scale), with full steps.
 
-It converges in a few steps near the solution.  Further away the set of slipping points can change
-back and forth without end, first at points with a very small bound.
+It converges in a few steps near the solution.  Further away the set of slipping points can switch
+back and forth forever, first at points with a very small bound.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MAX_ITERATIONS = 60
 
 @kernel
 def _copy(out: np.ndarray, values: np.ndarray) -> None:
-    """Copy values to out, both (2, K); array assignments take seconds to compile."""
+    """Copy `values` to `out`, both of shape (2, K).  Array assignments take seconds to compile."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] = values[c, i]

@@ -1,6 +1,7 @@
-"""Projected Gauss-Seidel iteration, point after point.
+"""Projected Gauss-Seidel iteration over the points.
 
-Every point lowers the energy, so the iteration converges for a relaxation between 0 and 2.
+Every update of a point lowers the energy, so the iteration converges for relaxation factors between
+0 and 2.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ MAX_ITERATIONS = 1000
 
 
 def _columns(matrix: np.ndarray, scale: np.ndarray, relaxation: float) -> tuple[np.ndarray, float]:
-    """The transposed matrix, for contiguous access to columns, and the relaxation."""
+    """The transposed matrix, for contiguous access to columns, and the relaxation factor."""
     return np.ascontiguousarray(matrix.T), relaxation
 
 

@@ -13,7 +13,7 @@ from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
-    """Step of every point: the one that removes the slip of a single point, times the damping."""
+    """Step length of every point: the length that removes its slip, times the damping factor."""
     return damping / scale
 
 

@@ -1,7 +1,7 @@
 """The implicit midpoint rule: second order for smooth solutions, without damping.
 
-Coulomb's law holds in the middle of a step.  The tractions at the end are extrapolated and can
-exceed the friction bound, and the error of a step returns in the next one with the opposite sign.
+Coulomb's law is satisfied in the middle of a step.  The tractions at the end are extrapolated and
+can exceed the friction bound.  The error of a step recurs in the next step with the opposite sign.
 """
 
 from __future__ import annotations

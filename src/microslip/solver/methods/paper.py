@@ -1,8 +1,8 @@
-"""The paper's own run: 32 x 32 squares, backward Euler, 8,000 steps from full slip, no search.
+"""The method of the paper: 8,000 backward Euler steps from full slip on 32 x 32 squares, no search.
 
-R. Pohrt, Front. Mech. Eng. 6:566440 (2020): stresses to 0.1 %, and the mean of the last period.
-Here a period has 100 steps.  A step is solved when its residual is 0.1 % of the total friction.
-The requested resolution is ignored.
+In the paper (R. Pohrt, Front. Mech. Eng. 6:566440, 2020) stresses are accurate to 0.1 %, and the
+result is the mean over the last period.  Here a period has 100 steps, and a step is solved when its
+residual is at most 0.1 % of the total friction.  The requested resolution is ignored.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ STRESS_TOLERANCE = 1e-3
 
 
 def path_of(problem: Problem, steps: int = STEPS) -> Path:
-    """Path of a number of steps from the middle of a stroke."""
+    """Path of a given number of steps that starts in the middle of a stroke."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 
 
 def last_means(march: March) -> tuple[float, float]:
-    """Mean forward force over each of the last two periods, the last one first."""
+    """Mean forward forces over the last and over the second-to-last period."""
     force = march.forces[1:, FORWARD]
     last, before = force[-STEPS_PER_PERIOD:], force[-2 * STEPS_PER_PERIOD : -STEPS_PER_PERIOD]
     return float(last.mean()), float(before.mean())

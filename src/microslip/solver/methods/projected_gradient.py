@@ -1,7 +1,7 @@
-"""Projected gradient with a fixed step, stable below twice the inverse of the largest eigenvalue.
+"""Projected gradient method with a fixed step.
 
-A stable step converges slowly, since the compliance of smooth tractions is far larger than that of
-rough ones.
+It is stable for steps below twice the inverse of the largest eigenvalue.  With a stable step it
+converges slowly, since the compliance is far larger for smooth tractions than for rough ones.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
-    """Step of every point; step: in units of the inverse of the largest eigenvalue."""
+    """Step length of every point; `step` is in units of the inverse of the largest eigenvalue."""
     return np.full_like(scale, step * safe_length(matrix))
 
 

@@ -1,6 +1,7 @@
 """Anderson acceleration from full slip, stopped by the residual of the plain map alone.
 
-At a slow drift every state changes little in a period, so a small residual proves nothing.
+If the drift is slow, every state changes little in a period.  So a small residual does not show
+that the state is periodic.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Projected gradient with Barzilai-Borwein steps on the dense matrix, the step solver of squares.
+"""Projected gradient method with Barzilai-Borwein steps on the dense matrix.
 
-The length of a step is the inverse curvature along the direction of the step before.
+The model of squares uses this step solver too.  The length of a step is the inverse curvature along
+the direction of the previous step.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
-"""Number of iterations in which long steps must halve the residual; after that steps are short."""
+"""Number of iterations within which long steps must halve the residual.  If they do not, the steps
+become short."""
 
 
 def _shortest(matrix: np.ndarray, scale: np.ndarray) -> float:

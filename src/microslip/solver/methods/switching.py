@@ -1,8 +1,8 @@
-"""Fixed-point stick/slip switching: alternately the states of points and a linear solve.
+"""Fixed-point stick/slip switching, which alternates updates of the points and a linear solve.
 
-The traction of a slipping point is on the bound along its last slip; sticking points do not slip.
-After the solve, a point beyond the bound slips, and a point whose slip opposes its traction sticks.
-Nothing guarantees progress, so the states can cycle.
+The traction of a slipping point is on the bound, in the direction of its last slip; sticking points
+do not slip.  After the solve, a point beyond the bound slips, and a point whose slip opposes its
+traction sticks.  Convergence is not guaranteed, and the stick and slip states of points can cycle.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The theta method slightly above the midpoint rule, whose oscillations it damps slowly."""
+"""The theta method with theta slightly above 1/2, which slowly damps numerical oscillations."""
 
 from __future__ import annotations
 
