@@ -76,7 +76,7 @@ class TwoBodies:
     def poisson(self) -> float:
         """Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G)."""
         compliances = [1.0 / body.shear_modulus for body in self.bodies]
-        total = sum(compliances)  # one elastic body keeps its ratio to the last bit
+        total = sum(compliances)  # no rounding error for one elastic body
         return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property

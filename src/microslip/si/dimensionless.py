@@ -66,7 +66,7 @@ class RealMotion:
         """Angular frequency of the oscillation, or angular speed of a steady spin, rad/s."""
         if self.frequency is not None:
             return 2.0 * math.pi * self.frequency
-        assert self.rotation is not None  # a steady motion has one
+        assert self.rotation is not None  # a steady motion has a rotation
         return self.rotation
 
     @property

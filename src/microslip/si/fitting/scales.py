@@ -119,7 +119,7 @@ class Modulus(Scale):
             return super().points(mu, scale, rows)
         contact, share = self.contact(mu, scale), rows.load / self.mean_load
         arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
-        moving = arc > 0.0  # at an angle of 0 the velocity does not matter
+        moving = arc > 0.0  # at an angle of 0 the velocity has no effect
         velocity = np.divide(rows.speed, rows.omega * arc, out=np.zeros_like(arc), where=moving)
         size = arc / (contact.u_lim * share ** (2.0 / 3.0))
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
