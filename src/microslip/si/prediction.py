@@ -120,8 +120,8 @@ class Power:
     vibration_power_W, vibration_power_error_W : float
         Mean power of the oscillation or of the spin, W.
     vibration_power_reason : str or None
-        Why the error is above the tolerance.  It is empty if it is not, and None for a closed
-        form.
+        Why the error is above the tolerance.  It is empty if the error is within the tolerance,
+        and None for a closed form.
     dissipated_power_W, dissipated_power_error_W : float
         Mean power of the oscillation and of the drag together, W.
     energy_per_cycle_J, energy_per_cycle_error_J : float

@@ -1,7 +1,7 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The drive
-of the body is divided by the number of contacts, and forces are multiplied by it.
+All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The
+drive of the body is divided by the number of contacts.  Forces are multiplied by this number.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Carriers:
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
-        """The contact with the largest load; contact: the one with the mean load."""
+        """The contact with the largest load.  contact: the contact with the mean load."""
         if self.heaviest == 1.0:
             return contact
         load = contact.load * self.heaviest
@@ -54,9 +54,9 @@ class Carriers:
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and a dict of their text by argument; raises InputError.
+    """The Carriers, and their text in a dict by argument.  Raises InputError.
 
-    alone: values of arguments that are allowed for a single contact only.
+    alone: values of arguments that are allowed only for a single contact.
     """
     if contacts is None:
         return Carriers(), {}
