@@ -106,8 +106,8 @@ def static_limits(
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
-    """Derivative of mu_static with respect to Poisson's ratio.  deviation: its standard
-    deviation."""
+    """Derivative of mu_static with respect to Poisson's ratio.  deviation: standard deviation of
+    Poisson's ratio."""
     if deviation < SAME_POISSON:
         return 0.0
     ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]

@@ -38,7 +38,7 @@ def tolerance_of(request: Request, tolerance: float) -> float:
 
 
 def equals_static_limit(request: Request) -> bool | float | None:
-    """Whether the force threshold equals the static limit, or its value if it is known.
+    """Whether the force threshold equals the static limit, or else the value of the threshold.
 
     The threshold equals the static limit if the oscillation exerts no forward force, or if the
     forward forces of several contacts cancel.  Otherwise a contact without mass follows the
