@@ -118,7 +118,7 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
 
 
 def _limits_of(request: Request) -> Callable[[float, float], tuple[float, float] | None]:
-    """The function limit(amplitude, poisson) -> (mu_static, error), or -> None if the solver
+    """The function limit(amplitude, poisson) -> (mu_static, error).  It returns None if the solver
     fails."""
     tolerance = tolerance_of(request, TOLERANCE)
 
