@@ -235,7 +235,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _problem_of_motion(words: list[str]) -> InputError | None:
-    """The InputError of a motion whose file cannot be used; None for all other words."""
+    """The InputError if the words name a motion whose file cannot be used; otherwise None."""
     from microslip.motions.by_name import BROKEN
 
     name = words[0].partition(":")[0] if words else ""
@@ -258,7 +258,8 @@ def _split_motion(words: list[str]) -> tuple[list[str], str]:
 
 
 def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]:
-    """Name of the option for an argument of `solve`, and its text on the command line."""
+    """Name of the option for an argument of `solve`, and the text of the option on the command
+    line."""
     if argument == "motion":
         return "MOTION", options.motion
     option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")

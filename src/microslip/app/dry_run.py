@@ -17,9 +17,9 @@ TYPICAL = 0.025
 """Mean CPU seconds of a request on one core, measured by benchmarks/sweep_cost.py with the default
 configuration and a tolerance of 1e-3."""
 QUICK = ("point", "history", "field", "period")
-"""Kinds of requests that TYPICAL applies to."""
+"""Kinds of requests to which TYPICAL applies."""
 START = 2.3
-"""CPU seconds that a job takes besides solving, measured by benchmarks/first_run.py."""
+"""CPU seconds that a job takes in addition to solving, measured by benchmarks/first_run.py."""
 COMPILE = 50.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
@@ -39,7 +39,7 @@ def summary(
         Folder of results.  Requests with a result in its store are not counted.  Its logs contain
         the computing times of earlier batches.
     cores : int
-        Number of jobs at a time.
+        Number of jobs that run at the same time.
     compiles : bool
         Whether the run compiles the solver.
     """

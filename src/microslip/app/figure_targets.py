@@ -38,7 +38,7 @@ def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
 
 
 def _datasets(configuration: Configuration) -> set[str]:
-    """Names of the datasets of all figures except those of groups and certified maps."""
+    """Names of the datasets of all figures, except figures of groups and certified maps."""
     return {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
 
 

@@ -60,7 +60,7 @@ def _path_of(request: dict) -> str:
 
 
 def _named(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Kind and path of all files in a folder of results whose names are those of results."""
+    """Kind and path of each file in a folder of results that has the name of a result."""
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):

@@ -1,4 +1,5 @@
-"""Plan of a configuration: batches of requests, products, and the inputs of each product.
+"""Plan of a configuration.  It contains batches of requests, products, and the inputs of each
+product.
 
 The rules of the workflow use it.  It does not import Snakemake.  Its import is fast, since every
 process of Snakemake parses the workflow.

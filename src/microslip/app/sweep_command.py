@@ -69,7 +69,7 @@ def main(arguments: list[str]) -> int:
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
-    with redirect_stdout(sys.__stdout__):  # as for the jobs of Snakemake
+    with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)
 
 

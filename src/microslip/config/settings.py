@@ -227,7 +227,7 @@ MapAxis = Annotated[PositiveAxis, AfterValidator(_two)]
 
 
 class Adaptive(Settings):
-    """A certified map over the ranges of the sweep: `snakemake certified` makes
+    """A certified map over the ranges of the sweep. `snakemake certified` makes
     certified_NAME.nc."""
 
     error: Annotated[float, Field(ge=1e-5, le=0.1)]
@@ -249,8 +249,8 @@ class SteadySweep(Settings):
     """Keys of every sweep."""
 
     velocity: Axis
-    """Forward velocity in the unit of the motion: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq
-    28) or v0/(omega a) (Eq 13). The value 0 requests the static limit."""
+    """Forward velocity in the unit of the motion, which is v0/(omega u_lim) (Eq 4), v0/(Omega phi0
+    a) (Eq 28) or v0/(omega a) (Eq 13). The value 0 requests the static limit."""
     poisson: Poisson = _raw(0.0)
     """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
     model: Model = "auto"
@@ -283,7 +283,7 @@ class Sweep(SteadySweep):
     """Keys of an oscillation across the motion (Eq 1) and of an oscillating rotation (Eq 23)."""
 
     amplitude: Axis
-    """Amplitude: y0/u_lim (Eq 2), or phi0/phi_lk(a/2) (Eq 27)."""
+    """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""
     adaptive: Adaptive | None = None
     """Settings of a certified map over the same ranges, see below. By default, no map is made."""
 
@@ -553,7 +553,7 @@ class Propulsion(Settings):
     tolerance: Tolerance = 1e-3
     """Largest accepted error of a force divided by mu times the mean normal load."""
     points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
-    """Number of points of a line from stall to no load, including both ends."""
+    """Number of points on a line from stall to no load, including both ends."""
     motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
     """Motions by name. Each motion has a line."""
 
@@ -600,7 +600,7 @@ class Claims(_Grid):
 
 
 class Root(Settings):
-    """Points to compute, their accuracy, and the folder of results. All quantities are
+    """Points to compute, accuracy of the points, and folder of results. All quantities are
     dimensionless."""
 
     results: Annotated[

@@ -11,7 +11,7 @@ import math
 def number(value: float) -> str:
     """Canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
 
-    Rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
+    It is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
     Raises ValueError for other values.
     """
     if isinstance(value, bool | str) or not math.isfinite(value):

@@ -51,16 +51,17 @@ def number_text(
     unit : str
         Unit to print after the numbers.
     digits : int
-        Significant digits of a number whose error is 0, or below a billionth of it.
+        Number of significant digits of a number whose error is 0, or less than a billionth of the
+        number.
 
     Returns
     -------
     str
-        "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number to
-        the last decimal of the error.  If the error is too small to be printed, zeros at the end
-        of the number are kept.  For a number without an error they are removed.  A number that is
-        0 within its error, or within the rounding error of numbers near 1, is printed as 0.  Its
-        printed error then includes the number itself.
+        A text such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits,
+        and the number is rounded to the last decimal of the error.  If the error is too small to
+        be printed, zeros at the end of the number are kept.  For a number without an error they
+        are removed.  A number that is 0 within its error, or within the rounding error of numbers
+        near 1, is printed as 0.  Its printed error then includes the number itself.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)

@@ -12,11 +12,12 @@ from microslip.theory.hertz import checked
 
 @dataclass(frozen=True)
 class TwoBodies:
-    """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
+    """A sphere that is pressed on a flat or on a second sphere.  At least one of the bodies is
+    elastic.
 
-    The tangential problem of two half-spaces equals that of one half-space with the sum of their
-    compliances.  Its G and Poisson's ratio follow from the sums of 1/G and nu/G.  The normal and
-    the tangential problem are assumed to be uncoupled.
+    The tangential problem of two half-spaces equals that of one half-space whose compliance is the
+    sum of both.  The G and Poisson's ratio of this half-space follow from the sums of 1/G and
+    nu/G.  The normal and the tangential problem are assumed to be uncoupled.
 
     Attributes
     ----------

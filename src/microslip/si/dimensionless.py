@@ -14,7 +14,7 @@ from microslip.theory import hertz
 
 @dataclass(frozen=True)
 class RealMotion:
-    """A motion in SI units; a missing quantity is None.
+    """A motion in SI units.  A missing quantity is None.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class RealMotion:
 
     @property
     def swing(self) -> tuple[float, float]:
-        """Largest displacement along the surface, m, and largest rotation, rad."""
+        """Largest displacement along the surface in a period, m, and largest rotation, rad."""
         if self.spins:
             return 0.0, self.amplitude or 0.0
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
@@ -96,7 +96,8 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
 
 
 def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
-    """Text of the motion for microslip.solve; several amplitudes are divided by the largest one."""
+    """Text of the motion for microslip.solve.  Several amplitudes are divided by the largest
+    one."""
     if motion.name not in COMBINED:
         return motion.name
     amplitudes = parts(motion, contact)
@@ -180,7 +181,7 @@ class RealDrive:
     force : float or None
         Prescribed constant force, N.
     stiffness : float or None
-        Stiffness of a spring whose far end has the speed of the motion, N/m.
+        Stiffness of a spring, N/m.  The far end of the spring has the speed of the motion.
     mass, damping : float or None
         Mass of the body, kg, and damping of a dashpot parallel to the spring, N s/m.
     """

@@ -47,9 +47,9 @@ SAME_SHARE = 9
 """Number of decimals to which shares of the amplitude are compared.  Later digits are rounding
 errors."""
 INTERVAL = 0.025, 0.975
-"""Quantiles at the ends of a 95 % interval."""
+"""Probabilities of the quantiles at the ends of a 95 % interval."""
 DEVIATIONS_OF_INTERVAL = 1.959964
-"""Half a 95 % interval of a normal distribution, in standard deviations."""
+"""Half the width of a 95 % interval of a normal distribution, in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class _State:
 def uncertainty_of_outcomes(
     prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
 ) -> dict[str, Any]:
-    """Columns of the uncertainty of the static limit and of the outcome.
+    """Columns of the uncertainty of the static limit, and of the probabilities of the outcomes.
 
     prediction: the Prediction for the central values.
     """
@@ -222,7 +222,7 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
 
 
 def _draws(count: int) -> np.ndarray:
-    """Independent standard normal numbers, shape (DRAWS, count).
+    """Draws of independent standard normal numbers, shape (DRAWS, count).
 
     They form a Kronecker sequence, whose irrational numbers are powers of the root of x^(count + 1)
     = x + 1.
@@ -299,7 +299,7 @@ class _Table:
 
 
 SMALLEST_LOGARITHM = -700.0
-"""Logarithm of a number near 1e-304, used for the logarithm of 0."""
+"""Logarithm of a number near 1e-304, which replaces the logarithm of 0."""
 
 
 def _log(value: float) -> float:

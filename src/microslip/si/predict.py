@@ -96,7 +96,7 @@ def predict(
         normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal", or
         another translation or rotation of `microslip.solve`.
     radius, load, mu : quantity
-        Radius of the sphere, m, normal load, N, and coefficient of friction without vibration.
+        Radius of the sphere, m; normal load, N; coefficient of friction without vibration.
     speed : quantity
         Forward speed of sliding, m/s.  With a spring, it is the speed of the far end of the
         spring.
@@ -107,14 +107,15 @@ def predict(
     material : str or Material
         Material of the body: a name, or a microslip.Material.
     counterbody : str, Material or pair of quantities, optional
-        "rigid", a material, or E and nu as in "70 GPa, 0.22" or (70e9, 0.22).  Default: rigid.
+        Second body: "rigid" (default), a material, or E and nu as in "70 GPa, 0.22" or (70e9,
+        0.22).
     counter_radius : quantity, optional
-        Radius of the counterbody, m, negative if hollow.  Default: flat.
+        Radius of the counterbody, m, negative if it is hollow.  By default, it is flat.
     radius_across : quantity, optional
         Radius of curvature across the forward direction, m.  With it, the contact is an ellipse.
     contact_radius, pressure : quantity, str, optional
-        Half the longer side of the contact, m, which replaces all radii, and a pressure of
-        microslip.solve such as "ring:inner=0.5" or "file:pad.csv".  Default: "hertz".
+        Half the longer side of the contact, m, which replaces all radii.  The pressure is one of
+        microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".  Default: "hertz".
     amplitude : quantity
         Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
         several oscillations it is the lateral half stroke.
@@ -131,19 +132,20 @@ def predict(
     reduction : quantity, optional
         Requested reduction of friction, 0 to 1 or in per cent.  It replaces the amplitude, the
         speed or the load.  The answer is the least amplitude, the largest speed or the largest
-        load with this reduction.  Not allowed with a force or a spring.
+        load with this reduction.  It is not allowed with a force or a spring.
     drive_stiffness, mass, damping : quantity, optional
-        Stiffness of a spring between the drive and the body, N/m, mass of the body, kg, and damping
-        of a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.
+        Stiffness of a spring between the drive and the body, N/m; mass of the body, kg; damping of
+        a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.
     contacts : str, optional
         Several contacts of a body, of equal shape, as for microslip.solve: "phase=0;phase=180".
-        `load` is the sum over all contacts, divided in proportion to the `load` of each.  force,
-        drive_stiffness, mass and damping belong to the body.  Amplitudes belong to a contact whose
-        `amplitude` is 1.  Results for a single contact belong to a contact with the mean load.
-        Warnings belong to the contact with the largest load.
+        `load` is the sum over all contacts.  It is divided among them in proportion to the `load`
+        of each contact.  force, drive_stiffness, mass and damping belong to the body.  Amplitudes
+        belong to a contact whose `amplitude` is 1.  Results for a single contact belong to a
+        contact with the mean load. Warnings belong to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Hardness, Pa or as in "700 HV" and "60 HRC", and density, kg/m^3, of the body and of the
-        counterbody.  They are used for warnings only.
+        Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or
+        a text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  They are used for warnings
+        only.
     tolerance : quantity
         Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it
         is the largest accepted relative error of the speed, and the default is 1e-2.  For speeds
@@ -155,7 +157,8 @@ def predict(
     Returns
     -------
     Prediction
-        The request in words, the answer, and warnings where the theory does not apply.
+        The request as understood, the answer, and warnings if an assumption of the theory is
+        violated.
 
     Raises
     ------
@@ -270,7 +273,7 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
 
 
 def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict[str, Any]:
-    """Fields of an Oscillating Prediction."""
+    """Fields of Oscillating, the part common to motions that oscillate."""
     motion, mu = request.motion, request.contact.mu
     fields: dict[str, Any] = {
         "amplitude_si": motion.amplitude,

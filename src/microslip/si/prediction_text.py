@@ -31,7 +31,7 @@ UNDERSTOOD = (
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     *("frequency", "rotation", "reduction"),
 )
-"""Arguments, in the order of the output."""
+"""Arguments of predict, in the order in which they are printed."""
 PROBABILITIES = {
     "probability_stays": "stays",
     "probability_moves": "moves",
@@ -57,12 +57,12 @@ ALONG_THE_DRIVE = (
     "speed it reverses the force, which reduces the mean; under a constant force a body without "
     "mass follows the vibration, and all of friction holds it"
 )
-"""Explanation of a static friction that is below the force threshold."""
+"""Explanation of why the static friction is below the force threshold."""
 UNKNOWN_THRESHOLD = (
     "it is not the force threshold, because part of the vibration is along the drive; with --force "
     "the prediction says whether the contact moves"
 )
-"""Explanation of a static friction without a force threshold."""
+"""Explanation for a static friction without a known force threshold."""
 FROM_INPUTS = "from the uncertain inputs"
 FROM_LINEAR_MODEL = (
     f"{FROM_INPUTS} to first order: static friction is assumed to be linear in each of them"
@@ -79,7 +79,7 @@ OUTCOMES = {
     "runs away": "{runs_away}",
     "undecided": "undecided within the error: it moves by at most {fastest}",
 }
-"""Sentences about the outcomes."""
+"""Sentences that describe the outcomes."""
 
 
 def prediction_text(record: Any) -> str:
@@ -257,7 +257,7 @@ class _Texts(dict[str, Any]):
             self["natural_frequency_Hz"] = in_unit(frequency, 0.0, prefixed(frequency, "Hz"))
 
     def _seek(self, units: dict[str, tuple[str, float]]) -> None:
-        """Add the texts of the result of a search."""
+        """Add the texts for the result of a search."""
         record, unit = self.record, units[self.record.sought]
         self["sought_text"] = in_unit(record.sought_value, record.sought_error, unit)
         self["sought_exact"] = in_unit(record.sought_value, 0.0, unit)

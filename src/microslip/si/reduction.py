@@ -47,7 +47,7 @@ class _Line:
         Subjects of the messages if the reduction is too large at `low`, and if it is too small
         everywhere.
     end : float or None
-        Place with the least friction; None if it is unknown.
+        Place with the least friction; None if this place is unknown.
     rate : float
         Derivative of the logarithm of the size with respect to the place.
     """

@@ -28,7 +28,8 @@ class Carriers:
     count : int
         Number of contacts.
     heaviest, widest : float
-        Largest load divided by the mean load, and largest amplitude divided by that of the body.
+        Largest load of a contact divided by the mean load, and largest amplitude of a contact
+        divided by the amplitude of the body.
     """
 
     text: str | None = None

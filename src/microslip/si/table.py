@@ -43,20 +43,20 @@ def predict_table(
     motion : str
         Motion of all contacts, as for `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length by argument of predict: {"load": ["1 N", "10 N"]} or
-        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
-        sample or comment are copied to the dataset.
+        Sequences of equal length, by argument of predict, as in {"load": ["1 N", "10 N"]} or {"load
+        [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id, sample
+        or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
-        Arguments of `microslip.predict` for all cases.
+        Arguments of `microslip.predict` that all cases share.
 
     Returns
     -------
     xarray.Dataset
-        Every column of a Prediction over the dimension `case`, with units; NaN for a missing value.
-        Lists of texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is the
-        error message of a case without a prediction, else empty.
+        Every column of a Prediction, over the dimension `case`, with units.  Missing values are
+        NaN. Lists of texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is
+        the error message of a case without a prediction, else empty.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def predictions(
     """The prediction of each case in turn.
 
     All cases are checked before the first one is solved.  A search without a solution gives a
-    Prediction that is not converged.  The arguments and errors are those of predict_table.
+    Prediction that is not converged.  The arguments and errors are the same as for predict_table.
     """
     count = _count(table.columns, shared)
     wrong: dict[int, str | InputError] = dict(table.errors)

@@ -16,7 +16,7 @@ PIECES = 60
 
 
 class Curve(NamedTuple):
-    """Points of the model curves of a fit, one curve after another, shape (n,) each.
+    """Points of all model curves of a fit, one curve after another.  Arrays have shape (n,).
 
     The abscissa is the condition with the most different values.  Rows whose other conditions are
     equal share a curve, if there are at least two.
@@ -26,7 +26,7 @@ class Curve(NamedTuple):
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray
         The conditions, in the units of a Fit.
     fitted, fitted_error : np.ndarray
-        Friction of the model and its error estimate, in the unit of the rows.
+        Friction of the model, and its error estimate, in the unit of the measured values.
     """
 
     speed_m_s: np.ndarray
@@ -44,7 +44,7 @@ def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
 
 
 def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curve:
-    """The model curves through the rows of a fit.
+    """Compute the model curves for the rows of a fit.
 
     Parameters
     ----------

@@ -63,16 +63,16 @@ def fit(
     motion : str
         "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
     measured : path, mapping or pandas DataFrame
-        A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns
-        under such headings; without a unit they are in SI units.  The columns are speed,
+        A CSV file with a heading line such as `speed [mm/s],amplitude [um],friction [N]`, or
+        columns with such names.  Columns without a unit are in SI units.  The columns are speed,
         amplitude, frequency, load; friction (mean forward force) or mu (friction divided by load);
         optionally their standard errors friction_error or mu_error, and texts named label, name,
         id, sample or comment.
     map : xarray.Dataset, optional
         Dataset of a sweep of this motion, see `open_map`.  Interpolation in a map is fast.
-        Without a map the solver computes every point.
+        Without a map, the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
-        Common value of all rows, in place of a column.
+        Common value for all rows.  It replaces a column.
     nu : quantity, optional
         Poisson's ratio of the equivalent half-space.  The default is Poisson's ratio of the map,
         or 0 without a map.  With a radius, this is Poisson's ratio of the bodies, and it is

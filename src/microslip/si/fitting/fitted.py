@@ -28,12 +28,14 @@ class Fit:
     quantity : str
         Measured quantity: "friction", a force in N, or "mu", a coefficient.
     mu, mu_low, mu_high : float
-        Coefficient of friction without vibration, dimensionless, and its interval.
+        Coefficient of friction without vibration, dimensionless, and the ends of its interval.
     u_lim_m, u_lim_low_m, u_lim_high_m : float or None
-        Displacement at which the whole contact slides under the mean load, m, and its interval. A
-        number that the rows do not determine is None; so is an infinite end of its interval.
+        Displacement at which the whole contact slides under the mean load, m, and the ends of its
+        interval. A number that the rows do not determine is None; so is an infinite end of its
+        interval.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
-        Shear modulus of the bodies, Pa, and its interval; None in a fit without a radius.
+        Shear modulus of the bodies, Pa, and the ends of its interval; None in a fit without a
+        radius.
     load_N : float
         The mean load, N.
     confidence : float
@@ -70,7 +72,7 @@ class Fit:
     fitted, fitted_error : np.ndarray, shape (rows,)
         Values of the model and their error estimates, in the unit of the measured values.
     residual : np.ndarray, shape (rows,)
-        (measured - fitted) / standard error, dimensionless.
+        Measured minus fitted values, divided by the standard error, dimensionless.
     curve : Curve
         Friction of the model between the rows, for figures.
     """

@@ -40,13 +40,13 @@ class Measured:
     Attributes
     ----------
     speed, amplitude, frequency, load : np.ndarray
-        m/s, m (rad for a bore), Hz and N.
+        Conditions of each row, in m/s, m (rad for a bore), Hz and N.
     value, error : np.ndarray
         Measured friction, N or dimensionless, and its standard error; NaN if unknown.
     quantity : str
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
-        Inputs that all rows share, as text.
+        Conditions that all rows share, as text.
     labels : dict of list
         Columns of texts, by name.
     left_out : tuple of str
@@ -99,7 +99,7 @@ def read_measured(
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
-        Values of speed, amplitude, frequency and load in place of columns.
+        Values of speed, amplitude, frequency and load that replace columns.
     """
     if not is_table(source):
         raise InputError("measured", source, "allowed is the path of a CSV file, or its columns")
@@ -182,7 +182,7 @@ def _numbers(
 
 
 def _number(name: str, value: object, units: Mapping[str, str]) -> float:
-    """A value in SI units; raises InputError."""
+    """Read a value in SI units; raises InputError."""
     if value is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)

@@ -19,7 +19,7 @@ from microslip.theory import hertz
 
 
 class Points(NamedTuple):
-    """Points for microslip.solve: velocity and amplitude, shape (n,) each."""
+    """Dimensionless points for microslip.solve: velocity and amplitude, shape (n,) each."""
 
     velocity: np.ndarray
     amplitude: np.ndarray
@@ -34,7 +34,8 @@ class Scale:
     rows : Measured
         The measurements.
     poisson : float
-        Poisson's ratio of the equivalent half-space, or of the bodies.
+        Poisson's ratio of the equivalent half-space for u_lim, or of the bodies for the shear
+        modulus.
     unit, name : str
         Unit and name of the second unknown.
     """
