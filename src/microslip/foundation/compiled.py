@@ -18,7 +18,7 @@ from microslip.foundation.kernel_cache import BySources, folder
 
 numba.config.SLP_VECTORIZE = 1
 """Combine neighbouring scalar operations into vector instructions, which Numba does not do by
-default. Products of matrices then take half the time."""
+default.  Products of matrices then take half the time."""
 
 BLAS = "scipy.linalg.cython_blas"
 

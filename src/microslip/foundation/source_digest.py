@@ -4,7 +4,7 @@ The name of a result contains the digest of the physics, which is every package 
 those in `OUTER`.  In the folders of motions, pressures and methods, a file counts only if the
 physics imports it or the request names it.  So a new file there changes no other result.  The
 stamp of a dataset, page or figure contains the digest of the modules that make it, and of all
-modules that these import. Comments, docstrings and layout do not count.
+modules that these import.  Comments, docstrings and layout do not count.
 
 All modules are read once, when the package is imported, so that a digest belongs to the running
 code.

@@ -141,7 +141,7 @@ def predict(
         `load` is the sum over all contacts.  It is divided among them in proportion to the `load`
         of each contact.  force, drive_stiffness, mass and damping belong to the body.  Amplitudes
         belong to a contact whose `amplitude` is 1.  Results for a single contact belong to a
-        contact with the mean load. Warnings belong to the contact with the largest load.
+        contact with the mean load.  Warnings belong to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or
         a text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  They are used for warnings

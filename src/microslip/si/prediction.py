@@ -1,6 +1,6 @@
 """Predictions for real contacts: a record for each kind of request, and their common part.
 
-A contact at a prescribed speed has the record `Sliding`, or `SteadySpin` without an oscillation. A
+A contact at a prescribed speed has the record `Sliding`, or `SteadySpin` without an oscillation.  A
 contact under a force has the record `Rest`, `Drift` or `SpinDrift`.  `Prediction.to_dict` returns
 the columns of JSON and of tables, which are the same for all records.
 """

@@ -5,7 +5,7 @@ A vibration makes the forward force oscillate, by up to mu F_z, at multiples n o
 The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless.  The stiffness of
 the contact is 1.5.  If the body is ten times as stiff as the contact at all relevant n, its
 velocity is nearly constant.  If the force that makes the body follow the contact is small compared
-with mu F_z, the force is nearly constant. A vibration along the drive reverses the force, so that
+with mu F_z, the force is nearly constant.  A vibration along the drive reverses the force, so that
 the limits are ten times stricter.
 
 The limits were tested with some hundred random drives just within them, at amplitudes from 0.3 to

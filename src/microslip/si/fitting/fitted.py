@@ -31,7 +31,7 @@ class Fit:
         Coefficient of friction without vibration, dimensionless, and the ends of its interval.
     u_lim_m, u_lim_low_m, u_lim_high_m : float or None
         Displacement at which the whole contact slides under the mean load, m, and the ends of its
-        interval. A number that the rows do not determine is None; so is an infinite end of its
+        interval.  A number that the rows do not determine is None; so is an infinite end of its
         interval.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
         Shear modulus of the bodies, Pa, and the ends of its interval; None in a fit without a
