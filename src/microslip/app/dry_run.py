@@ -23,7 +23,7 @@ START = 2.3
 COMPILE = 50.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
-"""Pattern of the line in the log of a batch that contains its CPU time."""
+"""Pattern of the line with the CPU time in the log of a batch."""
 
 
 def summary(

@@ -1,4 +1,4 @@
-"""Targets of the workflow, and the figures that a configuration has data for."""
+"""Targets of the workflow, and the figures for which a configuration has data."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _datasets(configuration: Configuration) -> set[str]:
 
 
 def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
-    """True if the datasets of a figure suffice.
+    """True if the datasets of a figure contain enough points to draw it.
 
     A figure of a map needs several velocities and amplitudes.  A comparison needs datasets with
     the same amplitude and velocity.

@@ -138,8 +138,8 @@ def _loaded(path: str) -> Configuration:
 
 
 def _folder(configurations: list[Configuration]) -> Path:
-    """The folder of results that all configurations share.  Raises ConfigError if they have
-    several."""
+    """The folder of results that all configurations share.  Raises ConfigError if their folders
+    differ."""
     folders = {os.path.realpath(each.results): Path(each.results) for each in configurations}
     if len(folders) > 1:
         names = ", ".join(sorted(map(str, folders.values())))

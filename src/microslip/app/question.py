@@ -1,4 +1,4 @@
-"""Options, error messages and output of the commands that answer one question."""
+"""Options, error messages and output of the commands that print one answer."""
 
 from __future__ import annotations
 

@@ -33,7 +33,8 @@ OUTPUT = {
 }
 ENDINGS = (".csv", ".nc")
 ROUNDING = 1e-9
-"""A force is printed as 0 if its ratio to its error estimate is at most this number."""
+"""A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
+number."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a path without units."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}

@@ -85,7 +85,7 @@ class Sweep:
 
     @property
     def drawn_over(self) -> str:
-        """Abscissa of friction in the figure of a group."""
+        """Quantity on the abscissa in the figure of a group."""
         if self.spans_a_map:
             return "velocity and amplitude"
         return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
@@ -116,7 +116,7 @@ class CertifiedMap:
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """The smallest and the largest Poisson's ratio; () if there is only one."""
+        """The smallest and the largest Poisson's ratio; () if there is only one value."""
         ratios = self.sweep.poisson
         return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
 
@@ -156,7 +156,7 @@ class Configuration:
 
     @property
     def grids(self) -> dict[str, Sweep]:
-        """All sweeps by name, those of the paper first."""
+        """All sweeps by name.  Sweeps of the paper come first."""
         return self.sweeps | self.extended | self.drives
 
     @property

@@ -115,7 +115,7 @@ class Registry(Generic[T]):
     def find(self, folder: str | os.PathLike) -> None:
         """Register the classes in a folder.
 
-        A file that cannot be used raises an InputError only when its name is requested.
+        For a file that cannot be used, an InputError is raised only when its name is requested.
         """
         modules = dict(modules_in(folder, self.package, self.broken))
         for file, module in modules.items():

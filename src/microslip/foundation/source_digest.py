@@ -44,7 +44,7 @@ FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "press
 
 
 class Sources:
-    """The modules of a package, read at construction.
+    """The modules of a package.  They are read when the object is constructed.
 
     Attributes
     ----------

@@ -108,7 +108,7 @@ class TwoBodies:
 
     @property
     def u_lim(self) -> float:
-        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
+        """Displacement at which the whole contact slides, mu d E*/G*, m (see below Eq 2)."""
         return self.mu * self.indentation * self.E_star / self.G_star
 
     @property

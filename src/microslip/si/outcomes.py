@@ -165,7 +165,8 @@ def uncertainty_of_outcomes(
 
 
 def _error_of_draws(outcome: np.ndarray) -> float:
-    """Error estimate of a probability; outcome: array that is True for each draw with this outcome.
+    """Error estimate of a probability.  outcome: array that is True for each draw with this
+    outcome.
 
     It is the difference between the two halves of the draws, and at least log(DRAWS) / DRAWS, the
     order of the discrepancy of the sequence.

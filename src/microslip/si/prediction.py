@@ -36,7 +36,7 @@ _NAMES = """
     probability_runs_away probability_error
 """
 COLUMNS = tuple(_NAMES.split())
-"""Columns of JSON and of tables, in order."""
+"""Names of the columns of JSON and of tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "uncertainty")

@@ -37,7 +37,7 @@ PROBABILITIES = {
     "probability_moves": "moves",
     "probability_runs_away": "runs away",
 }
-"""Outcomes by the column of their probability."""
+"""Names of the outcomes, by the columns of their probabilities."""
 LARGEST_NUMBER = 1e4
 """Largest number with which the contact radius is printed in the unit of the other lengths.  A
 larger radius is printed in another unit."""

@@ -32,8 +32,8 @@ REFERENCE_LOADS_OF_DRIVING = (
 )
 """Remark on a force-speed line for an oscillating normal load."""
 QUANTILES, FIRST_ORDER = "quantiles", "first order"
-"""Methods for an interval.  Either it has the quantiles of draws, whose static friction is solved,
-or the static friction is assumed to be linear in each input."""
+"""Methods for an interval: quantiles of draws for which the static friction is solved, or static
+friction that is assumed to be linear in each input."""
 EXCLUDED = 1e-3
 """Probability below which an outcome counts as excluded."""
 

@@ -66,8 +66,7 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
 
 
 def natural_frequency(drive: Drive) -> float | None:
-    """Natural frequency of the body on its spring and the sticking contact, relative to the
-    vibration.
+    """Natural frequency of the body on its spring and the sticking contact.
 
     It is divided by the frequency of the vibration.  It is None without a mass.
     """

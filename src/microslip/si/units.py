@@ -192,7 +192,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 
 def stopped(read_so_far: str, rest: str) -> str:
-    """A message with the place where reading stopped, and a hint at the likely meaning."""
+    """A message with the place at which reading stopped, and a hint about the likely meaning."""
     hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:

@@ -32,7 +32,7 @@ def concluded(
     confidence: float,
     texts: dict,
 ) -> Fit:
-    """The result of a fit; raises InputError if the rows do not determine mu.
+    """The result of a fit.  Raises InputError if the rows do not determine mu.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ PASSES = 3
 STILL = 1e-10
 """Smallest change of theta that counts."""
 FIRST_STEP = 0.1
-"""First step from the best fit towards an end of an interval, if the curvature is singular."""
+"""First step from the best fit towards an end of an interval, used if the curvature is singular."""
 DOUBLINGS = 12
 """Largest number of steps towards the end of an interval.  Each step is twice as long as the last
 one."""

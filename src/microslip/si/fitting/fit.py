@@ -1,4 +1,4 @@
-"""mu and u_lim, or the shear modulus, of a contact whose friction was measured."""
+"""Fit of mu, and of u_lim or the shear modulus, to the measured friction of a contact."""
 
 from __future__ import annotations
 

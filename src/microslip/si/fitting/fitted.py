@@ -116,7 +116,7 @@ class Fit:
     curve: Curve = field(repr=False)
 
     def to_dict(self) -> dict:
-        """All fields except the curve as a dict, with lists for arrays and tuples."""
+        """All fields except the curve as a dict.  Arrays and tuples become lists."""
 
         def plain(value: object) -> object:
             if isinstance(value, np.ndarray):
