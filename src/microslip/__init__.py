@@ -1,8 +1,8 @@
 """Friction of a vibrated Hertz contact, resolved by boundary elements.
 
 ``solve`` computes the friction at one point, ``solve_stored`` also stores the result.  ``history``
-and ``traction_field`` compute forces and tractions in detail.  Importing the package is fast, since
-each name imports its module at first use.
+and ``traction_field`` compute forces and tractions in detail.  Importing the package is fast,
+since each module is imported when one of its names is first used.
 """
 
 from importlib import import_module as _import_module
@@ -68,7 +68,7 @@ __version__ = "0.1.0"
 
 
 def __dir__() -> list[str]:
-    """Names for completion, including the names whose modules are not imported yet."""
+    """Names for completion, including names whose modules are not imported yet."""
     return sorted({*globals(), *_WHERE})
 
 

@@ -1,4 +1,5 @@
-"""The command line: `microslip point MOTION ...` solves one point, `microslip sweep` many."""
+"""The command line.  `microslip point MOTION ...` solves one point, and `microslip sweep` many
+points."""
 
 from __future__ import annotations
 
@@ -27,12 +28,12 @@ COMMANDS = {
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
     "response": "forces of a contact that follows the path of a file",
 }
-"""Commands with a module of their own in this package, and their results."""
+"""Commands that have a separate module in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."
 
 
 def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
-    """Parser of the command line; the command `selected` has all of its options."""
+    """Parser of the command line.  Only the command `selected` has all of its options."""
     parser = option_parser.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
@@ -72,7 +73,7 @@ def _module_of(command: str) -> ModuleType:
 
 
 def _add_motions(parser: argparse.ArgumentParser) -> None:
-    """Add a parser for each motion; imports the motions."""
+    """Add a parser for each motion.  This imports the motions."""
     from microslip.motions.by_name import MOTIONS
 
     motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
@@ -176,13 +177,14 @@ def main(arguments: list[str] | None = None) -> int:
     Parameters
     ----------
     arguments : list of str, optional
-        Words after the name of the program.  By default those of this process, which signals then
-        end, see microslip.app.terminal.
+        Words after the name of the program.  The default is the command line of this process.  In
+        this case, signals end the process, see microslip.app.terminal.
 
     Returns
     -------
     int
-        0 converged, 1 not converged, 2 bad input; the exit code of Snakemake for `sweep`.
+        0 if converged, 1 if not converged, 2 for bad input.  `sweep` returns the exit code of
+        Snakemake.
     """
     if arguments is None:
         words = sys.argv[1:]
@@ -233,7 +235,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _problem_of_motion(words: list[str]) -> InputError | None:
-    """The InputError of a motion with a broken file; None for all other words."""
+    """The InputError if the words name a motion whose file cannot be used; otherwise None."""
     from microslip.motions.by_name import BROKEN
 
     name = words[0].partition(":")[0] if words else ""
@@ -244,8 +246,8 @@ def _problem_of_motion(words: list[str]) -> InputError | None:
 def _split_motion(words: list[str]) -> tuple[list[str], str]:
     """Words of `point` with the bare name of the motion, and the motion with its numbers.
 
-    The parser knows bare names, such as elliptic for elliptic:forward=0.5.  Words of other commands
-    are unchanged.
+    The parser accepts only bare names, such as elliptic for elliptic:forward=0.5.  Words of other
+    commands are unchanged.
     """
     if words[:1] != ["point"] or len(words) < 2:
         return words, ""
@@ -256,7 +258,8 @@ def _split_motion(words: list[str]) -> tuple[list[str], str]:
 
 
 def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]:
-    """Name of the option for an argument of `solve`, and its text on the command line."""
+    """Name of the option for an argument of `solve`, and the text of the option on the command
+    line."""
     if argument == "motion":
         return "MOTION", options.motion
     option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
@@ -264,7 +267,8 @@ def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]
 
 
 def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:
-    """The result for the options; raises InputError and CacheError as microslip.solve_stored."""
+    """The result for the options.  Raises InputError and CacheError, like
+    microslip.solve_stored."""
     texts = {name: getattr(options, name, None) for name in REALS}
     numbers: dict[str, Any] = {
         name: spec.read(name, text) for name, text in texts.items() if text not in (None, "none")
@@ -291,7 +295,8 @@ def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] 
 
 
 def _bar() -> contextlib.AbstractContextManager[Any]:
-    """A progress line on standard error that counts the runs; None unless it is a terminal."""
+    """A progress line on standard error that counts the runs.  None if standard error is not a
+    terminal."""
     if not sys.stderr.isatty():
         return contextlib.nullcontext()
     from tqdm import tqdm

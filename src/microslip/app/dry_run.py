@@ -1,4 +1,4 @@
-"""Output of a dry run: the number of points to solve, and an estimate of the time."""
+"""Output of a dry run: the number of points to solve, and an estimate of the computing time."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from microslip.sweeps.batches import Batch
 from microslip.sweeps.store import Store
 
 TYPICAL = 0.025
-"""CPU seconds of a request on one core: mean over the default configuration at a tolerance of 1e-3,
-measured by benchmarks/sweep_cost.py."""
+"""Mean CPU seconds of a request on one core, measured by benchmarks/sweep_cost.py with the default
+configuration and a tolerance of 1e-3."""
 QUICK = ("point", "history", "field", "period")
-"""Kinds of requests that TYPICAL applies to."""
+"""Kinds of requests to which TYPICAL applies."""
 START = 2.3
-"""CPU seconds that a job takes besides solving, measured by benchmarks/first_run.py."""
+"""CPU seconds that a job takes in addition to solving, measured by benchmarks/first_run.py."""
 COMPILE = 50.0
 """CPU seconds that two jobs take to compile the solver, measured by benchmarks/first_run.py."""
 SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re.MULTILINE)
-"""Line in the log of a batch with its CPU time."""
+"""Pattern of the line with the CPU time in the log of a batch."""
 
 
 def summary(
@@ -34,12 +34,12 @@ def summary(
     Parameters
     ----------
     jobs : iterable of (str, Batch or None)
-        Group and batch of each job that solves; None for a certified map.
+        Group and batch of each job that solves points.  The batch is None for a certified map.
     folder : path
-        Folder of results.  Requests with a result in its store are not counted.  Its logs have the
-        times of earlier batches of a group.
+        Folder of results.  Requests with a result in its store are not counted.  Its logs contain
+        the computing times of earlier batches.
     cores : int
-        Number of jobs at a time.
+        Number of jobs that run at the same time.
     compiles : bool
         Whether the run compiles the solver.
     """
@@ -73,7 +73,8 @@ def summary(
 
 
 def _mean_time(folder: Path, group: str) -> float | None:
-    """Mean CPU seconds of the requests of a group in the logs of its batches; None without logs."""
+    """Mean CPU seconds of a request of a group, from the logs of its batches.  None without
+    logs."""
     logs = (folder / "logs" / "solve" / group).glob("*.log")
     texts = [path.read_text("utf-8", errors="replace") for path in logs]
     times = [(int(count), float(time)) for text in texts for count, time in SOLVED.findall(text)]

@@ -1,4 +1,4 @@
-"""Targets of the workflow, and the figures that a configuration leads to."""
+"""Targets of the workflow, and the figures for which a configuration has data."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ TARGETS = {
 
 
 def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
-    """Figures with data in the configuration, and the names of the datasets of each."""
+    """Figures for which the configuration has data, and the names of the datasets of each
+    figure."""
     datasets = _datasets(configuration)
     figures = {
         figure: names
@@ -37,12 +38,12 @@ def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
 
 
 def _datasets(configuration: Configuration) -> set[str]:
-    """Names of the datasets of all figures except those of groups and certified maps."""
+    """Names of the datasets of all figures, except figures of groups and certified maps."""
     return {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
 
 
 def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
-    """True if the datasets of a figure suffice.
+    """True if the datasets of a figure contain enough points to draw it.
 
     A figure of a map needs several velocities and amplitudes.  A comparison needs datasets with
     the same amplitude and velocity.
@@ -67,7 +68,7 @@ def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configurati
 
 
 def _has(axis: Sequence[float] | None, values: Sequence[float] | None) -> bool:
-    """True if `values` has one value, and an axis has it up to rounding."""
+    """True if `values` has a single value, and an axis contains it up to rounding."""
     if axis is None or values is None:
         return False
     return len(values) == 1 and any(math.isclose(value, values[0]) for value in axis)
@@ -86,7 +87,7 @@ def why_no_figure(configuration: Configuration, figure: str) -> str:
 
 
 def heading_of(configuration: Configuration, dataset: str) -> str:
-    """Heading in the report of a run of the figures whose first dataset this is."""
+    """Heading, in the report of a run, for the figures whose first dataset is this one."""
     headings = {
         "The paper's figures": configuration.sweeps,
         "Other motions and pressures": configuration.extended,

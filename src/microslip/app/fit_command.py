@@ -1,4 +1,4 @@
-"""`microslip fit`: a coefficient of friction and u_lim from measured friction."""
+"""The command `microslip fit`: fit a coefficient of friction and u_lim to measured friction."""
 
 from __future__ import annotations
 
@@ -59,7 +59,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
+    """Run the command.  Returns the exit code: 0 for both numbers, 1 for one of them, 2 for bad
+    input."""
     titles = {"motion": "MOTION", "measured": "CSV"}
     return respond("microslip fit", options, _answer, titles)
 
@@ -91,7 +92,7 @@ def _opened(path: str) -> xr.Dataset:
 
 
 def _refuse_endings(options: argparse.Namespace) -> None:
-    """Raise InputError for an output file with an unknown ending."""
+    """Raise InputError if the name of the output file has an unknown ending."""
     for name, endings in (("figure", (".png", ".pdf")), ("output", (".nc",))):
         path = getattr(options, name)
         if path is not None and Path(path).suffix.lower() not in endings:
@@ -152,11 +153,11 @@ def _interval(value: float | None, low: float | None, high: float | None, unit: 
 
 
 def _scaled(value: float | None, unit: str) -> str:
-    """A value with a suitable prefix of its unit."""
+    """Text of a value, with a suitable prefix of the unit."""
     name, size = prefixed(value, unit) if unit and value else (unit, 1.0)
     return f"{_digits((value or 0.0) / size, 4)} {name}".strip()
 
 
 def _digits(value: float, count: int) -> str:
-    """A number with `count` significant digits, including zeros at the end."""
+    """Text of a number with `count` significant digits, including zeros at the end."""
     return f"{value:#.{count}g}".rstrip(".") if value else "0"

@@ -1,4 +1,4 @@
-"""The log of a job of the workflow, and its message on failure."""
+"""The log of a job of the workflow, and the message if the job fails."""
 
 import gc
 import logging
@@ -12,7 +12,7 @@ from microslip.foundation.files import advice
 
 
 class _LogFile(logging.FileHandler):
-    """A log file that stores an error of the system as `problem` instead of raising it."""
+    """A log file that stores an operating system error as `problem` instead of raising it."""
 
     problem: OSError | None = None
 
@@ -30,10 +30,10 @@ class _LogFile(logging.FileHandler):
 
 @contextmanager
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
-    """Context of a job: yields a logger that writes to the file `path`.
+    """Context manager of a job.  It yields a logger that writes to the file `path`.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log has its traceback; errors with a remedy are one line instead.
+    with exit code 1.  The log contains the traceback, or only one line for an error with a remedy.
     """
     try:
         file = _LogFile(path, mode="w", encoding="utf-8")

@@ -1,8 +1,8 @@
-"""`microslip gc`: list and remove files in a folder of results that no configuration requests.
+"""The command `microslip gc`: list and remove files of results that no configuration requests.
 
 After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
 stay in the folder, since another configuration may request them.  Only files that the workflow
-names or stamps count: all other files belong to the user.
+names or stamps are considered, since all other files belong to the user.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ PLACES = {".": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
 
 
 def requested(plan: Plan, folder: Path) -> set[str]:
-    """Paths, inside the folder of results, of all files that a plan makes.
+    """Paths of all files that a plan makes.  The paths are relative to the folder of results.
 
-    The points of a certified map are those in its batch.  Where the batch is missing or damaged,
-    all points of the motion count as requested.
+    The batch of a certified map contains its points.  If the batch is missing or damaged, all
+    points of the motion count as requested.
     """
     certified = plan.configuration.certified
     paths = {file for product in plan.products.values() for file in product.files}
@@ -60,7 +60,7 @@ def _path_of(request: dict) -> str:
 
 
 def _named(folder: Path) -> Iterator[tuple[str, Path]]:
-    """(kind of KINDS, path) of everything in a folder of results that has the name of a result."""
+    """Kind and path of each file in a folder of results that has the name of a result."""
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -78,9 +78,10 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
 
 
 def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
-    """Files in a folder of results that none of the plans requests, by their kind.
+    """Files in a folder of results that none of the plans requests, by kind.
 
-    Links, files behind links and folders with the name of a file belong to the user.
+    Links, files behind links, and folders with the name of a file belong to the user and are not
+    listed.
     """
     needed = {file for plan in plans for file in requested(plan, folder)}
     paths: dict[str, list[Path]] = {kind: [] for kind in KINDS}
@@ -93,7 +94,7 @@ def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
 
 
 def remove(paths: Iterable[Path], folder: Path) -> None:
-    """Remove files of a folder of results, and the folders inside it that become empty."""
+    """Remove files from a folder of results, and also subfolders that become empty."""
     for path in paths:
         try:
             path.unlink(missing_ok=True)
@@ -105,7 +106,7 @@ def remove(paths: Iterable[Path], folder: Path) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Entry point of `microslip gc`; returns the exit code: 0, or 2 for bad input."""
+    """Entry point of `microslip gc`.  Returns the exit code, which is 0, or 2 for bad input."""
     options = _parser().parse_args(arguments)
     try:
         configurations = [_loaded(path) for path in options.configfile or [DEFAULT]]
@@ -137,7 +138,8 @@ def _loaded(path: str) -> Configuration:
 
 
 def _folder(configurations: list[Configuration]) -> Path:
-    """The folder of results that all configurations share; raises ConfigError for several."""
+    """The folder of results that all configurations share.  Raises ConfigError if their folders
+    differ."""
     folders = {os.path.realpath(each.results): Path(each.results) for each in configurations}
     if len(folders) > 1:
         names = ", ".join(sorted(map(str, folders.values())))

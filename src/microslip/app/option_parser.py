@@ -1,4 +1,4 @@
-"""Parsing of command lines: bad input gives one line on standard error and exit code 2."""
+"""Parsing of command lines.  Bad input gives one line on standard error and exit code 2."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SYNONYMS = {
     "--speed": "--velocity",
     "--velocity": "--speed",
 }
-"""Names of the same quantity in two commands."""
+"""Names of quantities that differ between two commands."""
 
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
-"""Beginning of a word that is a negative number and not an option."""
+"""Pattern of the beginning of a word that is a negative number, not an option."""
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Argument parser that reports bad input by one line on standard error and exit code 2."""
+    """Argument parser that reports bad input in one line on standard error, with exit code 2."""
 
     def error(self, message: str) -> NoReturn:
         if message.startswith("unrecognized arguments"):
@@ -40,7 +40,8 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
     def _refuse_strange_words(self, words: Sequence[str]) -> None:
-        """Refuse unknown words before argparse does, whose message would name a missing one."""
+        """Refuse unknown words before argparse does.  Its message would name a missing argument
+        instead."""
         known = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
         named: dict[str, list[str]] = {}
@@ -58,9 +59,9 @@ class OneLineParser(argparse.ArgumentParser):
             self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices or ())}")
 
     def _refuse_second(self, name: str, names: list[str]) -> None:
-        """Refuse a second value of an option, except of flags and options with several values.
+        """Refuse a repeated option, except flags and options with several values.
 
-        names: names under which the option has occurred so far.
+        names: names that the command line has used for the option so far.
         """
         action = self._option_string_actions[name]
         names.append(name)
@@ -82,22 +83,22 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _hint(name: str, known: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar known name, '' if there is none."""
+    """'did you mean NAME? ' for the most similar known name, or '' if there is none."""
     synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in known]
     near = synonym or difflib.get_close_matches(name, known, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
 def option(argument: str) -> str:
-    """Option of a Python argument: --contact-radius for contact_radius."""
+    """Option for a Python argument, such as --contact-radius for contact_radius."""
     return f"--{argument.replace('_', '-')}"
 
 
 def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
-    """A message with options in place of Python arguments.
+    """A message in which options replace Python arguments.
 
-    It replaces decimal and encoding of a CSV file, and arguments whose names have several words:
-    one word may also be an ordinary word of the text.
+    Only decimal, encoding and names of several words are replaced, since a name of one word may
+    also be an ordinary word of the text.
     """
     text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
     names = "|".join(name for name in arguments if "_" in name)
@@ -107,7 +108,7 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class Said(argparse.Action):
-    """Action that stores a value, and the name by which the option was called."""
+    """Action that stores a value, and the name of the option on the command line."""
 
     def __call__(
         self,
@@ -123,7 +124,7 @@ class Said(argparse.Action):
 def joined(arguments: list[str]) -> list[str]:
     """Arguments with each negative number joined to its option, as in --velocity=-1e-3.
 
-    argparse would take the number for an option.
+    Otherwise argparse would read the number as an option.
     """
     out: list[str] = []
     for word in arguments:

@@ -1,11 +1,13 @@
-"""Plan of a configuration: batches of requests, products, and the inputs of each product.
+"""Plan of a configuration.  It contains batches of requests, products, and the inputs of each
+product.
 
-The rules of the workflow use it.  It does not depend on Snakemake, and its import is cheap, since
-every process of Snakemake parses the workflow.
+The rules of the workflow use it.  It does not import Snakemake.  Its import is fast, since every
+process of Snakemake parses the workflow.
 
 A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
-explorer ("pages/explorer").  A group of batches has the name of a sweep, study or certified map.
-The group "bore_histories" holds the single runs in a dataset, "bore_periods" those of the explorer.
+explorer ("pages/explorer").  A group of batches is named after its sweep, study or certified map.
+The group "bore_histories" contains the single runs of a dataset, and "bore_periods" contains those
+of the explorer.
 """
 
 from __future__ import annotations
@@ -29,7 +31,8 @@ from microslip.sweeps import batches, stamps
 from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make the dataset of a sweep and its page, without their imports."""
+"""Modules that make the dataset of a sweep and its page.  Modules that these import are not
+listed."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
@@ -43,13 +46,13 @@ class Product(NamedTuple):
     Attributes
     ----------
     files : list of str
-        Paths inside the folder of results.
+        Paths relative to the folder of results.
     code : tuple of str
-        Modules that make the product, without their imports.
+        Modules that make the product.  Modules that these import are not listed.
     datasets, groups : sequence of str
-        Names of the datasets and of the groups of batches that are the inputs.
+        Names of the input datasets, and names of the groups of input batches.
     settings : dict
-        Settings that influence the product, as values for JSON.
+        Settings that influence the product, as JSON values.
     """
 
     files: list[str]
@@ -60,17 +63,17 @@ class Product(NamedTuple):
 
 
 class Plan:
-    """The plan of a checked configuration.  Paths are inside the folder of results.
+    """The plan of a checked configuration.  Paths are relative to the folder of results.
 
     Attributes
     ----------
     configuration : Configuration
     studies : dict of str to str
-        Studies by the names of their datasets.
+        Names of the studies, by the names of their datasets.
     figures : dict of str to tuple of str
-        Figures with data in this configuration, and the names of the datasets of each.
+        Figures for which the configuration has data, and the names of the datasets of each figure.
     products : dict of str to Product
-        All products by name.
+        All products, by name.
     """
 
     def __init__(self, configuration: Configuration):
@@ -94,7 +97,7 @@ class Plan:
         ]
 
     def _batches_in(self, group: str) -> dict[str, Batch]:
-        """Batches of a group by name, in the order of its requests; {} for a certified map."""
+        """Batches of a group by name, in the order of the requests; {} for a certified map."""
         configuration = self.configuration
         name, _, runs = group.rpartition("_")
         if group in configuration.grids:
@@ -121,7 +124,7 @@ class Plan:
         return fingerprint(map_.settings, code, solver)[:20]
 
     def batch_files(self, *groups: str) -> list[str]:
-        """Paths of all batches of these groups, in their order."""
+        """Paths of all batches of these groups, in the order of the groups."""
         certified = self.configuration.certified
         return [
             f"batches/{group}/{name}.jsonl"
@@ -161,12 +164,13 @@ class Plan:
 
     @property
     def targets(self) -> list[str]:
-        """Names of all targets: those of TARGETS, all figures, and fig1 to fig6."""
+        """Names of all targets, which are those of TARGETS, all figures, and fig1 to fig6."""
         names = (*figure_targets.TARGETS, *drawing.FIGURES, *self.figures, *drawing.SHORT_NAMES)
         return list(dict.fromkeys(names))
 
     def products_of(self, target: str) -> list[str]:
-        """Products of a target; raises ConfigError if the configuration has no data for it."""
+        """Products of a target.  Raises ConfigError if the configuration has no data for the
+        target."""
         configuration = self.configuration
         drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
         datasets = {
@@ -188,7 +192,7 @@ class Plan:
         return [f"figures/{figure}"]
 
     def _figures_of(self, datasets: Iterable[str]) -> list[str]:
-        """Figures that are drawn from these datasets alone, or from these and maps of the paper."""
+        """Figures drawn from these datasets alone, or from these datasets and maps of the paper."""
         paper = set(self.configuration.sweeps)
         return [
             f"figures/{figure}"
@@ -199,7 +203,8 @@ class Plan:
     # Fingerprints of the inputs of products
 
     def _made_of(self, product: str) -> str:
-        """Fingerprint of the code, settings and points of a product, whatever the batches are."""
+        """Fingerprint of the code, settings and points of a product.  It does not depend on the
+        division into batches."""
         _, modules, datasets, groups, settings = self.products[product]
         inputs = [self.made_of(dataset) for dataset in datasets]
         points = [self._points_in(group) for group in groups]
@@ -216,7 +221,7 @@ class Plan:
 def product_job(
     job: Any, product: str, shown: int = logging.WARNING
 ) -> Iterator[tuple[Plan, logging.Logger]]:
-    """Context of a job that makes a product; yields the plan and a logger.
+    """Context manager of a job that makes a product.  It yields the plan and a logger.
 
     It renames damaged files of the product first, and writes the stamp last.  Raises SourcesEdited
     if the fingerprint of the product has changed since it was planned.
@@ -224,7 +229,7 @@ def product_job(
     Parameters
     ----------
     job : object
-        The variable `snakemake` of the script; the last output is the stamp.
+        The variable `snakemake` of the script.  Its last output is the stamp.
     shown : int
         Lowest level of messages on standard error.
     """

@@ -9,7 +9,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 
 RATIO = "a ratio: mean forward force over mu F_z; the coefficient of friction is mu times mu_macro"
-"""Explanation of mu_macro."""
+"""Explanation of mu_macro for users."""
 OWN_EQUATIONS = (
     "an approximate model: the error estimate covers its discretisation, not the approximation"
 )
@@ -19,7 +19,7 @@ DIGITS = 6
 
 
 def as_text(result: Result) -> str:
-    """The lines of a result on standard output."""
+    """The lines that are printed for a result."""
     if result.force is not None:
         assert result.velocity_error is not None  # set under a force
         lines = [f"velocity = {number_text(result.velocity, result.velocity_error, digits=DIGITS)}"]
@@ -44,7 +44,7 @@ def as_text(result: Result) -> str:
 
 
 def _is_approximate(result: Result) -> bool:
-    """True for a model whose error remains when its mesh is refined."""
+    """True for a model whose error does not vanish when its mesh is refined."""
     if result.model not in MODELS:
         return False  # a closed form
     problem = Problem(motion_named(result.motion), result.velocity, result.amplitude)

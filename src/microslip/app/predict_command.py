@@ -73,7 +73,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "encoding": ("NAME", "with --table: encoding of the file, such as cp1252 (utf-8)"),
     },
 }
-"""Options by the headings of the help: metavar and help text."""
+"""Options by heading of the help.  Each option has a metavar and a help text."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
@@ -124,7 +124,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
+    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
+    input."""
     names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
     return respond("microslip predict", options, _answer, {"motion": "MOTION"}, names)
 

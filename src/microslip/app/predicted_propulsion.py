@@ -26,7 +26,7 @@ REFUSED |= dict.fromkeys(
 
 
 def line_of(motion: str, options: dict) -> RealPropulsionLine:
-    """The line of a motion for options of predict by name; raises InputError."""
+    """The force-speed line of a motion, for options of predict by name.  Raises InputError."""
     from microslip.si.propulsion import predict_propulsion
 
     for name, reason in REFUSED.items():

@@ -23,7 +23,7 @@ FORMAT = ("decimal", "encoding")
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
-"""Columns of a periodic motion; a contact that runs away has none of them."""
+"""Columns of a periodic motion.  They are empty for a contact that runs away."""
 PROBABILITIES = {
     "stays %": "probability_stays",
     "moves %": "probability_moves",
@@ -33,7 +33,7 @@ PROBABILITIES = {
 
 
 def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
-    """The predictions of a table; complete if all of them converged.
+    """The predictions of a table, as an Answer.  It is complete if all predictions converged.
 
     Error messages of lines without a prediction are written to standard error.
 
@@ -47,7 +47,7 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
     Raises
     ------
     InputError
-        For a bad option, and for a table without a valid line.
+        If an option is invalid, or the table has no valid line.
     """
     from tqdm import tqdm
 
@@ -78,7 +78,8 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
 
 
 def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[dict[str, Any]]:
-    """A dict for each line: its number, its labels, its error message or None, and its columns."""
+    """A dict for each line, with its number, its labels, its error message or None, and its
+    columns."""
     rows = []
     for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
         labels = {name: texts[index] for name, texts in table.labels.items()}
@@ -92,9 +93,9 @@ def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[di
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
-    """The error message of a line, with names of columns and options in place of arguments.
+    """The error message of a line, in which names of columns and options replace arguments.
 
-    An InputError about an empty cell, or about a missing column, has no value.
+    An InputError about an empty cell or a missing column has no value.
     """
     from microslip.si.predict import NOTHING
 
@@ -108,7 +109,7 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
 
 
 def _refuse_output(path: str | None, table: str) -> None:
-    """Raise InputError for an output file that cannot be written, or is the table itself."""
+    """Raise InputError if the output file cannot be written, or is the input table."""
     if path is None:
         return
     file, allowed = Path(path), ""
@@ -129,7 +130,7 @@ def _write(
     answers: Sequence[Prediction | NoPrediction],
     rows: Sequence[Mapping[str, Any]],
 ) -> None:
-    """Write all columns of all cases to a .csv or .nc file, atomically; raises InputError."""
+    """Write all columns of all cases to a .csv or .nc file atomically.  Raises InputError."""
     from microslip.foundation.files import writing_beside
     from microslip.si.table import as_dataset
 
@@ -153,11 +154,11 @@ class _Quantity(NamedTuple):
     Attributes
     ----------
     columns : tuple of str
-        Columns of its value, its error estimate and its standard uncertainty.
+        Columns of the value, of the error estimate and of the standard uncertainty.
     headings : tuple of str
-        Their headings; empty for a column that is not printed.
+        Headings of these columns.  A column that is not printed has an empty heading.
     sought : str or None
-        For the result of a search: the name of the quantity.
+        Name of the quantity, if it is the result of a search.
     """
 
     columns: tuple[str, str, str]
@@ -166,7 +167,7 @@ class _Quantity(NamedTuple):
 
 
 def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
-    """The printed table: a row for each case, and remarks below."""
+    """The printed table, with a row for each case and remarks below."""
     some = [one for one in answers if isinstance(one, Prediction)]
     quantities, verdict = _quantities(some), _verdict_headings(some)
     headings = [text for one in quantities for text in one.headings if text] + verdict
@@ -233,7 +234,7 @@ def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
 
 
 def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
-    """Headings of the outcome under a force and of the probabilities of all outcomes."""
+    """Headings of the outcome under a force, and of the probabilities of the outcomes."""
     if all(one.force_N is None for one in answers):
         return []
     uncertain = any("probability_error" in one.uncertainty for one in answers)
@@ -241,7 +242,8 @@ def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
 
 
 def _verdict_cells(row: Mapping[str, Any]) -> list[str]:
-    """The outcome, the probability of each outcome, and the error of these probabilities."""
+    """Texts of the outcome, of the probability of each outcome, and of the error of the
+    probabilities."""
     error = row["probability_error"]
     chances = [row[column] for column in PROBABILITIES.values()]
     texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]

@@ -9,17 +9,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
-"""Seconds until a terminal first shows the elapsed time, and between updates; most calculations end
-sooner."""
+"""Seconds until a terminal first shows the elapsed time, and seconds between updates.  Most
+calculations end before the first one."""
 BETWEEN_LINES_OF_A_FILE = 15.0
-"""Seconds between two lines about progress where standard error is not a terminal."""
+"""Seconds between two lines about progress if standard error is not a terminal."""
 
 
 @contextmanager
 def elapsed_time(title: str) -> Iterator[None]:
-    """Context in which standard error shows the elapsed time of a calculation, after its title.
+    """Context manager that shows the title and the elapsed time of a calculation on standard error.
 
-    A terminal gets one line that is updated, a file a line every BETWEEN_LINES_OF_A_FILE seconds.
+    On a terminal, one line is updated.  In a file, a line is added every BETWEEN_LINES_OF_A_FILE
+    seconds.
     """
     ended = threading.Event()
     thread = threading.Thread(target=_show, args=[title, ended], daemon=True)
@@ -41,6 +42,6 @@ def _show(title: str, ended: threading.Event) -> None:
             text = f"{title}: {time.monotonic() - start:.0f} s"
             sys.stderr.write(form.format(text))
             sys.stderr.flush()
-        if text and sys.stderr.isatty():  # the answer takes the place of the line
+        if text and sys.stderr.isatty():  # the answer replaces the line
             sys.stderr.write(f"\r{' ' * len(text)}\r")
             sys.stderr.flush()

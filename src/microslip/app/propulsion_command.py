@@ -23,7 +23,7 @@ OPTIONS = {
 }
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")
-"""Fields of the line with an error estimate."""
+"""Fields of the line that have an error estimate."""
 REFERENCE_LOADS = (
     "u_lim belongs to the load without oscillation (the reference load); forces and powers are "
     "divided by mu times the mean load"
@@ -50,7 +50,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
+    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
+    input."""
     return respond("microslip propulsion", options, _answer, {"motion": "MOTION"})
 
 

@@ -1,4 +1,4 @@
-"""Options, error messages and output of the commands that answer one question."""
+"""Options, error messages and output of the commands that print one answer."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 
 
 class Answer(NamedTuple):
-    """An answer.
+    """The answer of a command.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ def add_json(parser: Any) -> None:
 
 
 def typed_options(options: argparse.Namespace) -> dict[str, Any]:
-    """Values of the options on the command line, by argument."""
+    """Values of the options on the command line, by the name of the argument."""
     return {name: getattr(options, name) for name in getattr(options, "said", {})}
 
 
@@ -68,7 +68,7 @@ def respond(
     titles: Mapping[str, str],
     arguments: Iterable[str] = (),
 ) -> int:
-    """Print the answer to a command line, or its error message.
+    """Print the answer to a command line, or an error message.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def respond(
     Returns
     -------
     int
-        Exit code: 0 complete, 1 not complete, 2 bad input.
+        Exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
     """
     from microslip.sweeps.evaluate import plain
 
@@ -105,6 +105,8 @@ def respond(
         complain(f"{command}: {error}")
         return 2
     text = json.dumps(plain(result.plain)) if options.json else result.text
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # it may lack the letters of units
+    encoding = (
+        getattr(sys.stdout, "encoding", None) or "utf-8"
+    )  # the encoding may lack the letters of units
     print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if result.complete else 1

@@ -1,4 +1,5 @@
-"""The command `microslip response`: forces of a contact that follows the path of a file."""
+"""The command The command `microslip response`: forces of a contact that follows a path from a
+file."""
 
 from __future__ import annotations
 
@@ -32,11 +33,12 @@ OUTPUT = {
 }
 ENDINGS = (".csv", ".nc")
 ROUNDING = 1e-9
-"""Largest force over its error estimate that is printed as 0."""
+"""A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
+number."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a path without units."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
-"""Options that go without a contact in SI units."""
+"""Options that are also allowed without a contact in SI units."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -60,7 +62,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the answer; return the exit code: 0 converged, 1 not converged, 2 bad input."""
+    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
+    input."""
     names = [name.replace("-", "_") for name in (*GROUPS["bodies"], "load", *OUTPUT)]
     return respond("microslip response", options, _answer, {"path": "CSV"}, names)
 
@@ -100,7 +103,8 @@ def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
 
 
 def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
-    """The columns as CSV, to six digits, after the reason if the response is not converged."""
+    """The columns as CSV with six digits.  The reason precedes them if the response is not
+    converged."""
     reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
     size = np.abs(dataset.force_error)
     forces = {
@@ -111,7 +115,7 @@ def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
 
 
 def _csv(dataset: xr.Dataset, digits: str | None = None) -> str:
-    """The columns of a response as CSV; units other than 1 are part of the headings."""
+    """The columns of a response as CSV.  Units other than 1 are part of the headings."""
     units = {name: one.attrs["units"] for name, one in dataset.items()}
     headings = {n: f"{n} [{unit}]" for n, unit in units.items() if unit != "1"}
     frame = dataset.to_dataframe().rename(columns=headings)

@@ -1,10 +1,12 @@
-"""`microslip sweep`: the workflow of this package, run by Snakemake in the current folder.
+"""The command `microslip sweep`: run the workflow of this package by Snakemake in the current
+folder.
 
 An installed package has the workflow in its folder `bundle`, a source tree at its top.  Both use
-the same results, whose names depend on the code alone.
+the same results, since the names of results depend only on the code.
 
-For bad input, Snakemake prints a list of all its options or a traceback, with exit code 1.  So the
-arguments and the configuration are checked here first: bad input gives one line and exit code 2.
+For bad input, Snakemake prints a list of all its options or a traceback, and returns exit code 1.
+So the arguments and the configuration are checked here first.  Bad input then gives one line and
+exit code 2.
 """
 
 from __future__ import annotations
@@ -67,7 +69,7 @@ def main(arguments: list[str]) -> int:
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
-    with redirect_stdout(sys.__stdout__):  # as for the jobs of Snakemake
+    with redirect_stdout(sys.__stdout__):  # also for the jobs of Snakemake
         return _run(arguments)
 
 
@@ -107,9 +109,11 @@ def snakefile() -> Path:
 
 
 def _spare_cache() -> None:
-    """Use a temporary folder for the files of Snakemake itself if the home cannot be written to.
+    """Use a temporary folder for the internal files of Snakemake if the home folder cannot be
+    written to.
 
-    Snakemake makes a folder in the home at each start, and fails with a traceback if it cannot.
+    Snakemake makes a folder in the home folder at each start.  If this fails, it ends with a
+    traceback.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     try:
@@ -125,7 +129,7 @@ def _spare_cache() -> None:
 
 
 def _check(arguments: list[str]) -> None:
-    """Raise InputError or ConfigError for bad arguments and a bad configuration."""
+    """Raise InputError for invalid arguments, or ConfigError for an invalid configuration."""
     options = _parsed(arguments)
     if options is None:
         return
@@ -177,7 +181,8 @@ def _check_configuration(options: argparse.Namespace) -> None:
 def _may_be_made(target: str) -> bool:
     """True for a file, a target of the workflow or the name of a figure.
 
-    Every name of a figure of groups or certified maps passes, since the configuration defines them.
+    All names of figures of groups or certified maps are accepted, since the configuration defines
+    them.
     """
     figures = (*drawing.FIGURES, *drawing.SHORT_NAMES)
     of_configuration = target.startswith((drawing.figure_of(""), drawing.CERTIFIED))
@@ -186,7 +191,7 @@ def _may_be_made(target: str) -> bool:
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """The arguments parsed by Snakemake; None if Snakemake will print its own message."""
+    """The arguments as parsed by Snakemake.  None if Snakemake will print its own message."""
     from snakemake.cli import parse_args
 
     messages = io.StringIO()

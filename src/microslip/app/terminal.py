@@ -1,6 +1,6 @@
-"""End of a command in a shell: Ctrl-C, a closed pipe, a full device, closed streams.
+"""Handling of Ctrl-C, closed pipes, full devices and closed streams when a command ends.
 
-Imports nothing heavy, so that Ctrl-C works from the start.
+The module imports nothing slow, so that Ctrl-C works from the start.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Any, NoReturn
 CANNOT_WRITE = 74
 """Exit code if the output cannot be written: EX_IOERR of sysexits.h."""
 CLOSED_PIPE = 141
-"""Exit code if the reader of the output is gone: that of a program ended by SIGPIPE."""
+"""Exit code if the reader of the output is gone.  It is that of a program ended by SIGPIPE."""
 OF_SIGNAL = 128
-"""Exit code of a program ended by a signal, minus the number of the signal."""
+"""Exit code of a program ended by signal n, minus n."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 GRACE = 0.4
-"""Seconds for Python to stop by itself and remove partial files."""
+"""Seconds that Python has to stop by itself and to remove partial files."""
 
 
 def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
@@ -33,7 +33,8 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
     Parameters
     ----------
     command
-        Function that prints to `sys.stdout` and returns an exit code, or raises SystemExit with it.
+        Function that prints to `sys.stdout`.  It returns an exit code, or raises SystemExit with
+        the exit code.
     stoppable
         True to end the command on signals; False for a command that handles signals itself.
 
@@ -58,7 +59,7 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
 
 
 def complain(text: str) -> None:
-    """Write one line to standard error; ignore a closed standard error."""
+    """Write one line to standard error, unless standard error is closed."""
     try:
         sys.stderr.write(" ".join(text.split()) + "\n")
         sys.stderr.flush()
@@ -102,7 +103,7 @@ def _open_closed_streams() -> None:
 
 
 def _written(code: int) -> int:
-    """Write the buffered output; returns the exit code, another one if writing fails."""
+    """Write the buffered output.  Returns the exit code, or another one if writing fails."""
     buffered: Any = sys.stdout  # of _open_closed_streams
     output = buffered.buffer.getvalue()
     if not output:
@@ -127,14 +128,14 @@ class _Stop:
     """End this process within about half a second of a signal.
 
     Python handles a signal between two bytecode instructions, and a compiled kernel is one
-    instruction, which may take a minute.  So a thread, which kernels do not block, also receives
-    the signal and ends the process after GRACE seconds.  In this time, a KeyboardInterrupt in the
-    main thread can remove partial files.
+    instruction, which may take a minute.  Kernels do not block other threads.  So another thread
+    also receives the signal, and ends the process after GRACE seconds.  Before that, a
+    KeyboardInterrupt in the main thread can remove partial files.
 
     Attributes
     ----------
     signal : signal.Signals or None
-        The first signal; None before it.
+        The first signal; None before the first signal.
     """
 
     def __init__(self) -> None:
@@ -174,10 +175,10 @@ class _Stop:
             sys.__unraisablehook__(problem)
 
     def end(self) -> NoReturn:
-        """End this process with one line and the exit code of the signal."""
+        """Print one line and end this process with the exit code of the signal."""
         ended = self.signal
         assert ended is not None
-        self._ending.acquire()  # never released: only one of the two threads continues
+        self._ending.acquire()  # never released, so that only one of the two threads continues
         try:
             own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
             os.write(2, f"{own_line}microslip: {STOPPED_BY[ended.name]}\n".encode())

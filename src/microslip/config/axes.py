@@ -1,6 +1,6 @@
 """Coordinates of the axes of sweeps.
 
-The module is imported whenever the workflow is parsed, so that it imports nothing slow.
+The module imports nothing slow, since every parse of the workflow imports it.
 """
 
 import math
@@ -13,22 +13,23 @@ from microslip.foundation.canonical import number
 DRIVES = ("mass", "damping", "stiffness", "force")
 """Parameters of a drive, in the order of the dimensions of datasets."""
 MOST_POINTS = 1_000_000
-"""Largest number of points of a sweep: for more the workflow takes a minute at every start."""
+"""Largest number of points of a sweep.  With more points, each start of the workflow takes a
+minute."""
 MOST_MAP_POINTS = 10_000
-"""Largest number of points of the map of a study, which every model computes."""
+"""Largest number of points of the map of a study.  Every model computes all of them."""
 
 
 def refuse_crowd(points: int, most: int, key: str = "") -> None:
-    """Raise Refusal for more points than `most`."""
+    """Raise Refusal if there are more points than `most`."""
     if points > most:
         raise Refusal(f"{points} points are not allowed; allowed: at most {most}", key)
 
 
 def coordinates(axis: Any) -> tuple[float, ...]:
-    """Coordinates of an axis in ascending order.
+    """Coordinates of an axis, in ascending order.
 
     axis: a number, a list of numbers, or {"linear" or "log": {"start", "stop", "count"}}.  Raises
-    Refusal for equal coordinates and for an empty range.
+    Refusal if coordinates are equal or a range is empty.
     """
     if isinstance(axis, dict):
         ((spacing, range_),) = axis.items()

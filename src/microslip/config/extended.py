@@ -1,6 +1,6 @@
-"""Motions, pressures and drives of sweeps, by names such as "elliptic:forward=0.5,phase=30".
+"""Motions, pressures and drives of sweeps, given by names such as "elliptic:forward=0.5,phase=30".
 
-The module is imported whenever the workflow is parsed, so that its functions import the solver.
+Every parse of the workflow imports this module.  So the solver is imported inside functions.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 def solver_names(sweep: Sweep) -> tuple[str, str]:
     """Canonical names of the motion and the pressure of a sweep.
 
-    Equal motions and equal pressures have equal names, by which stored points are found.
+    Equal motions and equal pressures have equal names.  Stored points are looked up by these
+    names.
     """
     if ":" not in sweep.motion + sweep.pressure:
-        return sweep.motion, sweep.pressure  # names without numbers are canonical
+        return sweep.motion, sweep.pressure  # a name without numbers is canonical
     from microslip.motions.by_name import motion_named
     from microslip.pressures.by_name import pressure_named
 
@@ -54,7 +55,8 @@ def refuse_unsolvable(sweep: Sweep) -> None:
 
 
 def _problem(sweep: Sweep, velocity: float | None, end: int, **drive: float | None) -> Problem:
-    """The problem of a sweep at a velocity and one end of its amplitudes; raises InputError."""
+    """The problem of a sweep at a velocity and at the smallest or largest amplitude.  Raises
+    InputError."""
     from microslip.adaptive.checks import checked_driven_problem
 
     return checked_driven_problem(

@@ -1,7 +1,7 @@
-"""From a YAML file to the checked records of a configuration.
+"""Reading of a YAML file into the checked records of a configuration.
 
-`settings` has the types, ranges and defaults of all keys.  This module checks combinations of keys
-and expands axes.
+`settings` contains the types, ranges and defaults of all keys.  This module checks combinations of
+keys and expands axes.
 """
 
 import codecs
@@ -33,9 +33,9 @@ from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 
 MOST_BYTES = 1_000_000
-"""Largest size of a configuration; PyYAML reads about 100 kB a second."""
+"""Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
 MOST_PANELS, MOST_LINES = 12, 8
-"""Largest number of sweeps on a figure of maps and on a figure of lines; a sweep counts once for
+"""Largest number of sweeps on a figure of maps, and on a figure of lines.  A sweep counts once for
 each Poisson's ratio."""
 
 
@@ -45,7 +45,8 @@ each Poisson's ratio."""
 def load(path: str | os.PathLike) -> Configuration:
     """Read and check a YAML file; return a Configuration or raise ConfigError.
 
-    Files of pressures are searched in the folder of the YAML file, then in the working directory.
+    Files of pressures are searched for in the folder of the YAML file, then in the working
+    directory.
     """
     return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
@@ -53,7 +54,7 @@ def load(path: str | os.PathLike) -> Configuration:
 def read_yaml(path: str | os.PathLike) -> dict:
     """Parse a YAML file into a dict.
 
-    Raises ConfigError for a file that cannot be read, for invalid YAML and for a key that occurs
+    Raises ConfigError if the file cannot be read, if the YAML is invalid, or if a key occurs
     twice.  The message is one line with the file and the line number.
     """
     if "\0" in str(path):
@@ -109,14 +110,14 @@ def with_files_found(
 ) -> dict:
     """Fill in the defaults and the paths of files of a parsed configuration.
 
-    A job can read the result in any folder.
+    A job can use the result in any working directory.
 
     Parameters
     ----------
     mapping, source, folders
         As for `from_mapping`.
     strict : bool
-        True: a missing file is refused.
+        True to refuse a missing file.
 
     Raises
     ------
@@ -141,9 +142,10 @@ def _settings(mapping: dict, source: str) -> Root:
 
 
 def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
-    """Add path and digest of its file to the name of a pressure, if it has a file.
+    """Add the path and the digest of the file to the name of a pressure, if it has a file.
 
-    A missing file raises InputError if `strict`; otherwise the name is returned as it is.
+    If the file is missing, raises InputError if `strict` is set; otherwise returns the unchanged
+    name.
     """
     if not named_files.speaks_of_file(pressure):
         return pressure
@@ -160,7 +162,8 @@ def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
 
 @contextmanager
 def _errors_at(where: str) -> Iterator[None]:
-    """Convert errors to ConfigError, one line that begins with `where`."""
+    """Context manager that converts errors to ConfigError, with a message of one line that begins
+    with `where`."""
     try:
         yield
     except ConfigError:
@@ -185,17 +188,18 @@ def from_mapping(
     mapping : dict
         Parsed YAML.
     source : str
-        Origin of the configuration in messages, usually the file.
+        Name of the configuration in messages, usually the file.
     ask_solver : bool
-        True: the solver, which takes half a second to import, checks motions, pressures and drives,
-        and missing files are refused.  The result does not depend on it.
+        True to check motions, pressures and drives with the solver, and to refuse missing files.
+        Importing the solver takes half a second.  The result does not depend on this argument.
     folders : iterable of paths
-        Folders in which files of pressures are searched before the working directory.
+        Folders in which files of pressures are searched for, before the working directory.
 
     Raises
     ------
     ConfigError
-        One line: source, key, value, what is allowed.
+        If the configuration is invalid.  The message is one line with source, key, value and what
+        is allowed.
     """
     settings = _settings(mapping, source)
     entries: dict[str, SteadySweep] = {}
@@ -246,7 +250,7 @@ def from_mapping(
 
 
 def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
-    """Convert the settings of a sweep to a Sweep; raises Refusal for combinations that are not
+    """Convert the settings of a sweep to a Sweep.  Raises Refusal for combinations that are not
     allowed."""
     drives = tuple(
         (drive, tuple(axis), isinstance(axis.raw, list | dict))
@@ -287,13 +291,13 @@ def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
 
 
 def _refuse_taken(name: str, others: Iterable[str]) -> None:
-    """Raise Refusal for the name of another result."""
+    """Raise Refusal if a sweep has the name of another result."""
     if name in RESERVED or name in others or name.removeprefix("certified_") in others:
         raise Refusal("another result has this name; allowed: a new one")
 
 
 def _by_content(pressure: str) -> str:
-    """Name of a pressure with the digest of its file in place of the path, if there is a digest."""
+    """Name of a pressure, in which the digest of its file, if there is one, replaces the path."""
     if not named_files.speaks_of_file(pressure):
         return pressure
     file = named_files.parse(pressure)

@@ -20,7 +20,7 @@ class Quantity:
     text : str
         Label of an axis.
     unit : str
-        Definition as a ratio, in plain text; "" if the symbol is the ratio.
+        Definition as a ratio, in plain text.  It is "" if the symbol is the ratio.
         report.figures.formulas converts it to other notations.
     symbol, latex : str
         Symbol in plain text and in LaTeX.
@@ -76,7 +76,7 @@ VELOCITY = {
         "forward velocity over rotational velocity of the contact's edge (Eq 13)",
     ),
 }
-"""Velocity, by motion of the paper."""
+"""Velocity for each motion of the paper."""
 AMPLITUDE = {
     "transverse": Quantity(
         *("amplitude", "amplitude", "y0 / u_lim", "y~0", r"\tilde{y}_0"),
@@ -87,7 +87,7 @@ AMPLITUDE = {
         "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
     ),
 }
-"""Amplitude, by motion of the paper; the steady motion has none."""
+"""Amplitude for each motion of the paper.  The steady motion has none."""
 
 DRIVES = {
     "force": Quantity(

@@ -1,25 +1,26 @@
 """Records of a checked configuration: sweeps, certified maps, studies and single runs.
 
-The module is imported whenever the workflow is parsed, so that it imports nothing slow.
+The module imports nothing slow, since every parse of the workflow imports it.
 """
 
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
-"""Motions of the paper, named as on the command line, by sweep, named as their datasets."""
+"""Motions of the paper, by the names of their sweeps, which are also the names of their datasets.
+Motions are named as on the command line."""
 HISTORIES_OF_SWEEP = {
     "transverse": ("transverse",),
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
-"""Single runs for figures that the dataset of a sweep contains."""
+"""Single runs that the dataset of a sweep contains, for figures."""
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
 RESERVED += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
-"""Names of datasets and of folders of batches, which other sweeps may not have."""
+"""Names of datasets and of folders of batches.  Other sweeps must not have these names."""
 MODELS_OF_MOTION = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
@@ -27,20 +28,22 @@ MODELS_OF_MOTION = {
     "longitudinal": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
 }
-"""Models that apply to a motion, as in models.registry, which is slow to import."""
+"""Models that apply to each motion.  They are copied from models.registry, which is slow to
+import."""
 LOOSEST_POINTS = 1e-2
-"""Largest tolerance of the points of a certified map: the refinement would take larger errors for
-curvature and halve cells without need."""
+"""Largest tolerance of the points of a certified map.  The refinement would mistake larger errors
+for curvature, and halve cells without need."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
-"""Largest amplitude with static friction in the maps of the paper, by motion."""
+"""Largest amplitude with static friction in the maps of the paper, for each motion."""
 
 
 class ConfigError(ValueError):
-    """Invalid configuration; the message is one line with file, key, value and what is allowed."""
+    """Error for an invalid configuration.  The message is one line with file, key, value and what
+    is allowed."""
 
 
 class Refusal(ValueError):
-    """A value that is not allowed; the message is one line.
+    """Error for a value that is not allowed.  The message is one line.
 
     Attributes
     ----------
@@ -55,7 +58,7 @@ class Refusal(ValueError):
 
 @dataclass(frozen=True)
 class Sweep:
-    """A grid of points; its axes are ascending tuples of floats, all dimensionless."""
+    """A grid of points.  Its axes are ascending tuples of dimensionless floats."""
 
     name: str
     motion: str  # as in the configuration; extended.solver_names returns the canonical name
@@ -75,13 +78,14 @@ class Sweep:
 
     @property
     def spans_a_map(self) -> bool:
-        """True for at least two amplitudes and two velocities above 0, which are drawn as a map."""
+        """True if there are at least two amplitudes and two positive velocities, which a map can
+        show."""
         positive = [velocity for velocity in self.velocity if velocity > 0]
         return len(self.amplitude or ()) > 1 and len(positive) > 1
 
     @property
     def drawn_over(self) -> str:
-        """Abscissa of friction in the figure of a group."""
+        """Quantity on the abscissa in the figure of a group."""
         if self.spans_a_map:
             return "velocity and amplitude"
         return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
@@ -89,7 +93,8 @@ class Sweep:
 
 @dataclass(frozen=True)
 class CertifiedMap:
-    """A map with points chosen so that its error is bounded everywhere; all is dimensionless."""
+    """A map whose points are chosen so that its error is bounded everywhere.  All values are
+    dimensionless."""
 
     name: str
     sweep: Sweep  # with the ranges and settings of the map
@@ -98,7 +103,8 @@ class CertifiedMap:
 
     @property
     def velocity(self) -> tuple[float, ...]:
-        """The smallest velocity above 0 and the largest; () for a map of the static limit."""
+        """The smallest positive velocity and the largest velocity; () for a map of the static
+        limit."""
         positive = [velocity for velocity in self.sweep.velocity if velocity > 0]
         return (positive[0], positive[-1]) if self.sweep.spans_a_map else ()
 
@@ -110,7 +116,7 @@ class CertifiedMap:
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """The smallest and the largest Poisson's ratio; () if there is only one."""
+        """The smallest and the largest Poisson's ratio; () if there is only one value."""
         ratios = self.sweep.poisson
         return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
 
@@ -122,7 +128,7 @@ class CertifiedMap:
 
     @property
     def settings(self) -> dict:
-        """Settings on which the points depend, as a dict for JSON."""
+        """Settings on which the points depend, as a dict of JSON values."""
         names = ("motion", "pressure", "model")
         settings = {name: getattr(self.sweep, name) for name in names}
         settings["poisson"] = self.poisson or self.sweep.poisson
@@ -134,7 +140,7 @@ class CertifiedMap:
 
 @dataclass(frozen=True)
 class Configuration:
-    """A checked configuration with defaults and expanded axes."""
+    """A checked configuration, with all defaults filled in and all axes expanded."""
 
     results: str
     sweeps: dict  # name -> Sweep, in the order of MOTION_OF_SWEEP
@@ -150,12 +156,12 @@ class Configuration:
 
     @property
     def grids(self) -> dict[str, Sweep]:
-        """All sweeps by name, those of the paper first."""
+        """All sweeps by name.  Sweeps of the paper come first."""
         return self.sweeps | self.extended | self.drives
 
     @property
     def groups(self) -> dict[str, tuple[str, ...]]:
-        """Names of the sweeps in `extended` by group, a dict of tuples."""
+        """Names of the sweeps in `extended`, as a dict of tuples by group."""
         groups = dict.fromkeys(sweep.group for sweep in self.extended.values())
         return {
             group: tuple(s.name for s in self.extended.values() if s.group == group)
@@ -163,7 +169,7 @@ class Configuration:
         }
 
     def of_sweep(self, name: str) -> dict:
-        """Settings on which the dataset of a sweep depends, as a dict for JSON."""
+        """Settings on which the dataset of a sweep depends, as a dict of JSON values."""
         names = HISTORIES_OF_SWEEP.get(name, ())
         sweep = asdict(self.grids[name])
         if not sweep["drives"]:  # older datasets have neither drives nor contacts

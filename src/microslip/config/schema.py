@@ -19,13 +19,14 @@ UNKNOWN = ("extra_forbidden", "invalid_key")
 
 @cache
 def schema() -> dict:
-    """The JSON schema, a dict that is shared by all callers and must not be changed."""
+    """The JSON schema.  All callers share this dict, which must not be changed."""
     from pydantic.json_schema import GenerateJsonSchema
 
     from microslip.config.settings import Root
 
     class Generator(GenerateJsonSchema):
-        """Generator without titles of fields, and with a schema for the names of keys."""
+        """Generator of a JSON schema without titles of fields, and with a schema for the names of
+        keys."""
 
         def field_title_should_be_set(self, schema: Any) -> bool:
             return False
@@ -42,7 +43,7 @@ def schema() -> dict:
 
 
 def options(rule: dict) -> list[dict]:
-    """Alternatives of a rule of the schema, with references resolved."""
+    """Alternatives that a rule of the schema allows, with references resolved."""
     if "$ref" in rule:
         return options(schema()["$defs"][rule["$ref"].rpartition("/")[2]])
     alternatives = rule.get("anyOf") or rule.get("oneOf")
@@ -50,7 +51,7 @@ def options(rule: dict) -> list[dict]:
 
 
 def error_line(errors: Iterable["ErrorDetails"]) -> str:
-    """Message for one of the errors of pydantic: key, value, what is allowed.
+    """Message for one of the errors of pydantic, with key, value and what is allowed.
 
     Unknown keys come first: a mistyped key is reported as unknown and not as missing.
     """
@@ -58,13 +59,13 @@ def error_line(errors: Iterable["ErrorDetails"]) -> str:
 
 
 def near_miss(name: object, names: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar of the names, else ''."""
+    """'did you mean NAME? ' for the most similar name, or '' if there is none."""
     near = difflib.get_close_matches(str(name), names, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
 def short_json(value: object) -> str:
-    """Format a value as JSON, cut to 60 characters."""
+    """Format a value as JSON, truncated to 60 characters."""
     try:
         text = json.dumps(value, default=str, ensure_ascii=False)
     except (ValueError, RecursionError):  # the value contains itself
@@ -108,7 +109,7 @@ def _keys(location: tuple[int | str, ...]) -> list[int | str]:
 
 
 def _rules(keys: list[int | str]) -> Iterator[dict]:
-    """Alternatives of the rule for the value at these keys."""
+    """Alternatives that the schema allows for the value at these keys."""
     rules = options(schema())
     for key in keys:
         inner = [_inside(rule, key) for rule in rules]

@@ -1,7 +1,7 @@
 """Keys of a configuration: types, defaults, ranges and descriptions.
 
 Validation, the JSON schema and the tables in config/README.md follow from these models.  Axes are
-serialised as they were written, so that the settings with defaults can be read again.
+serialised as they were written, so that the output is a valid configuration.
 """
 
 import json
@@ -42,15 +42,14 @@ CONFIG = ConfigDict(
     defer_build=True,  # only the validator of Root is built
 )
 PLAIN = CONFIG | ConfigDict(use_attribute_docstrings=False)
-"""Configuration of typed dicts, whose docstrings are slow to extract."""
+"""Pydantic configuration of typed dicts. Extracting their docstrings would be slow."""
 STUDIES: dict[str, dict] = json.loads(
     Path(__file__).with_name("study_defaults.json").read_text(encoding="utf-8")
 )
 POINTS, MOTIONS = STUDIES["accuracy"], STUDIES["propulsion"]
-"""Default points of the study of accuracy and default motions of the study of propulsion, by
-name."""
+"""Default points of the accuracy study, and default motions of the propulsion study, by name."""
 MOST_LINES, MOST_PANELS = 8, 4
-"""Largest number of lines in a panel of the propulsion figure, and of panels."""
+"""Largest number of lines in a panel of the propulsion figure, and largest number of panels."""
 
 
 class Settings(BaseModel):
@@ -60,7 +59,7 @@ class Settings(BaseModel):
 
     @model_serializer(mode="wrap")
     def _without_unset(self, handler: Callable) -> dict[str, Any]:
-        """Leave out optional keys that are not set, so that the result can be read again."""
+        """Omit optional keys that are not set, so that the output is a valid configuration."""
         values = handler(self).items()
         return {k: v for k, v in values if v is not None or k in self.model_fields_set}
 
@@ -73,7 +72,7 @@ def _whole(value: Any) -> Any:
 
 
 def _kind(value: object) -> str | None:
-    """Tag of the alternative of a union for a value, which pydantic adds to the location of
+    """Tag of the member of a union that a value belongs to. Pydantic adds it to the location of
     errors."""
     if isinstance(value, list | dict):
         return "(list)" if isinstance(value, list) else "(spacing)"
@@ -85,12 +84,12 @@ def _no_default(rule: dict[str, Any]) -> None:
 
 
 def _optional() -> Any:
-    """A key that may be left out but not be null."""
+    """A key that may be omitted, but must not be null."""
     return Field(default=None, validate_default=False, json_schema_extra=_no_default)
 
 
 def _raw(value: Any) -> Any:
-    """A default as in YAML, which is validated."""
+    """A default value as written in YAML. Pydantic validates it."""
     return Field(default=value)
 
 
@@ -133,7 +132,7 @@ Model = Literal["auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "ca
 
 @with_config(PLAIN)
 class Range(TypedDict):
-    """Coordinates from start to stop, both included, rounded to six significant digits."""
+    """Coordinates from start to stop, including both, rounded to six significant digits."""
 
     start: Annotated[NonNegative, Field(description="First; above 0 for equal ratios.")]
     stop: Annotated[NonNegative, Field(description="Last, above start.")]
@@ -191,7 +190,7 @@ class Axis(tuple[float, ...]):
 
 
 class NumberOrAxis(Axis):
-    """A number, or an axis that becomes a dimension of the dataset."""
+    """A number, or an axis, which becomes a dimension of the dataset."""
 
     form = Annotated[_Number | _List | _Spacing, Discriminator(_kind)]
 
@@ -228,15 +227,15 @@ MapAxis = Annotated[PositiveAxis, AfterValidator(_two)]
 
 
 class Adaptive(Settings):
-    """A certified map over the ranges of the sweep: `snakemake certified` makes
+    """A certified map over the ranges of the sweep. `snakemake certified` makes
     certified_NAME.nc."""
 
     error: Annotated[float, Field(ge=1e-5, le=0.1)]
-    """Largest error of mu_macro anywhere in the ranges, absolute. Under a force: largest error of
-    the velocity v divided by sqrt(1 + v^2)."""
+    """Largest absolute error of mu_macro anywhere in the ranges. Under a force, it is the largest
+    error of the velocity v, divided by sqrt(1 + v^2)."""
     tolerance: Annotated[float, Field(ge=1e-6, le=LOOSEST_POINTS)] | None = None
-    """Largest error of mu_macro at the points, below `error`. null: three tenths of `error`, at
-    most 0.01."""
+    """Largest error of mu_macro at the points. It must be smaller than `error`. The default null
+    means three tenths of `error`, at most 0.01."""
 
     @model_validator(mode="after")
     def _refuse_loose_points(self) -> Self:
@@ -250,21 +249,24 @@ class SteadySweep(Settings):
     """Keys of every sweep."""
 
     velocity: Axis
-    """Forward velocity in the unit of the motion: v0/(omega u_lim) (Eq 4), v0/(Omega phi0 a) (Eq
-    28) or v0/(omega a) (Eq 13). 0: static limit."""
+    """Forward velocity in the unit of the motion, which is v0/(omega u_lim) (Eq 4), v0/(Omega phi0
+    a) (Eq 28) or v0/(omega a) (Eq 13). The value 0 requests the static limit."""
     poisson: Poisson = _raw(0.0)
     """Poisson's ratio of the half-space. A list makes it a dimension of the dataset."""
     model: Model = "auto"
-    """Contact model. auto: the cheapest model that is exact for the motion."""
+    """Contact model. The value auto selects the cheapest model that is exact for the motion."""
     tolerance: Tolerance | None = 1e-3
-    """Largest accepted error of mu_macro, absolute. null: cells and steps are imposed, and a point
-    has converged if its runs have reached their periodic state."""
+    """Largest accepted absolute error of mu_macro. With null, cells and steps are prescribed, and a
+    point has converged if its runs have reached the periodic state."""
     cells: Cells | None = None
-    """Rings, or squares across the contact, even. null: chosen by the tolerance."""
+    """Number of rings, or of squares across the contact. It must be even. By default, it follows
+    from the tolerance."""
     steps: Steps | None = None
-    """Time steps of a period, even. null: chosen by the tolerance."""
+    """Number of time steps of a period. It must be even. By default, it follows from the
+    tolerance."""
     points_per_job: Points | None = None
-    """Number of points that one job of this sweep computes. null: the value of the top level."""
+    """Number of points that one job of this sweep computes. The default is the value of the top
+    level."""
 
     @model_validator(mode="after")
     def _refuse_no_tolerance(self) -> Self:
@@ -281,9 +283,9 @@ class Sweep(SteadySweep):
     """Keys of an oscillation across the motion (Eq 1) and of an oscillating rotation (Eq 23)."""
 
     amplitude: Axis
-    """Amplitude: y0/u_lim (Eq 2), or phi0/phi_lk(a/2) (Eq 27)."""
+    """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""
     adaptive: Adaptive | None = None
-    """A certified map over the same ranges, see below. null: none."""
+    """Settings of a certified map over the same ranges, see below. By default, no map is made."""
 
 
 class _NamedSweep(SteadySweep):
@@ -292,44 +294,45 @@ class _NamedSweep(SteadySweep):
     pressure: Text = "hertz"
     """Normal pressure, with parameters as in "power:exponent=1", or file:FILE."""
     title: Title | None = None
-    """Title of the dataset and in figures, as plain text: $ and \\ have no meaning. null: the
-    name."""
+    """Title of the dataset, also used in figures. It is plain text: $ and \\ have no special
+    meaning. The default is the name."""
     amplitude: Axis = _optional()
-    """Amplitude, in the unit of the motion. Required unless the motion is steady."""
+    """Amplitude in the unit of the motion. It is required unless the motion is steady."""
     tolerance: Tolerance = 1e-3
-    """Largest accepted error of mu_macro, absolute."""
+    """Largest accepted absolute error of mu_macro."""
     adaptive: Adaptive | None = None
-    """A certified map over the same ranges, see below. null: none."""
+    """Settings of a certified map over the same ranges, see below. By default, no map is made."""
 
 
 class ExtendedSweep(_NamedSweep):
     """A sweep of any motion under any pressure. A group of sweeps with at least two amplitudes and
-    two velocities above 0 is drawn as maps, at most 12; other groups are drawn as lines, at most
-    8."""
+    two positive velocities is drawn as maps. Other groups are drawn as lines. A figure has at most
+    12 maps or 8 lines."""
 
     group: PlainName
-    """Group of the sweep, which is drawn on the figure extended_GROUP. All sweeps of a group are
-    drawn as maps, or all as lines."""
+    """Group of the sweep. The figure extended_GROUP shows all sweeps of the group, either as maps
+    or as lines."""
 
 
 class DriveSweep(_NamedSweep):
-    """A sweep of a contact under a force or a spring. An axis is a dimension of the dataset."""
+    """A sweep of a contact driven by a force or a spring. Each axis is a dimension of the
+    dataset."""
 
     velocity: Axis = _optional()
-    """Velocity of the far end of the spring, in the unit of the motion; not allowed with a
-    force."""
+    """Velocity of the far end of the spring, in the unit of the motion. It is not allowed together
+    with a force."""
     contacts: Text | None = None
-    """Contacts of the body with load, phase in degrees and amplitude of each, such as
-    "phase=0;phase=180". null: one contact."""
+    """Contacts of the body, such as "phase=0;phase=180". Each contact has a load, a phase in
+    degrees and an amplitude. The default is one contact."""
     force: NumberOrAxis = _optional()
-    """Prescribed force P over mu times the mean normal load, in place of a velocity. Number or
-    axis."""
+    """Prescribed force P divided by mu times the mean normal load. It replaces the velocity. A
+    number or an axis."""
     stiffness: NumberOrAxis = _optional()
-    """Stiffness of the spring, over mu F_z / u_lim. Number or axis, above 0."""
+    """Stiffness of the spring divided by mu F_z / u_lim, above 0. A number or an axis."""
     mass: NumberOrAxis = _optional()
-    """Mass of the body, over mu F_z / (u_lim omega^2). Number or axis."""
+    """Mass of the body divided by mu F_z / (u_lim omega^2). A number or an axis."""
     damping: NumberOrAxis = _optional()
-    """Damping beside the spring, over mu F_z / (u_lim omega). Number or axis."""
+    """Damping parallel to the spring divided by mu F_z / (u_lim omega). A number or an axis."""
 
 
 @with_config(PLAIN)
@@ -345,51 +348,52 @@ class Sweeps(TypedDict, total=False):
 
 
 class ForceHistory(Settings):
-    """Forces over the first periods of a transverse oscillation (Figure 1)."""
+    """Forces during the first periods of a transverse oscillation (Figure 1)."""
 
     velocity: Positive = 0.1
     """Forward velocity v0/(omega u_lim)."""
     amplitude: NonNegative = 1.0
     """Amplitude of the oscillation y0/u_lim."""
     periods: Annotated[int, Field(ge=1, le=1000), WHOLE] = 4
-    """Periods from the start at zero traction."""
+    """Number of periods. The tractions are zero at the start."""
     cells: Cells | None = None
-    """Rings, even. null: the default of microslip.history."""
+    """Number of rings. It must be even. The default is that of microslip.history."""
     steps: Steps | None = None
-    """Time steps of a period, even. null: the default of microslip.history."""
+    """Number of time steps of a period. It must be even. The default is that of
+    microslip.history."""
 
 
 class TractionField(Settings):
     """Traction field of the steady continuous bore (Figure 3)."""
 
     velocity: Positive = 0.5
-    """Forward velocity v0/(a omega). The centre of rotation lies at -velocity."""
+    """Forward velocity v0/(a omega). The centre of rotation is at the coordinate -velocity."""
     cells: Cells | None = None
-    """Rings, even. null: the default of microslip.history."""
+    """Number of rings. It must be even. The default is that of microslip.history."""
 
 
 class Transients(Settings):
-    """Continuous bore from three initial states to its steady state (Figure 5)."""
+    """Approach of a continuous bore to its steady state, from three initial states (Figure 5)."""
 
     velocity: Positive = 0.8
     """Forward velocity v0/(a omega)."""
     travel: Positive = 5.0
     """Forward displacement of each run, in units of u_lim."""
     cells: Cells | None = None
-    """Rings, even. null: the default of microslip.history."""
+    """Number of rings. It must be even. The default is that of microslip.history."""
     steps: Steps | None = None
-    """Time steps of a run, even. null: the default of microslip.history."""
+    """Number of time steps of a run. It must be even. The default is that of microslip.history."""
 
 
 class Histories(Settings):
     """Single runs for Figures 1, 3 and 5, stored in the dataset of their motion."""
 
     transverse: ForceHistory = _raw({})
-    """Forces over the first periods of a transverse oscillation (Figure 1)."""
+    """Forces during the first periods of a transverse oscillation (Figure 1)."""
     field: TractionField = _raw({})
     """Traction field of the steady continuous bore (Figure 3)."""
     transients: Transients = _raw({})
-    """Continuous bore from three initial states to its steady state (Figure 5)."""
+    """Approach of a continuous bore to its steady state, from three initial states (Figure 5)."""
 
 
 # Studies
@@ -446,13 +450,13 @@ class StudyPoint(Settings):
     motion: Literal["transverse", "longitudinal", "bore", "continuous-bore", "zigzag"]
     """Name of the motion."""
     velocity: Positive
-    """Forward velocity, in the unit of the motion, above 0."""
+    """Forward velocity in the unit of the motion, above 0."""
     amplitude: Positive | None = None
-    """Amplitude, in the unit of the motion, above 0. continuous-bore has none."""
+    """Amplitude in the unit of the motion, above 0. The motion continuous-bore has no amplitude."""
     poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     title: Title | None = None
-    """Title of the panel, as plain text. null: the name of the point."""
+    """Title of the panel, as plain text. The default is the name of the point."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
@@ -484,7 +488,7 @@ class _Grid(Settings):
 
 
 class ModelMap(_Grid):
-    """Grid of the maps of the cheapest model within a tolerance, at Poisson's ratio 0."""
+    """Grid of the maps that show the cheapest model for each tolerance, at Poisson's ratio 0."""
 
     velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
     """Forward velocities of both motions, above 0."""
@@ -493,62 +497,65 @@ class ModelMap(_Grid):
     amplitude_bore: MapAxis = _raw({"log": {"start": 0.1, "stop": 5, "count": 9}})
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0."""
     tolerance: Tolerances = _raw([0.01, 0.001])
-    """Tolerances on mu_macro, absolute, with a map for each."""
+    """Absolute tolerances of mu_macro. Each one has a map."""
 
 
 class Accuracy(Settings):
-    """Cost of accuracy: `snakemake accuracy` makes accuracy_cost.nc and its figures."""
+    """Study of the cost of accuracy. `snakemake accuracy` makes accuracy_cost.nc and its
+    figures."""
 
     methods: Methods = _raw(None)
-    """Methods to compare: the files in src/microslip/solver/methods, with hyphens, and shipped, the
-    method of microslip.solve. Parameters as in "admm:penalty=0.1". null: all methods."""
+    """Methods to compare, with parameters as in "admm:penalty=0.1". A method has the name of its
+    file in src/microslip/solver/methods, with hyphens. The name shipped is the method of
+    microslip.solve. The default is all methods."""
     points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
-    """Points at which all methods and models run, by name, with a panel for each."""
+    """Points at which all methods and models run, by name. Each point has a panel."""
     levels: Annotated[int, Field(ge=1, le=6), WHOLE] = 6
-    """Number of resolutions of each method, from the coarsest on."""
+    """Number of resolutions of each method, starting at the coarsest one."""
     repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
-    """Number of measurements of a time; the result is their median."""
+    """Number of measurements of each computing time. The result is their median."""
     map: ModelMap = _raw({})
-    """Grid of the maps of the cheapest model within a tolerance."""
+    """Grid of the maps that show the cheapest model for each tolerance."""
 
 
 class Stability(Settings):
-    """Failures of methods: `snakemake stability` makes stability.nc and its figure."""
+    """Study of the failures of methods. `snakemake stability` makes stability.nc and its figure."""
 
     methods: Methods = _raw(None)
-    """Methods, as for accuracy."""
+    """Methods to compare, named as under `accuracy`."""
     tolerance: Tolerance = 1e-3
-    """Largest accepted error of mu_macro, absolute."""
+    """Largest accepted absolute error of mu_macro."""
     axes: Annotated[
         Annotated[list[Block], Field(min_length=1)] | None, AfterValidator(_refuse_repeats)
     ] = None
-    """Blocks of the atlas, each of which varies one quantity. null: all blocks."""
+    """Blocks of the atlas. Each block varies one quantity. The default is all blocks."""
 
 
 class SelfPropelledMotion(Settings):
     """A self-propelled motion."""
 
     motion: Text
-    """Motion, elliptic or normal, with parameters."""
+    """Motion: elliptic or normal, with its parameters."""
     amplitude: Positive
-    """Amplitude, in the unit of the motion, above 0."""
+    """Amplitude in the unit of the motion, above 0."""
     poisson: Ratio = 0.0
     """Poisson's ratio of the half-space."""
     panel: Title
-    """Heading of the panels of this motion and of others with the same heading."""
+    """Heading of the panels. Motions with the same heading share their panels."""
     title: Title | None = None
-    """Title of the line, as plain text. null: the name."""
+    """Title of the line, as plain text. The default is the name."""
 
 
 class Propulsion(Settings):
-    """Self-propelled motions: `snakemake propulsion` makes propulsion.nc and its figure."""
+    """Study of self-propelled motions. `snakemake propulsion` makes propulsion.nc and its
+    figure."""
 
     tolerance: Tolerance = 1e-3
-    """Largest accepted error of a force, over mu times the mean normal load."""
+    """Largest accepted error of a force divided by mu times the mean normal load."""
     points: Annotated[int, Field(ge=2, le=1000), WHOLE] = 13
-    """Number of points of a line from stall to no load, both included."""
+    """Number of points on a line from stall to no load, including both ends."""
     motions: Annotated[dict[PointName, SelfPropelledMotion], Field(min_length=1)] = _raw(MOTIONS)
-    """Motions by name, with a line for each."""
+    """Motions by name. Each motion has a line."""
 
     @model_validator(mode="after")
     def _refuse_crowd(self) -> Self:
@@ -569,17 +576,17 @@ class Claims(_Grid):
     """Test of the statements of the paper: `snakemake claims` makes claims.nc and its figures."""
 
     tolerance: Tolerance = 5e-4
-    """Largest accepted error of mu_macro, absolute."""
+    """Largest accepted absolute error of mu_macro."""
     velocity: PositiveAxis = _raw([1e-4, 1e-3, 0.005, 0.02, 0.1, 0.3, 1, 3])
     """Forward velocities of both motions, above 0. The smallest velocity of the paper, 0.005, is
     added if a statement needs it."""
     amplitude_transverse: PositiveAxis = _raw([0.25, 0.5, 0.75, 1, 2, 3])
-    """Amplitudes of the oscillation y0/u_lim, above 0; at least one up to 1."""
+    """Amplitudes of the oscillation y0/u_lim, above 0. At least one must not exceed 1."""
     amplitude_bore: PositiveAxis = _raw([0.5, 1, 2, 3, 5, 10])
-    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0; at least one up to 5."""
+    """Amplitudes of the rotation phi0/phi_lk(a/2), above 0. At least one must not exceed 5."""
     cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
-    """Number of rings, and of angular points on half the disc, of the periods whose tractions are
-    evaluated, even. A run with half as many gives the error."""
+    """Number of rings, and number of angular points on half the disc, in the runs whose tractions
+    are evaluated. It must be even. A run with half as many gives the error estimate."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:
@@ -593,7 +600,7 @@ class Claims(_Grid):
 
 
 class Root(Settings):
-    """Points to compute, their accuracy, and the folder of results. All quantities are
+    """Points to compute, accuracy of the points, and folder of results. All quantities are
     dimensionless."""
 
     results: Annotated[
@@ -603,24 +610,24 @@ class Root(Settings):
             title="text for a folder, without braces, *, ?, line breaks, ~ in front, $NAME and ://",
         ),
     ] = "results"
-    """Folder for all results, relative to the folder that the workflow runs in."""
+    """Folder for all results, relative to the working directory of the workflow."""
     points_per_job: Points = 50
-    """Mean number of points that one job computes one after another. A job takes about a second to
-    start; large jobs leave cores idle at the end. A sweep can have its own value."""
+    """Mean number of points that one job computes in sequence. A job takes about a second to start.
+    Large jobs leave cores idle at the end. A sweep can have its own value."""
     sweeps: Annotated[Sweeps, Field(min_length=1)]
-    """Sweeps of the paper, at least one."""
+    """Sweeps of the paper. At least one is required."""
     extended: dict[PlainName, ExtendedSweep] = {}
-    """Sweeps of other motions and pressures, by name: `snakemake extended` makes a dataset for each
-    and a figure for each group."""
+    """Sweeps of other motions and pressures, by name. `snakemake extended` makes a dataset for each
+    sweep and a figure for each group."""
     drives: dict[PlainName, DriveSweep] = {}
-    """Sweeps of contacts under a force or a spring, by name: `snakemake drives`."""
+    """Sweeps of contacts driven by a force or a spring, by name, see `snakemake drives`."""
     histories: Histories = _raw({})
     """Single runs for Figures 1, 3 and 5."""
     accuracy: Accuracy = _raw({})
-    """Cost of accuracy: `snakemake accuracy`."""
+    """Study of the cost of accuracy, see `snakemake accuracy`."""
     stability: Stability = _raw({})
-    """Failures of methods: `snakemake stability`."""
+    """Study of the failures of methods, see `snakemake stability`."""
     propulsion: Propulsion = _raw({})
-    """Self-propelled motions: `snakemake propulsion`."""
+    """Study of self-propelled motions, see `snakemake propulsion`."""
     claims: Claims = _raw({})
-    """Test of the statements of the paper: `snakemake claims`."""
+    """Test of the statements of the paper, see `snakemake claims`."""

@@ -1,8 +1,7 @@
 """A loader of YAML that refuses repeated keys and misleading numbers.
 
 YAML itself keeps the last of two equal keys, and reads 010 as 8, 1:30 as 90 and 1.0e-400 as 0,
-without a warning.  The module is imported whenever the workflow is parsed, so that it imports
-nothing slow.
+without a warning.  The module imports nothing slow, since every parse of the workflow imports it.
 """
 
 import re
@@ -11,8 +10,8 @@ from typing import IO
 import yaml
 
 MOST_VALUES = 100_000
-"""Largest number of keys and values of a file after expansion of aliases; checking so many takes a
-few seconds."""
+"""Largest number of keys and values of a file after expansion of aliases.  Checking so many takes
+a few seconds."""
 
 UNFINISHED = 0
 """Placeholder for the size of a node whose children are being counted."""
@@ -21,7 +20,7 @@ UNFINISHED = 0
 class StrictLoader(yaml.SafeLoader):
     """Loader of plain data, for yaml.load.
 
-    A key beside a merged mapping (<<) may replace a key of it.  Refused content raises
+    A key next to a merged mapping (<<) may replace a key of that mapping.  Refused content raises
     yaml.constructor.ConstructorError.
     """
 
@@ -30,7 +29,7 @@ class StrictLoader(yaml.SafeLoader):
         self._checked: list[yaml.Node] = []
 
     def get_single_node(self) -> yaml.Node | None:
-        """Parse the document; refuse too many values before any of them is constructed."""
+        """Parse the document.  Too many values are refused before any of them is constructed."""
         node = super().get_single_node()
         if node is not None and _expanded_size(node, {}) > MOST_VALUES:
             raise yaml.constructor.ConstructorError(
@@ -57,12 +56,13 @@ class StrictLoader(yaml.SafeLoader):
             seen.append(key)
 
     def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        """Construct a whole number; refuse one that YAML reads to another base."""
+        """Construct an integer.  A number that YAML reads to another base is refused."""
         self._refuse_other_bases(node)
         return super().construct_yaml_int(node)
 
     def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
-        """Construct a number; refuse one that YAML reads to another base or that underflows."""
+        """Construct a number.  A number that YAML reads to another base, or that underflows, is
+        refused."""
         self._refuse_other_bases(node)
         value = super().construct_yaml_float(node)
         if value == 0.0 and re.search("[1-9]", re.split("[eE]", node.value)[0]):
@@ -70,7 +70,8 @@ class StrictLoader(yaml.SafeLoader):
         return value
 
     def _refuse_other_bases(self, node: yaml.ScalarNode) -> None:
-        """YAML 1.1 reads 010 as 8 and 1:30 as 90."""
+        """Raise ConstructorError for a number that YAML 1.1 reads to another base: 010 as 8, 1:30
+        as 90."""
         text = self.construct_scalar(node).lstrip("+-")
         if ":" in text:
             raise ValueError(f"{node.value} is not allowed: base 60 in YAML; write one number")
@@ -93,8 +94,8 @@ class StrictLoader(yaml.SafeLoader):
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
     """Number of nodes of a tree after expansion of aliases.
 
-    sizes: sizes of nodes by id, which are added.  Raises ConstructorError for a node that contains
-    itself.
+    sizes: receives the sizes of the nodes, by id.  Raises ConstructorError for a node that
+    contains itself.
     """
     if sizes.get(id(node)) == UNFINISHED:
         raise yaml.constructor.ConstructorError(

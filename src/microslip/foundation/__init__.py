@@ -1,1 +1,2 @@
-"""Common base of all packages: bad input, names with numbers, compiled functions, sources."""
+"""Basic functions for all packages: errors, names with numbers, compiled functions, source
+digests."""

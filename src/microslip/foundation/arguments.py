@@ -9,15 +9,15 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values: larger ones are typing errors, or exceed the memory or the range of
+"""Largest allowed values.  Larger ones are typing errors, or exceed the memory or the range of
 floats."""
 SMALLEST_TOLERANCE = 1e-6
-"""Smallest allowed tolerance, absolute on mu_macro."""
+"""Smallest allowed absolute tolerance of mu_macro."""
 LARGEST_BODY = 1e6
 """Largest allowed stiffness, mass and damping of a drive, in working units."""
 SMALLEST_STIFFNESS = 1e-9
 """Smallest stiffness of a spring, in working units.  A softer spring stretches by more than 1e9
-u_lim, with a rounding error of 1e-7 u_lim, and is in effect a constant force."""
+u_lim, with a rounding error of 1e-7 u_lim.  It is equivalent to a constant force."""
 
 
 def is_real(value: object) -> TypeGuard[float]:
@@ -35,7 +35,7 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
-    """A finite number from low to high, as a float; raises InputError for anything else."""
+    """A finite number from low to high, as a float.  Raises InputError for anything else."""
     if not is_real(value):
         raise InputError(name, value, "allowed is a number")
     try:
@@ -49,7 +49,7 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
 
 
 def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
-    """A whole number from low to most, as an int; raises InputError for anything else."""
+    """An integer from low to most, as an int.  Raises InputError for anything else."""
     if not is_whole(value) or not low <= value <= most:
         kind = "an even whole number" if even else "a whole number"
         raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")

@@ -1,6 +1,6 @@
-"""Canonical texts of values, and hashes of them: equal values have equal names.
+"""Canonical texts of values, and their hashes, which are equal for equal values.
 
-Imports the standard library alone, since every start of the workflow imports it.
+The module imports only the standard library, since every start of the workflow imports it.
 """
 
 import hashlib
@@ -9,9 +9,9 @@ import math
 
 
 def number(value: float) -> str:
-    """Canonical decimal string of a finite number: 1 for 1.0, 0.001, 1e-8.
+    """Canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
 
-    Rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
+    It is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
     Raises ValueError for other values.
     """
     if isinstance(value, bool | str) or not math.isfinite(value):
@@ -37,5 +37,6 @@ def sha256(text: str) -> str:
 
 
 def fingerprint(*parts: object) -> str:
-    """First 32 digits of the SHA-256 of some values; parts: values that JSON can hold."""
+    """First 32 digits of the SHA-256 of some values.  parts: values that can be converted to
+    JSON."""
     return sha256(canonical_json(parts))[:32]

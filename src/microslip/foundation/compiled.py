@@ -1,6 +1,6 @@
-"""Compilation of functions by Numba: all options of Numba that the package sets.
+"""Compilation of functions by Numba, with all options of Numba that the package sets.
 
-The folder of the compiled code is in kernel_cache.py; results do not depend on it.
+kernel_cache.py chooses the folder of the compiled code.  Results do not depend on this folder.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ import scipy
 from microslip.foundation.kernel_cache import BySources, folder
 
 numba.config.SLP_VECTORIZE = 1
-"""Turn neighbouring scalar operations into vector instructions, which Numba does not do by default.
-Products of matrices take half the time."""
+"""Combine neighbouring scalar operations into vector instructions, which Numba does not do by
+default.  Products of matrices then take half the time."""
 
 BLAS = "scipy.linalg.cython_blas"
 
 
 def _look_for_blas() -> None:
-    """Import the module of Numba that looks for BLAS, without all of scipy.linalg.
+    """Import the module of Numba that searches for BLAS, without importing all of scipy.linalg.
 
-    Numba looks for BLAS when it loads any kernel.  Importing scipy.linalg for that takes a fifth of
-    the CPU time of `microslip point`, so BLAS is imported without its package.
+    Numba searches for BLAS when it loads any kernel, and imports scipy.linalg for this.  That
+    takes a fifth of the CPU time of `microslip point`.  So BLAS is imported without its package.
     """
     if "scipy.linalg" in sys.modules:
         return
@@ -44,15 +44,18 @@ def _look_for_blas() -> None:
 _look_for_blas()
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""Compiled once and kept on disk; no reordering of sums; division by zero as in NumPy."""
+"""Options of Numba.  Code is compiled once and stored on disk, sums are not reordered, and
+division by zero works as in NumPy."""
 
 
 @contextlib.contextmanager
 def _cache_folder() -> Iterator[None]:
-    """Context in which Numba keeps the code of new functions in the folder of kernel_cache.py."""
+    """Context manager in which Numba stores the code of new functions in the folder of
+    kernel_cache.py."""
     config = numba.config
     before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
-    # A Numba without locators uses the folder alone: copies of the package then share no code.
+    # A version of Numba without locators uses only the folder.  Copies of the package then share
+    # no code.
     locator = f"{BySources.__module__}.{BySources.__qualname__}"
     config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(folder()), locator
     try:
@@ -62,9 +65,9 @@ def _cache_folder() -> Iterator[None]:
 
 
 def kernel(function: Callable | None = None, **options: object) -> Callable:
-    """Decorator of functions that Numba compiles at their first call.
+    """Decorator for functions that Numba compiles at their first call.
 
-    options: arguments of numba.njit besides OPTIONS, as in `@kernel(inline="always")`.
+    options: arguments of numba.njit in addition to OPTIONS, as in `@kernel(inline="always")`.
     """
     if function is None:
         return lambda function: kernel(function, **options)

@@ -1,4 +1,5 @@
-"""CSV as people write it: headings with units, labels, decimal commas, empty rows and columns."""
+"""Reading of CSV files with units in headings, labels, decimal commas, and empty rows and
+columns."""
 
 from __future__ import annotations
 
@@ -11,16 +12,17 @@ from microslip.foundation.errors import InputError
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
-"""The name of a column, with its unit in brackets or without."""
+"""Pattern of the heading of a column, with or without a unit in brackets."""
 ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 DECIMALS = (".", ",")
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
-"""Error texts of spreadsheets in a cell without a value, such as #N/A and #DIV/0!."""
+"""Pattern of the texts that spreadsheets write to a cell without a value, such as #N/A and
+#DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
-"""A number with points between thousands, or one with three decimals."""
+"""Pattern of a number with points between thousands, or of a number with three decimals."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 EMPTY = re.compile(r"[\s,;\"]*")
-"""A line of empty cells."""
+"""Pattern of a line of empty cells."""
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+−-]?),(?=[0-9])")
 
 
@@ -30,19 +32,19 @@ def check_format(decimal: str, encoding: str) -> None:
         raise InputError("decimal", decimal, "allowed is '.' or ','")
     try:
         codecs.lookup(encoding)
-        "".encode(encoding)  # not one from bytes to bytes
+        "".encode(encoding)  # no encoding from bytes to bytes
     except (LookupError, TypeError, ValueError):
         allowed = "allowed is the name of an encoding, such as utf-8 or cp1252"
         raise InputError("encoding", encoding, allowed) from None
 
 
 def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
-    """Number and text of each line, except empty lines and comments, which begin with #.
+    """Line number and text of each line, except empty lines and comments, which begin with #.
 
     Raises
     ------
     ValueError
-        If the content is not text in this encoding; the message begins with the line.
+        If the content is not text in this encoding.  The message begins with the line number.
     """
     is_utf_8 = codecs.lookup(encoding).name == "utf-8"
     if is_utf_8 and content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -66,7 +68,8 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
 
 
 def words(line: str, separator: str) -> list[str]:
-    """Cells of a heading, without spaces and quotes around them, and without empty last cells."""
+    """Cells of the heading line, without surrounding spaces and quotes, and without empty last
+    cells."""
     cells = [word.strip().strip("\"'").strip() for word in line.split(separator)]
     while len(cells) > 1 and not cells[-1]:
         cells.pop()
@@ -74,7 +77,8 @@ def words(line: str, separator: str) -> list[str]:
 
 
 def cells(where: int, line: str, separator: str, count: int) -> list[str]:
-    """Cells of a line; raises ValueError unless there are `count` without empty last cells."""
+    """Cells of a line.  Raises ValueError unless there are `count` cells, except empty ones at the
+    end."""
     try:
         rows = csv.reader([line], delimiter=separator, strict=True, skipinitialspace=True)
         cells = [cell.strip() for cell in next(rows)]
@@ -92,9 +96,9 @@ def cells(where: int, line: str, separator: str, count: int) -> list[str]:
 
 
 def with_point(where: int, name: str, cell: str, decimal: str) -> str:
-    """A cell with decimal points in its numbers.
+    """The text of a cell, with decimal points in its numbers.
 
-    Raises ValueError for a number with another decimal mark than the declared one.
+    Raises ValueError if the decimal mark of a number differs from the declared one.
     """
     cell = cell.strip("'").strip()
     if decimal == ".":
@@ -121,7 +125,7 @@ class Thousands:
         self.plain: set[str] = set()
 
     def see(self, where: int, cells: Sequence[str]) -> None:
-        """Take the cells of a line into account, in the order of the columns."""
+        """Add the cells of a line, in the order of the columns."""
         for name, word in zip(self.columns, cells, strict=True):
             if name not in self.possible:
                 continue

@@ -1,30 +1,32 @@
-"""Errors that callers handle: bad input, a failure of the solver, an unusable results folder."""
+"""Errors that callers handle: invalid input, a failure of the solver, an unusable results
+folder."""
 
 from __future__ import annotations
 
 import errno
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Errors of the system whose message alone shows the remedy."""
+"""Operating system errors whose message is enough to find the remedy."""
 
 LONGEST = 400
-"""Largest number of characters of a value in a message; longer values lose their middle."""
+"""Largest number of characters of a value in a message.  The middle of a longer value is
+omitted."""
 
 
 class InputError(ValueError):
     """An invalid argument.
 
-    Its text is one line, "argument = value: what is allowed".  Other layers read the attributes and
-    replace the argument by the name of an option, or the value by the text of a quantity.
+    The message is one line, "argument = value: what is allowed".  Other layers read the attributes
+    and replace the argument by the name of an option, or the value by the text of a quantity.
 
     Attributes
     ----------
     argument : str
         Name of the argument, as the Python function spells it.
     value : object
-        Its value, unchanged.
+        Value of the argument, unchanged.
     allowed : str
-        The allowed values, and the reason why this one is not.
+        The allowed values, and the reason why this value is not allowed.
     """
 
     def __init__(self, argument: str, value: object, allowed: str):
@@ -35,14 +37,16 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """A copy about another argument, and with another value unless that is None."""
+        """A copy with another argument, and with another value unless `value` is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 
 class SolverError(RuntimeError):
-    """The solver failed at a point: a step stays unsolved, or tractions are not finite.
+    """The solver failed at a point.  Either a step could not be solved, or tractions are not
+    finite.
 
-    Only this error becomes a gap in a dataset.  Its message is the `reason` of the point.
+    This is the only error that leaves a gap in a dataset.  Its message becomes the `reason` of the
+    point.
     """
 
 
@@ -51,10 +55,10 @@ class CacheError(RuntimeError):
 
 
 def shown(value: object) -> str:
-    """Text of a value for messages: its repr, shortened, or its type if repr fails."""
+    """Text of a value for messages: the shortened repr, or the type if repr fails."""
     try:
         text = repr(value)
-    except Exception as error:  # an integer of thousands of digits, or a class of the user
+    except Exception as error:  # an integer of thousands of digits, or a user's class
         text = f"<{type(value).__name__} that cannot be written: {type(error).__name__}>"
     half = LONGEST // 2
     return text if len(text) <= LONGEST else f"{text[:half]}...{text[-half:]}"

@@ -1,7 +1,8 @@
-"""Classes with a file each, and the text forms of their objects.
+"""Families of classes with a separate file for each class, and the text forms of their objects.
 
-A class is a frozen dataclass whose fields are numbers with defaults.  The text of an object is the
-name of its class with the numbers that differ from their defaults, as in "power:exponent=1".
+Each class is a frozen dataclass whose fields are numbers with defaults.  The text of an object is
+the name of its class, followed by the numbers that differ from their defaults, as in
+"power:exponent=1".
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ T = TypeVar("T")
 def modules_in(
     folder: str | os.PathLike, package: ModuleType, broken: dict[str, str]
 ) -> Iterator[tuple[str, ModuleType]]:
-    """Name and module of each file in a folder, which becomes a folder of the package.
+    """Name and module of each file in a folder.  The files become modules of the package.
 
-    A file that cannot be imported is left out, so that only commands that name it fail.  A file
-    with the name of a file in another folder is left out, too, since the name is ambiguous.
+    A file that cannot be imported is skipped, so that only commands that name it fail.  A file
+    that has the same name as a file in another folder is also skipped, since the name is ambiguous.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def modules_in(
     package : module
         The package whose modules the files become.
     broken : dict of str to str
-        Receives the path and the error of each file that is left out, by its name.
+        Receives the path and the error of each skipped file, by its name.
     """
     if str(folder) not in package.__path__:
         package.__path__.append(str(folder))
@@ -60,7 +61,7 @@ def modules_in(
 
 
 def described(error: BaseException, path: str | os.PathLike) -> str:
-    """Type, line in the file at `path`, and message of an error, in one line."""
+    """One line with the type of an error, its line in the file at `path`, and its message."""
     lines = [
         frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)
     ]
@@ -72,7 +73,7 @@ def described(error: BaseException, path: str | os.PathLike) -> str:
 
 
 class Registry(Generic[T]):
-    """Classes by name, found in the folders of a package and of the user.
+    """Classes by name, from the folders of a package and of the user.
 
     Parameters
     ----------
@@ -81,16 +82,16 @@ class Registry(Generic[T]):
     base : type
         Base class.
     argument : str
-        Argument that messages name.
+        Name of the argument in messages.
     first : sequence of str
         Names that are listed before all others.
     others : sequence of str
-        Words before a colon that are parsed elsewhere; messages list them.
+        Names before a colon that are parsed elsewhere, but are listed in messages.
 
     Attributes
     ----------
     classes : dict of str to type
-        Classes by their names.
+        Classes by name.
     broken : dict of str to str
         Path and error of each file that cannot be used.
     """
@@ -114,7 +115,7 @@ class Registry(Generic[T]):
     def find(self, folder: str | os.PathLike) -> None:
         """Register the classes in a folder.
 
-        A file that cannot be used raises an InputError only where its name is requested.
+        For a file that cannot be used, an InputError is raised only when its name is requested.
         """
         modules = dict(modules_in(folder, self.package, self.broken))
         for file, module in modules.items():
@@ -149,8 +150,8 @@ class Registry(Generic[T]):
         Raises
         ------
         InputError
-            For a text without a known name, a broken file, and numbers that the class does not
-            have or accept.
+            If the name is unknown, if its file cannot be used, or if the class does not have or
+            accept the numbers.
         """
         known = [*self.classes, *self.others]
         if not isinstance(text, str):
@@ -176,5 +177,5 @@ class Registry(Generic[T]):
 
 @lru_cache(maxsize=128)
 def _made(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
-    """The object for these numbers; equal numbers share one object and its cached properties."""
+    """The object for these numbers.  Equal numbers share one object and its cached properties."""
     return cls(**dict(numbers))

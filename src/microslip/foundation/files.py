@@ -1,4 +1,5 @@
-"""Atomic writing of files: to a temporary name, flushed to disk, then renamed."""
+"""Atomic writing of files.  A file is written under a temporary name, flushed to disk and
+renamed."""
 
 import os
 import time
@@ -10,15 +11,15 @@ from pathlib import Path
 from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
 LEAST_ROOM = 65536
-"""Free bytes on the disk that a calculation needs to start."""
+"""Number of free bytes on the disk that a calculation needs to start."""
 ABANDONED = 3600.0
-"""Age in seconds from which a partial file counts as abandoned by a killed process."""
+"""Age in seconds above which a partial file counts as abandoned by a killed process."""
 
 
 def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError for an invalid name of a folder: empty, not a text, or with ~ in front.
+    """Raise CacheError if the name of a folder is empty, is not a text, or begins with ~.
 
-    A shell replaces ~ by the home folder; here it would become a folder of that name.
+    A shell replaces ~ by the home folder.  Here, it would become a folder of that name.
     """
     path = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
     name = path if isinstance(path, str) else ""
@@ -30,9 +31,9 @@ def refuse_no_folder(folder: object) -> None:
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
-    """Raise CacheError if a file has the name of a folder to be made, or the other way round.
+    """Raise CacheError if a file has the name of a folder to be made, or vice versa.
 
-    folders, files: paths that a run will make; the folders above them are checked, too.
+    folders, files: paths that a run will make.  The folders that contain them are checked, too.
     """
     try:
         for folder in map(Path, folders):
@@ -47,17 +48,18 @@ def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) 
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write bytes to a file, all of them or none; raises CacheError if the system refuses."""
+    """Write bytes to a file, either all of them or none.  Raises CacheError if writing fails."""
     with writing_beside(path) as beside:
         beside.write_bytes(content)
 
 
 @contextmanager
 def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Context that yields a temporary Path beside `path`, and renames it to `path` at its end.
+    """Context manager that yields a temporary Path in the folder of `path`, and finally renames it
+    to `path`.
 
     The file is flushed to disk before it is renamed.  After an error or an interrupt, `path` is
-    unchanged.  Raises CacheError if the system refuses.
+    unchanged.  Raises CacheError if the operating system reports an error.
     """
     path = Path(path)
     beside = _unique_beside(path)
@@ -81,12 +83,13 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _unique_beside(path: Path) -> Path:
-    """A temporary name beside a path, which no other thread, process or container uses."""
+    """A temporary name in the same folder, which no other thread, process or container uses."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """The error of writing a small file to the same folder, if any, else the original error.
+    """The error from writing a small file to the same folder.  If there is none, the original
+    error.
 
     On a full disk HDF5 reports "Permission denied" or "HDF error".
     """
@@ -100,7 +103,7 @@ def _cause(error: Exception, beside: Path) -> Exception:
 
 
 def check_room(folder: Path) -> None:
-    """Write a small file to a folder and remove it; raises OSError where that is refused."""
+    """Write a small file to a folder and remove it.  Raises OSError if this fails."""
     trial = _unique_beside(Path(folder, "room"))
     try:
         with open(trial, "wb") as file:
@@ -113,9 +116,9 @@ def check_room(folder: Path) -> None:
 
 
 def clear_abandoned(folder: Path) -> list[Path]:
-    """Remove partial files of killed processes; return their paths.
+    """Remove partial files of killed processes.  Returns their paths.
 
-    Files younger than an hour stay, since a process may be writing them.
+    Files younger than an hour are not removed, since a process may be writing them.
     """
     removed = []
     for path in Path(folder).rglob(".*.part"):
@@ -127,7 +130,8 @@ def clear_abandoned(folder: Path) -> list[Path]:
 
 
 def advice(verb: str, path: str | Path, error: Exception) -> str:
-    """Message for an error of the system: the failed action, its path, reason and remedy."""
+    """Message for an operating system error, with the failed action, the path, the reason and the
+    remedy."""
     reason = getattr(error, "strerror", None) or error
     return (
         f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "

@@ -1,9 +1,8 @@
-"""Folders for the compiled code of functions that compiled.py compiles.
+"""Folders for the code that compiled.py compiles.
 
-Numba judges compiled code on disk by the date and size of the function's own file, and overlooks
-edits of other files that the function uses.  Here the folder of the compiled code is named by a
-digest of all compiled functions and of the modules that they import, so that each edit leads to
-another folder.
+Numba checks stored code by the date and size of the file of the function.  It ignores edits of
+other files that the function uses.  So the name of the folder contains a digest of all compiled
+functions and of the modules that they import.  Each edit leads to another folder.
 """
 
 from __future__ import annotations
@@ -24,10 +23,11 @@ FOLDER_NAME = "compiled-"
 
 
 class BySources:
-    """Cache locator of Numba: the folder and the stamp of the compiled code of a function.
+    """Cache locator of Numba.  It gives the folder and the stamp of the compiled code of a
+    function.
 
-    The folder is named by the sources, so that a copy of the package with the same sources uses the
-    same compiled code, whatever the dates of its files are.
+    The name of the folder depends on the sources.  So a copy of the package with the same sources
+    uses the same compiled code, even if the dates of its files differ.
     """
 
     def __init__(self, function: Callable):
@@ -43,7 +43,7 @@ class BySources:
         Path(self.get_cache_path()).mkdir(parents=True, exist_ok=True)
 
     def get_cache_path(self) -> str:
-        """Folder of the function's module."""
+        """Folder of the compiled code of the function's module."""
         return str(folder() / self.function.__module__)
 
     def get_source_stamp(self) -> str:
@@ -51,22 +51,24 @@ class BySources:
         return ""
 
     def get_disambiguator(self) -> str:
-        """First line of the function, which differs between functions of the same name."""
+        """Number of the first line of the function, which distinguishes functions of the same
+        name."""
         return str(self.function.__code__.co_firstlineno)
 
 
 def places() -> list[Path]:
-    """Folders that may hold folders of compiled code, in the order in which they are tried."""
+    """Possible parents of the folders of compiled code, in the order in which they are tried."""
     chosen = [Path(place) for place in [os.environ.get("NUMBA_CACHE_DIR")] if place]
     return [*chosen, source_digest.PACKAGE / "__pycache__", user_cache_path("microslip")]
 
 
 @cache
 def folder() -> Path:
-    """Folder of the code compiled from the sources that are running; made if it does not exist.
+    """Folder of the code that is compiled from the running sources.  It is made if it does not
+    exist.
 
-    The first writable folder of: NUMBA_CACHE_DIR, the package's own, the user's folder for caches,
-    a temporary folder.  A temporary folder is reported once on standard error.
+    The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the cache folder
+    of the user, or a temporary folder.  A temporary folder is reported once on standard error.
     """
     name = FOLDER_NAME + source_digest.of_kernels()[:16]
     for place in places():

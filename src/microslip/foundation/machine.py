@@ -1,4 +1,4 @@
-"""Description of the computer, for measured times."""
+"""Description of the computer, stored with measured times."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def cpu_model() -> str:
 
 
 def describe() -> dict[str, str | int]:
-    """Processor (cpu), name of the computer (host) and threads that a linear algebra call may use
-    (threads)."""
+    """Processor (cpu), name of the computer (host), and number of threads that a linear algebra
+    call may use (threads)."""
     return {"cpu": cpu_model(), "host": platform.node(), "threads": _threads()}
 
 
@@ -44,7 +44,7 @@ def _threads() -> int:
     for name in (
         "OPENBLAS_NUM_THREADS",
         "OMP_NUM_THREADS",
-    ):  # the first one set counts
+    ):  # the first variable that is set counts
         value = os.environ.get(name, "")
         if value.isdigit() and int(value) > 0:
             return int(value)

@@ -1,10 +1,11 @@
-"""Names of files, such as "file:pad.csv,grid=samples": parsing the name, and reading the file.
+"""Names of files, such as "file:pad.csv,grid=samples", and reading of these files.
 
-A result depends on the content of a file and not on its path.  So the name of its pressure has the
-digest of the content in place of the path: "file:sha256=0123456789abcdef,grid=samples".  A process
-keeps the path of each digest; `remember` passes paths on to another process.
+A result depends on the content of a file and not on its path.  So the digest of the content
+replaces the path in the name of a pressure: "file:sha256=0123456789abcdef,grid=samples".  A
+process stores the path for each digest.  `remember` stores paths that another process has passed
+on.
 
-Imports nothing heavy, since every start of the workflow imports it.
+The module imports nothing slow, since every start of the workflow imports it.
 """
 
 from __future__ import annotations
@@ -27,27 +28,27 @@ MOST_BYTES = 100_000_000
 """Largest size of a file."""
 OPTIONS = re.compile(r"(?:^|,)(grid|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
-"""Decimal marks by the words for them in names."""
+"""Decimal marks, by the words that represent them in names."""
 EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,grid=samples"
 
 _PLACES: dict[str, Path] = {}
-"""Path of a file by its digest."""
+"""Paths of files by digest."""
 
 
 @dataclass(frozen=True)
 class NamedFile:
-    """A file according to its name: path, digest and options.
+    """The path, the digest and the options in the name of a file.
 
     Attributes
     ----------
     path : str
-        Path as in the name; empty if the digest alone names the file.
+        Path as in the name.  It is empty if the name contains only the digest.
     grid : str
         Meaning of the values of the grid, see pressures.grid.READINGS.
     digest : str
-        First DIGITS hexadecimal digits of the SHA-256 of the content; empty if unknown.
+        First DIGITS hexadecimal digits of the SHA-256 of the content.  It is empty if unknown.
     decimal, encoding : str
-        A key of DECIMALS, and the encoding of the file.
+        Decimal mark, which is a key of DECIMALS, and encoding of the file.
     """
 
     path: str
@@ -58,7 +59,7 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name in results: without the path, equal for equal content."""
+        """The name in results.  It has no path and is equal for equal content."""
         return self._text(f"sha256={self.digest}")
 
     @property
@@ -79,7 +80,7 @@ def speaks_of_file(name: object) -> bool:
 
 
 def parse(name: str) -> NamedFile:
-    """The NamedFile of a name; raises InputError for a name without a file."""
+    """The NamedFile of a name.  Raises InputError for a name without a file."""
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
@@ -100,9 +101,9 @@ def read(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFil
     Parameters
     ----------
     name : str
-        Name such as "file:pad.csv"; a digest in it must be that of the file.
+        Name such as "file:pad.csv".  If it contains a digest, the file must have this digest.
     folders : iterable of paths
-        Folders for a relative path; the working directory comes after them.
+        Folders in which a relative path is searched for.  The working directory is searched last.
 
     Raises
     ------
@@ -121,14 +122,14 @@ def read(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFil
 
 
 def remember(names: Iterable[str]) -> None:
-    """Keep the paths of files, from names with path and digest; other names are ignored."""
+    """Store the paths of files from names with path and digest.  Other names are ignored."""
     for file in map(parse, filter(speaks_of_file, names)):
         if file.digest and file.path:
             _PLACES[file.digest] = Path(file.path)
 
 
 def base_name(name: str) -> str:
-    """Base name of the file of a name, for messages; "" if this process does not know the path."""
+    """Base name of the file of a name, for messages; "" if this process has not stored the path."""
     if not speaks_of_file(name):
         return ""
     file = parse(name)
@@ -145,13 +146,13 @@ def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> 
             "no file with this content is known here; allowed is its path, as in file:measured.csv",
         )
     here = Path.cwd()
-    # an absolute path stays itself in every folder
+    # an absolute path is the same in every folder
     places = list(dict.fromkeys(Path(here, folder, file.path) for folder in (*folders, here)))
     for place in places:
         try:
             if os.path.lexists(place):
                 return place
-        except OSError:  # a name that the system does not take
+        except OSError:  # a name that the system does not accept
             pass
     looked = ", ".join(str(place) for place in places)
     hint = "; allowed after the path: grid=cells or grid=samples" if "," in file.path else ""
@@ -161,14 +162,14 @@ def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> 
 
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Content of a file; at most `most` bytes are read.
+    """Content of a file.  At most `most` bytes are read.
 
     Raises
     ------
     OSError
         If the file cannot be read.
     ValueError
-        If the file is larger, or a device without an end.
+        If the file is larger than `most`, or is a device without an end.
     """
     with open(path, "rb") as file:
         content = file.read(most + 1)

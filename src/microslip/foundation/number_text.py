@@ -1,4 +1,5 @@
-"""Numbers and their error estimates as text: as many digits as the error allows."""
+"""Conversion of numbers and their error estimates to text, with as many digits as the error
+allows."""
 
 from __future__ import annotations
 
@@ -7,29 +8,30 @@ from collections.abc import Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 ERROR_DIGITS = 2
-"""Significant digits of an error.  Rounding up to one digit could double it."""
+"""Number of significant digits of an error.  Rounding up to one digit could double the error."""
 EXACT_DIGITS = 4
-"""Significant digits of a number without an error."""
+"""Number of significant digits of a number without an error."""
 EXACT = 1e-9
-"""Relative error below which a number is printed without its error: all printed digits are
+"""Relative error below which a number is printed without its error, since all printed digits are
 right."""
 ROUNDING = 1e-12
-"""Error below which a zero is printed without its error: the rounding error of numbers near 1."""
+"""Error below which a zero is printed without its error.  It is the rounding error of numbers near
+1."""
 FIXED = -4, 7
 """Decimal exponents between which numbers are printed without an exponent."""
 _ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
 _WIDE = Context(prec=800)
-"""Context with enough decimal digits for any two floats."""
+"""Decimal context with enough digits for calculations with any two floats."""
 _WITHOUT_ROUNDING_ERROR = Context(prec=12)
-"""Context whose decimal digits are free of the rounding error of floats."""
+"""Decimal context that rounds to digits without the rounding error of floats."""
 SEPARATOR = " +- "
 
 
 def error_text(error: float) -> str:
-    """An error with two significant digits, rounded up; infinity, NaN and 0 are unchanged.
+    """An error with two significant digits, rounded up.  Infinity, NaN and 0 are unchanged.
 
-    The shortest decimal number of the float is rounded: 0.01 stays 0.01, although its float is
-    slightly larger.
+    The shortest decimal representation of the float is rounded.  So 0.01 stays 0.01, although its
+    float is slightly larger.
     """
     error = float(error)
     if math.isfinite(error):
@@ -40,25 +42,26 @@ def error_text(error: float) -> str:
 def number_text(
     value: float, error: float = 0.0, unit: str = "", *, digits: int = EXACT_DIGITS
 ) -> str:
-    """A number with its error estimate, and its unit.
+    """Text of a number with its error estimate and its unit.
 
     Parameters
     ----------
     value, error : float
-        The number and its error estimate, both in the unit.
+        The number and its error estimate, both in this unit.
     unit : str
-        Unit to print behind them.
+        Unit to print after the numbers.
     digits : int
-        Significant digits of a number whose error is 0, or below a billionth of it.
+        Number of significant digits of a number whose error is 0, or less than a billionth of the
+        number.
 
     Returns
     -------
     str
-        "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number
-        to the last decimal of the error.  A number whose error is too small to be printed keeps
-        zeros at its end; a number without an error loses them.  A number that is 0 within its
-        error, or within the rounding error of numbers near 1, is printed as 0.  Its printed error
-        then includes the number itself.
+        A text such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits,
+        and the number is rounded to the last decimal of the error.  If the error is too small to
+        be printed, zeros at the end of the number are kept.  For a number without an error they
+        are removed.  A number that is 0 within its error, or within the rounding error of numbers
+        near 1, is printed as 0.  Its printed error then includes the number itself.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)
@@ -89,7 +92,8 @@ def _text(value: float, error: float, digits: int) -> str:
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """A number with some significant digits, and an exponent only if very large or small.
+    """Text of a number with a given number of significant digits.  It has an exponent only if the
+    number is very large or very small.
 
     zeros: True to keep zeros at the end.
     """
@@ -103,7 +107,8 @@ def _plain(value: float, digits: int, zeros: bool = False) -> str:
 
 
 def _short(number: Decimal) -> str:
-    """All digits of a decimal, with an exponent only if very large or small."""
+    """Text with all digits of a decimal.  It has an exponent only if the number is very large or
+    very small."""
     low, high = FIXED
     return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
 
@@ -113,17 +118,17 @@ def _rounded_up(error: float) -> Decimal:
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
-    """Both ends of an interval, rounded outwards to two significant digits of its width.
+    """Text of both ends of an interval, rounded outwards to two significant digits of the width.
 
     Parameters
     ----------
     low, high : float
         Ends of the interval, in the unit.
     unit : str
-        Unit to print behind them.
+        Unit to print after the numbers.
     error : float
-        Error estimate of both ends, in the unit.  It extends the interval on both sides; an
-        interval of positive numbers ends at 0.
+        Error estimate of both ends, in the unit.  It extends the interval on both sides.  An
+        interval of positive numbers is not extended below 0.
     """
     low, high = float(low), float(high)
     if not error <= EXACT * abs(high):
@@ -141,7 +146,8 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
-    """The end of an interval, rounded to a power of 10; infinity and NaN as text."""
+    """The end of an interval, rounded to a multiple of a power of 10.  Infinity and NaN become
+    texts."""
     if not math.isfinite(end):
         return f"{end:g}"
     number = _WITHOUT_ROUNDING_ERROR.create_decimal(Decimal(repr(end)))
@@ -149,9 +155,9 @@ def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
 
 
 def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]]) -> list[str]:
-    """Lines of a table of numbers and their errors, aligned to the right.
+    """Lines of a right-aligned table of numbers and their errors.
 
-    columns: values and their errors (None for exact values) by the heading of the column.
+    columns: values and their errors (None for exact values), by the heading of the column.
     """
     texts = []
     for heading, (values, errors) in columns.items():

@@ -1,10 +1,10 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the physics: every package of microslip except those in
-`OUTER`.  In the folders of motions, pressures and methods, a file counts only if the physics
-imports it or the request names it.  So a new file there changes no other result.  The stamp of a
-dataset, page or figure contains the digest of the modules that make it and of all their imports.
-Comments, docstrings and layout do not count.
+The name of a result contains the digest of the physics, which is every package of microslip except
+those in `OUTER`.  In the folders of motions, pressures and methods, a file counts only if the
+physics imports it or the request names it.  So a new file there changes no other result.  The
+stamp of a dataset, page or figure contains the digest of the modules that make it, and of all
+modules that these import.  Comments, docstrings and layout do not count.
 
 All modules are read once, when the package is imported, so that a digest belongs to the running
 code.
@@ -27,7 +27,7 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
-"""Folders of the package that do not influence results, except the files in ANSWERING."""
+"""Folders of the package that do not influence results, apart from the files in ANSWERING."""
 ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER that convert answers of the solver to results."""
 NAMING = {
@@ -36,23 +36,23 @@ NAMING = {
     "foundation/kernel_cache.py",
     "foundation/source_digest.py",
 }
-"""Files that name and write results, and influence no value in them."""
+"""Files that name and write results, but do not influence the values in them."""
 ENDINGS = {"py", "html", "css", "js"}
-"""Endings of the files that count: modules, and parts of pages."""
+"""Endings of the names of files that count: modules and parts of pages."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
-"""Folders with a file for each name, and the key of a request that holds the name."""
+"""Folders with a file for each name, and the key of a request that contains the name."""
 
 
 class Sources:
-    """The modules of a package, read at construction.
+    """The modules of a package.  They are read when the object is constructed.
 
     Attributes
     ----------
     package : Path
         Folder of the package.
     contents : dict of str to bytes
-        Contents by paths inside the package: modules that Python can import, and the templates and
-        scripts of pages beside them.
+        Contents of files, by their paths inside the package.  The files are modules that Python
+        can import, and templates and scripts of pages.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
@@ -66,7 +66,7 @@ class Sources:
     ) -> frozenset[str]:
         """Paths of modules and of all modules that they import, directly or indirectly.
 
-        inside: function of a path that is false for imported modules to leave out.
+        inside: function of a path that returns False for imported modules to omit.
         """
         closure, queue = set(), [*names]
         while queue:
@@ -96,16 +96,17 @@ class Sources:
         return self.closure(files, inside=is_physics)
 
     def of_kernels(self) -> str:
-        """Digest of the modules with compiled functions and of all their imports.
+        """Digest of the modules with compiled functions, and of all modules that they import.
 
-        Layout counts, since Numba finds the code of a function by its line.
+        The layout counts, since Numba identifies the code of a function by its line number.
         """
         compiled = {n for n, c in self.contents.items() if b"microslip.foundation.compiled" in c}
         content = [(n, _sha256(self.contents[n])) for n in sorted(self.closure(compiled))]
         return _sha256(json.dumps(content).encode())
 
     def edited(self) -> str | None:
-        """A physics file whose code on disk has changed since it was read; None without changes."""
+        """A file of the physics whose code on disk has changed since it was read; None if there is
+        none."""
         for name in filter(is_physics, self._dates):
             path, then = self.package / name, self.contents[name]
             try:
@@ -126,7 +127,7 @@ class Sources:
             if top == self.package.name:
                 yield from (file for file in files if file in self.contents and file not in NAMING)
 
-    # Parsing takes a second, so its results are kept in __pycache__.
+    # Parsing takes a second, so the results are stored in __pycache__.
 
     def _parsed(self, name: str) -> tuple[str, list[str]]:
         if name not in self.contents:
@@ -148,7 +149,8 @@ class Sources:
         return {}
 
     def _write_parsed(self) -> None:
-        """Write the results of parsing; without permission, the next process parses again."""
+        """Store the results of parsing.  Without permission to write, the next process parses
+        again."""
         if not self._is_written:
             self._is_written = True
             with contextlib.suppress(CacheError):
@@ -161,13 +163,13 @@ class Sources:
 
 
 def is_physics(name: str) -> bool:
-    """True for files that influence results; name: path inside the package."""
+    """True for files that influence results.  name: path inside the package."""
     room, slash, _ = name.partition("/")
     return name in ANSWERING or bool(slash) and room not in OUTER and name not in NAMING
 
 
 def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Path inside the package, and path, of each file in a folder and its subfolders."""
+    """Path inside the package, and full path, of each file in a folder and its subfolders."""
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         stem, _, ending = entry.name.partition(".")
         if not stem.isidentifier() or stem == "__pycache__":
@@ -179,7 +181,8 @@ def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _in_a_users_folder(name: str) -> Path | None:
-    """Path of a motion or a pressure in a folder of the user; None if it does not exist."""
+    """Path of the file of a motion or a pressure in a folder of the user; None if it does not
+    exist."""
     folder, _, file = name.rpartition("/")
     package = sys.modules.get(f"{PACKAGE.name}.{folder.replace('/', '.')}")
     places = (Path(place, file) for place in getattr(package, "__path__", ()))
@@ -191,14 +194,14 @@ def _sha256(content: bytes) -> str:
 
 
 _READER = _sha256(Path(__file__).read_bytes())
-"""Digest of this file.  Results of parsing by other code are ignored."""
+"""Digest of this file.  Results of parsing by another version of it are ignored."""
 
 
 def _parse(content: bytes) -> tuple[str, list[str]]:
     """Digest of the code of a module, and the names of all modules that it imports."""
     try:
         tree = ast.parse(content)
-    except (SyntaxError, ValueError):  # a broken file: its bytes count, without imports
+    except (SyntaxError, ValueError):  # in a broken file only the bytes count
         return _sha256(content), []
     names = set()
     for node in ast.walk(tree):
@@ -212,8 +215,8 @@ def _parse(content: bytes) -> tuple[str, list[str]]:
 def _dumped(node: object) -> Iterator[str]:
     """Pieces of the text of a syntax tree, without docstrings and line numbers.
 
-    All versions of Python give the same text, since empty fields are skipped.  ast.dump differs
-    between versions in these.
+    All versions of Python give the same text, since empty fields are skipped.  The output of
+    ast.dump for empty fields differs between versions.
     """
     if isinstance(node, ast.AST):
         yield f"{type(node).__name__}("
@@ -258,17 +261,17 @@ def _of_request(*names: str | None) -> str:
 
 
 def of_solver() -> str:
-    """Digest of the physics, without the motions, pressures and methods that only requests name."""
+    """Digest of the physics, without motions, pressures and methods that only requests name."""
     return of_request({"motion": "none"})
 
 
 def of_modules(*names: str) -> str:
-    """Digest of files and folders of the package, and of all imports of their modules."""
+    """Digest of files and folders of the package, and of all modules that they import."""
     files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
     return LOADED.digest(LOADED.closure(files))
 
 
 @cache
 def of_kernels() -> str:
-    """Digest of the modules with compiled functions and of all their imports."""
+    """Digest of the modules with compiled functions, and of all modules that they import."""
     return LOADED.of_kernels()

@@ -20,10 +20,10 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
-    """The number in a text, in Python's notation.
+    """The number in a text, which must be in Python's notation.
 
     Spaces around the number and a typographic minus are accepted.  Underscores, digits of other
-    scripts and decimal commas are not.
+    scripts and decimal commas are not accepted.
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     text
         The number, possibly infinite or NaN.
     whole
-        True to accept whole numbers alone, and to return an int.
+        True to accept only integers, and to return an int.
 
     Raises
     ------
     InputError
-        For any other text, and for numbers outside the range of floats.
+        If the text is not such a number, or the number is outside the range of floats.
     """
     plain = text.strip().replace(MINUS, "-", 1)
     if (WHOLE if whole else NUMBER).fullmatch(plain):
@@ -49,7 +49,7 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 
 def _float(argument: str, text: str, plain: str) -> float:
-    """The float of the digits `plain`; raises InputError if it is out of range."""
+    """The float with the digits `plain`.  Raises InputError if it is out of range."""
     number, digits = float(plain), plain.lower().partition("e")[0]
     if number == 0.0 and re.search("[1-9]", digits):
         problem = "nearer 0 than floating-point numbers can be"
@@ -61,9 +61,10 @@ def _float(argument: str, text: str, plain: str) -> float:
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
-    """Name and numbers (dict) in a text such as "elliptic:phase=90".
+    """The name, and a dict of the numbers, in a text such as "elliptic:phase=90".
 
-    Raises InputError about the argument `what` if `names` lacks the name, or for invalid numbers.
+    Raises InputError about the argument `what` if `names` does not contain the name, or if the
+    numbers are invalid.
     """
     name, colon, rest = text.partition(":")
     if name not in names:
@@ -75,10 +76,10 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
 
 
 def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float]:
-    """Numbers by their names in a part of a text, such as "forward=0.5,phase=90".
+    """Numbers by name in a part of a text, such as "forward=0.5,phase=90".
 
-    Raises InputError about the argument `what`, with the whole text and an example, for a part that
-    cannot be read.
+    If the part cannot be read, raises InputError about the argument `what`, with the whole text and
+    an example.
     """
     numbers = {}
     for one in part.split(","):
@@ -119,9 +120,9 @@ def refuse_strange(record: Any, what: str) -> None:
 def refuse_outside(
     text: str, what: str, key: str, number: float, limits: tuple, *, kind: str = "a number"
 ) -> None:
-    """Raise InputError about the argument `what` for a number outside its limits.
+    """Raise InputError about the argument `what` if a number is outside its limits.
 
-    kind: words for the number in the message.
+    kind: description of the number in the message.
     """
     low, high = limits
     if not low <= number <= high:
@@ -129,7 +130,7 @@ def refuse_outside(
 
 
 def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
-    """Raise InputError about the argument `what` for a share outside 0..1."""
+    """Raise InputError about the argument `what` if a fraction is outside 0 to 1."""
     for key, share in shares.items():
         refuse_outside(text, what, key, share, (0.0, 1.0), kind="a share")
 
@@ -144,12 +145,13 @@ def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) 
 
 
 def name_of(cls: type) -> str:
-    """Name of a class in texts: "continuous-bore" for ContinuousBore."""
+    """Name of a class in texts, such as "continuous-bore" for ContinuousBore."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
 
 
 def text_of(record: Any) -> str:
-    """Text of a dataclass of numbers: its name, and the numbers that differ from their defaults.
+    """Text of a dataclass of numbers.  It contains the name, and the numbers that differ from
+    their defaults.
 
     The numbers have 12 digits.
     """

@@ -12,11 +12,12 @@ from microslip.theory.hertz import checked
 
 @dataclass(frozen=True)
 class TwoBodies:
-    """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
+    """A sphere that is pressed on a flat or on a second sphere.  At least one of the bodies is
+    elastic.
 
-    The tangential problem of two half-spaces equals that of one half-space with the sum of their
-    compliances.  Its G and Poisson's ratio follow from the sums of 1/G and nu/G.  The normal and
-    the tangential problem are assumed to be uncoupled.
+    The tangential problem of two half-spaces equals that of one half-space whose compliance is the
+    sum of both.  The G and Poisson's ratio of this half-space follow from the sums of 1/G and
+    nu/G.  The normal and the tangential problem are assumed to be uncoupled.
 
     Attributes
     ----------
@@ -29,13 +30,13 @@ class TwoBodies:
     mu : float
         Coefficient of friction without vibration, dimensionless.
     radii : tuple of float
-        R1 and R2, m, negative if hollow, infinite if flat.  Empty: R1 is `radius`, and the second
-        body is flat.
+        R1 and R2, m, negative for a hollow body, infinite for a flat one.  If empty, R1 is
+        `radius`, and the second body is flat.
 
     Raises
     ------
     ValueError
-        For a value that is not finite or not positive, and for two rigid bodies.
+        If a value is not finite or not positive, or if both bodies are rigid.
     """
 
     first: Material
@@ -55,7 +56,7 @@ class TwoBodies:
             raise InputError("counterbody", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:
-        """A copy of the bodies under another load, N."""
+        """Copy of the contact under another load, N."""
         return replace(self, load=load)
 
     @property
@@ -64,29 +65,30 @@ class TwoBodies:
 
     @property
     def E_star(self) -> float:
-        """1/E* = sum (1 - nu^2)/E, Pa (Hertz)."""
+        """Contact modulus E*, Pa, from 1/E* = sum (1 - nu^2)/E (Hertz)."""
         return 1.0 / sum((1.0 - body.poisson**2) / body.young for body in self.bodies)
 
     @property
     def G(self) -> float:
-        """1/G = sum 1/G_i, Pa; the modulus of torsion."""
+        """Shear modulus for torsion, from 1/G = sum 1/G_i, Pa."""
         return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
 
     @property
     def poisson(self) -> float:
-        """Poisson's ratio of the equivalent half-space on a rigid one, sum(nu/G) / sum(1/G)."""
+        """Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G)."""
         compliances = [1.0 / body.shear_modulus for body in self.bodies]
-        total = sum(compliances)  # one elastic body keeps its ratio to the last bit
+        total = sum(compliances)  # no rounding error for one elastic body
         return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property
     def G_star(self) -> float:
-        """1/G* = sum (2 - nu)/(4 G), Pa (Eq 3 for two bodies)."""
+        """Tangential contact modulus G*, Pa, from 1/G* = sum (2 - nu)/(4 G) (Eq 3 for two
+        bodies)."""
         return 4.0 * self.G / (2.0 - self.poisson)
 
     @property
     def contact_radius(self) -> float:
-        """a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
+        """Contact radius a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
         return (0.75 * self.load * self.radius / self.E_star) ** (1.0 / 3.0)
 
     @property
@@ -96,25 +98,25 @@ class TwoBodies:
 
     @property
     def indentation(self) -> float:
-        """d = a^2/R, m (Hertz)."""
+        """Indentation d = a^2/R, m (Hertz)."""
         return self.contact_radius**2 / self.radius
 
     @property
     def largest_pressure(self) -> float:
-        """p0 = 3 F / (2 pi a^2), Pa (Hertz)."""
+        """Largest pressure p0 = 3 F / (2 pi a^2), Pa (Hertz)."""
         return 1.5 * self.load / (math.pi * self.contact_radius**2)
 
     @property
     def u_lim(self) -> float:
-        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
+        """Displacement at which the whole contact slides, mu d E*/G*, m (see below Eq 2)."""
         return self.mu * self.indentation * self.E_star / self.G_star
 
     @property
     def mismatch(self) -> float:
         """Dundurs' constant beta, dimensionless; 0 for equal bodies.
 
-        It is half the difference of (1 - 2 nu)/G divided by the sum of (1 - nu)/G, and measures the
-        sideways displacement by a pressure.
+        It is half the difference of (1 - 2 nu)/G between the bodies, divided by the sum of (1 -
+        nu)/G. It measures the sideways displacement that a pressure causes.
         """
         first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
         both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)

@@ -14,14 +14,14 @@ from microslip.theory import hertz
 
 @dataclass(frozen=True)
 class RealMotion:
-    """A motion in SI units; a missing quantity is None.
+    """A motion in SI units.  A missing quantity is None.
 
     Attributes
     ----------
     name : str
         Name of the motion.
     speed : float or None
-        Forward speed, m/s; None under a force.
+        Forward speed, m/s; None if a force is prescribed.
     amplitude : float or None
         Half stroke of the oscillation, m, or rad for a rotation.
     frequency : float or None
@@ -29,8 +29,8 @@ class RealMotion:
     rotation : float or None
         Angular speed of a steady spin, rad/s.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : float or None
-        Half strokes forward, m, in rotation, rad, and of the load, N, and the phase, rad, of a
-        motion with several oscillations.
+        Properties of a motion with several oscillations: half strokes of the forward motion, m, of
+        the rotation, rad, and of the load, N, and the phase, rad.
     """
 
     name: str
@@ -55,7 +55,7 @@ class RealMotion:
 
     @property
     def swing(self) -> tuple[float, float]:
-        """Largest displacement along the surface, m, and largest rotation, rad."""
+        """Largest displacement along the surface in a period, m, and largest rotation, rad."""
         if self.spins:
             return 0.0, self.amplitude or 0.0
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
@@ -66,17 +66,17 @@ class RealMotion:
         """Angular frequency of the oscillation, or angular speed of a steady spin, rad/s."""
         if self.frequency is not None:
             return 2.0 * math.pi * self.frequency
-        assert self.rotation is not None  # a steady motion has one
+        assert self.rotation is not None  # a steady motion has a rotation
         return self.rotation
 
     @property
     def rate(self) -> float:
-        """Frequency of the oscillation, or turns per second of a steady spin, Hz."""
+        """Frequency of the oscillation, or number of turns per second of a steady spin, Hz."""
         return self.turn / (2.0 * math.pi) if self.frequency is None else self.frequency
 
     @property
     def known_speed(self) -> float:
-        """The speed, m/s; it must not be None."""
+        """The speed, m/s.  It must not be None."""
         assert self.speed is not None
         return self.speed
 
@@ -96,7 +96,8 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
 
 
 def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
-    """Text of the motion for microslip.solve; several amplitudes are divided by the largest one."""
+    """Text of the motion for microslip.solve.  Several amplitudes are divided by the largest
+    one."""
     if motion.name not in COMBINED:
         return motion.name
     amplitudes = parts(motion, contact)
@@ -107,9 +108,9 @@ def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
 
 
 def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float | None]:
-    """Velocity and amplitude of microslip.solve (Eqs 2, 4, 13, 27, 28).
+    """Velocity and amplitude for microslip.solve (Eqs 2, 4, 13, 27, 28).
 
-    The velocity is None under a force, the amplitude for a steady motion.
+    The velocity is None if a force is prescribed.  The amplitude is None for a steady motion.
     """
     unit = speed_unit(motion, contact)
     velocity = None if motion.speed is None else _over(motion.speed, unit)
@@ -119,7 +120,7 @@ def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float 
 
 
 def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
-    """Amplitude of microslip.solve; None for a steady motion."""
+    """Amplitude for microslip.solve; None for a steady motion."""
     if motion.steady:
         return None
     if motion.name in COMBINED:
@@ -138,7 +139,7 @@ def _known_size(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
-    """Forward speed whose dimensionless velocity is 1, m/s; it can underflow to 0."""
+    """Forward speed whose dimensionless velocity is 1, m/s.  It can underflow to 0."""
     if motion.steady:
         return motion.turn * contact.contact_radius
     omega = motion.turn
@@ -151,14 +152,14 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def _over(speed: float, unit: float) -> float:
-    """A speed divided by its unit, which can be 0."""
+    """A speed divided by the unit of speed, which can be 0."""
     if speed == 0.0:
         return 0.0
     return speed / unit if unit > 0.0 else math.inf
 
 
 def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
-    """Mean normal load, N; it is above the load if the bodies separate in each period."""
+    """Mean normal load, N.  It is larger than the load if the bodies separate in each period."""
     if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
         return contact.load
     record = motion_named(solver_motion(motion, contact))
@@ -167,7 +168,7 @@ def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
-    """mu times the mean normal load, N: the unit of forces."""
+    """Unit of forces: mu times the mean normal load, N."""
     return contact.mu * mean_load(motion, contact)
 
 
@@ -180,9 +181,9 @@ class RealDrive:
     force : float or None
         Prescribed constant force, N.
     stiffness : float or None
-        Stiffness of a spring whose far end has the speed of the motion, N/m.
+        Stiffness of a spring, N/m.  The far end of the spring has the speed of the motion.
     mass, damping : float or None
-        Mass of the body, kg, and damping of a dashpot beside the spring, N s/m.
+        Mass of the body, kg, and damping of a dashpot parallel to the spring, N s/m.
     """
 
     force: float | None = None
@@ -192,10 +193,11 @@ class RealDrive:
 
 
 def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Force, stiffness, mass and damping of microslip.solve, without those that are None.
+    """Force, stiffness, mass and damping for microslip.solve, except those that are None.
 
-    The units are mu times the mean load, mu F_z / u_lim, mu F_z / (u_lim omega^2) and
-    mu F_z / (u_lim omega).  F_z is the load without oscillation.
+    The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by mu
+    F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load without
+    oscillation.
     """
     still = contact.mu * contact.load
     stiffness = still / contact.u_lim
@@ -210,9 +212,10 @@ def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> di
 
 
 def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
-    """Upper bound of the slip speed, m/s: that of rigid bodies at the edge of the contact.
+    """Upper bound of the slip speed, m/s: the slip speed of rigid bodies at the edge of the
+    contact.
 
-    NaN for a contact that runs away.
+    It is NaN for a contact that runs away.
     """
     edge, speed = contact.contact_radius, motion.known_speed
     if motion.steady:

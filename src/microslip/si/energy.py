@@ -14,11 +14,11 @@ from microslip.si.request import Request
 
 
 def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
-    """Fields of a Prediction for a converged answer.
+    """Energy fields of a Prediction, for a converged answer.
 
     They are the power of the drag, the torque and power of a steady spin, and the power of an
-    oscillation if it was requested.  Raises InputError if that power was requested under a force,
-    with a spring, or at a speed or amplitude of 0.
+    oscillation if it was requested.  Raises InputError if the power of the oscillation was
+    requested under a force, with a spring, or at a speed or amplitude of 0.
     """
     contact, motion, still = request.contact, request.motion, request.still
     speed, friction = motion.known_speed, answer.friction

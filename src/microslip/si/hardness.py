@@ -1,4 +1,4 @@
-"""Hardness: a pressure, Vickers (200 HV) or Rockwell C (60 HRC)."""
+"""Hardness as a pressure, a Vickers number (200 HV) or a Rockwell C number (60 HRC)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ VICKERS = np.array([238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.
 """Vickers numbers of steels with these Rockwell C numbers (ASTM E140, Table 1)."""
 
 VICKERS_OVER_BRINELL = 1.0 / 0.95
-"""Ratio of both numbers for unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
+"""Vickers number divided by Brinell number, for unalloyed and low-alloy steels from 80 to 650 HV
+(ISO 18265, Table A.1)."""
 ALLOWED = (
     "allowed are Vickers and Rockwell C, as in '200 HV' and '60 HRC', and pressures, as '7 GPa'"
 )
@@ -53,7 +54,7 @@ def read_hardness(name: str, value: Any) -> Quantity:
 
 
 def _check_scale(name: str, value: object) -> None:
-    """Raise InputError for a hardness on another scale."""
+    """Raise InputError for a hardness on an unsupported scale."""
     scale = _OTHER_SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
     if scale is None:
         return

@@ -19,7 +19,7 @@ from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
-"""Largest accepted coefficient of friction; bodies in elastic contact are below it."""
+"""Largest accepted coefficient of friction.  Bodies in elastic contact have smaller ones."""
 LARGEST_PHASE = 1e3
 """Largest accepted phase, rad."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
@@ -66,9 +66,9 @@ QUANTITIES = {
 def read_argument(
     name: str, value: object, unit: str | None = None, title: str | None = None
 ) -> Quantity:
-    """Read and check one of QUANTITIES; raises InputError.
+    """Read and check a quantity of QUANTITIES; raises InputError.
 
-    unit: another SI unit; title: another name for messages.
+    unit: SI unit that replaces the default; title: name of the argument in messages.
     """
     usual, *limits = QUANTITIES[name]
     ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
@@ -76,11 +76,11 @@ def read_argument(
 
 
 Arguments = Mapping[str, Any]
-"""Arguments of predict by name; None for a missing one."""
+"""Arguments of predict by name.  A missing argument is None."""
 
 
 class Body(NamedTuple):
-    """A material, and its properties in the words of the user."""
+    """A material, and its properties as the user wrote them."""
 
     material: Material
     text: str
@@ -95,7 +95,8 @@ def read_bodies(arguments: Arguments) -> tuple[Body, Body]:
 
 
 def _completed(body: Body, side: str, arguments: Arguments) -> Body:
-    """The body with its hardness and density; side: "counter_" for the counterbody, else empty."""
+    """The body with its hardness and density.  side: "counter_" for the counterbody, else
+    empty."""
     for name in ("hardness", "density"):
         argument, value = f"{side}{name}", arguments[f"{side}{name}"]
         if value is None:
@@ -126,7 +127,8 @@ def _body(young: object, nu: object, material: Any) -> Body:
 
 
 def _counterbody(body: Any) -> Body:
-    """The counterbody: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid body."""
+    """The counterbody.  value: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid
+    body."""
     if body is None:
         return Body(RIGID, "rigid (default)")
     if isinstance(body, Material):
@@ -182,16 +184,17 @@ def read_contact(
     bodies : tuple of Body
         The body and the counterbody.
     arguments : mapping
-        Arguments of predict: the shape and mu are read.
+        Arguments of predict.  This function reads the shape and mu.
     load : quantity
         Load of all contacts.
     contacts : int
-        Number of contacts.  The returned contact carries the mean load.
+        Number of contacts.  The returned contact has the mean load.
 
     Raises
     ------
     InputError
-        For an argument that is missing or not allowed, and for a contact outside Hertz's theory.
+        If an argument is missing or not allowed, or if Hertz's theory does not apply to the
+        contact.
     """
     sized = arguments["pressure"] is not None or arguments["contact_radius"] is not None
     if sized:
@@ -233,7 +236,7 @@ def read_contact(
 
 
 def _check_without_radii(arguments: Arguments) -> None:
-    """Raise InputError unless a contact has a size and no radii."""
+    """Raise InputError unless the arguments contain a size and no radii."""
     for name in ("radius", "counter_radius", "radius_across"):
         if arguments[name] is not None:
             cause = "a contact_radius"
@@ -251,7 +254,7 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
     Parameters
     ----------
     plain : TwoBodies
-        The bodies and the load; the radius does not matter.
+        The bodies and the load.  The radius has no effect.
     size : float
         Half the longer side, m.
     pressure : str
@@ -273,7 +276,8 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
 
 
 def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], dict[str, str]]:
-    """Radii of the sphere and of the counterbody, m, and texts; infinite for a flat counterbody."""
+    """Radii of the sphere and of the counterbody, m, and their texts.  The radius of a flat
+    counterbody is infinite."""
     text, counter, argument = "flat (default)", math.inf, arguments["counter_radius"]
     if argument is not None:
         second = read_argument("counter_radius", argument)
@@ -294,9 +298,9 @@ def _radii(radius: float, arguments: Arguments) -> tuple[tuple[float, float], di
 
 
 def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, load: object) -> None:
-    """Raise InputError for a contact outside Hertz's theory.
+    """Raise InputError if Hertz's theory does not apply to a contact.
 
-    second: the counter_radius or the radius_across as the user wrote it.
+    second: counter_radius or radius_across as the user wrote it.
     """
     try:
         a, smallest = contact.contact_radius, contact.smallest_radius
@@ -324,7 +328,8 @@ def read_motion(
 ) -> tuple[RealMotion, dict[str, str]]:
     """The motion, and texts of its arguments by name; raises InputError.
 
-    sought: name of the quantity of a search, which is missing, or None.  The speed can be missing.
+    sought: name of the quantity that a search determines, which may be missing, or None.  The
+    speed may be missing, too.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)
@@ -359,7 +364,8 @@ DRIVE_FIELDS = {
     "mass": "mass",
     "damping": "damping",
 }
-"""Arguments of predict that describe the drive, except the speed, and their RealDrive fields."""
+"""Arguments of predict that describe the drive, except the speed, and the fields of RealDrive that
+contain them."""
 
 
 def read_drive(
@@ -367,7 +373,7 @@ def read_drive(
 ) -> tuple[RealDrive, dict[str, str]]:
     """The drive, and texts of its arguments by name; raises InputError.
 
-    sought: name of the quantity of a search, which is missing, or None.
+    sought: name of the quantity that a search determines, which may be missing, or None.
     """
     speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
     if speed is None and force is None and sought != "speed":

@@ -1,4 +1,4 @@
-"""A few materials by name, with the sources of their numbers."""
+"""Materials by name, with the sources of their properties."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from microslip.si.quantities import read
 class Material:
     """An isotropic elastic body.
 
-    Texts with units and pint quantities are converted to numbers in SI units.
+    Texts with units, and pint quantities, are converted to numbers in SI units.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Material:
     Raises
     ------
     InputError
-        For a value that is out of range or not a number.
+        If a value is out of range or not a number.
     """
 
     young: float
@@ -62,13 +62,13 @@ class Material:
 
     @property
     def shear_modulus(self) -> float:
-        """G = E/(2 (1 + nu)), Pa."""
+        """Shear modulus G = E/(2 (1 + nu)), Pa."""
         return self.young / (2.0 * (1.0 + self.poisson))
 
 
 RIGID = Material(math.inf, 0.0, source="by definition")
 TABLE = Path(__file__).with_name("materials.csv")
-"""File of the materials in SI units; an empty cell is an unknown property."""
+"""File of the materials, in SI units.  An empty cell is an unknown property."""
 
 
 def _materials() -> dict[str, Material]:
@@ -83,11 +83,11 @@ def _materials() -> dict[str, Material]:
 
 MATERIALS = _materials() | {"rigid": RIGID}
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
-"""Materials by other names in lower case, for hints."""
+"""Names of materials by other names in lower case, for hints."""
 
 
 def material_named(name: object) -> Material:
-    """The Material of a name; raises InputError, with a hint, for another name."""
+    """The Material of a name.  Raises InputError, with a hint, for an unknown name."""
     if isinstance(name, str) and name in MATERIALS:
         return MATERIALS[name]
     allowed = f"allowed is one of {', '.join(MATERIALS)}"

@@ -1,7 +1,8 @@
 """Motions in SI units: amplitudes, units and descriptions.
 
-A motion from a user's file, or with numbers such as "elliptic:forward=0.5", is described by its
-record.  Its amplitude is a length if it does not rotate, and an angle if it only rotates.
+A motion from a file of the user, or one with numbers such as "elliptic:forward=0.5", has a record
+that describes it.  The amplitude is a length if the motion does not rotate, and an angle if it
+only rotates.
 """
 
 from __future__ import annotations
@@ -12,27 +13,27 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 
-if TYPE_CHECKING:  # the command line needs the tables only
+if TYPE_CHECKING:  # the command line needs only the tables
     from microslip.motions.motion import Motion
 
 UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
-"""SI unit of the amplitude, by motion with one oscillation."""
+"""SI unit of the amplitude for each motion with one oscillation."""
 COMBINED = {
     "elliptic": ("amplitude", "forward_amplitude"),
     "transverse-bore": ("amplitude", "rotation_amplitude"),
     "normal": ("load_amplitude",),
 }
-"""Required amplitudes, by motion with several oscillations."""
+"""Required amplitudes of the motions with several oscillations."""
 PARTS = {
     "amplitude": ("lateral", "m"),
     "forward_amplitude": ("forward", "m"),
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""Names of these amplitudes in the text of a solver's motion, and their SI units."""
+"""Names of these amplitudes in the text of a motion for the solver, and their SI units."""
 TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
-"""Allowed arguments, by motion with several oscillations."""
+"""Allowed arguments of the motions with several oscillations."""
 MOTIONS = {
     "transverse": "slides forward and oscillates sideways",
     "longitudinal": "slides forward and oscillates along the same direction",
@@ -45,9 +46,10 @@ MOTIONS = {
 }
 """Descriptions of the motions of the sphere."""
 ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
-"""Motions with a vibration along the drive, or with an oscillating load."""
+"""Motions that vibrate along the drive, or have an oscillating load."""
 SAME = 1e-3
-"""Largest relative difference of two angles that count as equal; one is sampled at 721 phases."""
+"""Largest relative difference of two angles that count as equal.  One of them is sampled at 721
+phases."""
 
 
 def check_motion(motion: object) -> None:

@@ -1,12 +1,13 @@
 """Uncertainty of the static limit and probability of each outcome under a force.
 
-The uncertain inputs are independent and normally distributed.  Their draws are a low-discrepancy
-sequence, so equal requests have equal draws.  Forces and amplitudes are tabulated along each input
-alone, and the changes of their logarithms are added: this is exact for power laws, such as Hertz's
-theory.  The static limit is a function of the amplitude, solved at a few amplitudes.
+The uncertain inputs are independent and normally distributed.  Their draws form a low-discrepancy
+sequence, so that equal requests have equal draws.  Forces and amplitudes are tabulated for changes
+of one input at a time.  The changes of their logarithms are added, which is exact for power laws,
+such as Hertz's theory.  The static limit is a function of the amplitude, and is solved at a few
+amplitudes.
 
-A draw outside the physical range is replaced by the closest physical value: a negative amplitude,
-load, force or coefficient of friction by 0, a Poisson's ratio above 0.5 by 0.5.
+A draw outside the physical range is replaced by the closest physical value.  For example, a
+negative load becomes 0, and a Poisson's ratio above 0.5 becomes 0.5.
 """
 
 from __future__ import annotations
@@ -32,21 +33,23 @@ DRAWS = 2**16
 """Number of draws.  The error of a probability is below 1e-3."""
 DEVIATIONS = np.linspace(-4.0, 4.0, 17)
 """Nodes of the table along one input, in standard deviations from its central value.  One draw in
-16000 is outside."""
+16000 is outside the table."""
 SMALLEST_SHARE = 1e-2
-"""Smallest tabulated value of a positive quantity, divided by its central value.  Where 0 is not a
-physical value it replaces smaller draws."""
+"""Smallest tabulated value of a positive quantity, divided by its central value.  If 0 is not a
+physical value, this value replaces smaller draws."""
 BISECTIONS = 12
-"""Bisections for the limit of the accepted values, to 2**-12 of half a standard deviation."""
+"""Number of bisections for the limit of the accepted values.  The error of the limit is 2**-12 of
+half a standard deviation."""
 TOWARDS_ZERO = 2.0
 """Largest ratio of neighbouring nodes below the central value.  The interpolation of logarithms is
 exact for power laws; other functions vary little over a factor of 2."""
 SAME_SHARE = 9
-"""Decimals to which shares of the amplitude are compared; later digits are rounding errors."""
+"""Number of decimals to which shares of the amplitude are compared.  Later digits are rounding
+errors."""
 INTERVAL = 0.025, 0.975
-"""Quantiles at the ends of a 95 % interval."""
+"""Probabilities of the quantiles at the ends of a 95 % interval."""
 DEVIATIONS_OF_INTERVAL = 1.959964
-"""Half a 95 % interval of a normal distribution, in standard deviations."""
+"""Half the width of a 95 % interval of a normal distribution, in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -56,9 +59,9 @@ class UncertainInput:
     Attributes
     ----------
     name, text : str
-        Its name and the text of the user.
+        Name of the argument, and its text as the user wrote it.
     low, high : float
-        Its value minus and plus one standard deviation, in its SI unit.
+        The value minus and plus one standard deviation, in its SI unit.
     """
 
     name: str
@@ -76,26 +79,27 @@ class UncertainInput:
 
 
 Ends = Mapping[str, tuple[Prediction | None, Prediction | None]]
-"""Predictions one standard deviation below and above an input, by its name; None: no solution."""
+"""Predictions at one standard deviation below and above the value of an input, by its name.  A
+prediction without a solution is None."""
 RequestAt = Callable[[Mapping[str, float]], Request]
-"""request_at(changes) -> Request; changes: values of arguments by name."""
+"""Function request_at(changes) -> Request.  changes: values of arguments by name."""
 
 
 @dataclass(frozen=True)
 class _State:
-    """Closed forms for one set of inputs.
+    """Quantities with closed forms for one set of inputs.
 
     Attributes
     ----------
     still, largest, force : float
-        Friction without vibration, the force from which on the contact runs away, and the
-        prescribed force or None, N.
+        Friction without vibration, smallest force at which the contact runs away, and prescribed
+        force or None, N.
     amplitude : float or None
         Dimensionless amplitude.
     mu, poisson : float
         Coefficient of friction and Poisson's ratio, dimensionless.
     shape : tuple
-        Everything else on which the static limit depends.
+        All other quantities on which the static limit depends.
     """
 
     still: float
@@ -110,7 +114,7 @@ class _State:
 def uncertainty_of_outcomes(
     prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
 ) -> dict[str, Any]:
-    """Columns of the uncertainty of the static limit and of the outcome.
+    """Columns of the uncertainty of the static limit, and of the probabilities of the outcomes.
 
     prediction: the Prediction for the central values.
     """
@@ -161,7 +165,8 @@ def uncertainty_of_outcomes(
 
 
 def _error_of_draws(outcome: np.ndarray) -> float:
-    """Error estimate of a probability; outcome: True for each draw with this outcome.
+    """Error estimate of a probability.  outcome: array that is True for each draw with this
+    outcome.
 
     It is the difference between the two halves of the draws, and at least log(DRAWS) / DRAWS, the
     order of the discrepancy of the sequence.
@@ -173,7 +178,8 @@ def _error_of_draws(outcome: np.ndarray) -> float:
 def half_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
     """Half the difference of a field of two predictions.
 
-    It is infinite where one of them has no value: no solution, or a contact that runs away.
+    It is infinite if one of them has no value, because there is no solution or the contact runs
+    away.
     """
     if low is None or high is None:
         return math.inf
@@ -184,9 +190,9 @@ def half_difference(low: Prediction | None, high: Prediction | None, name: str) 
 def _normal_intervals(
     prediction: Prediction, ends: Iterable[tuple[Prediction | None, Prediction | None]]
 ) -> dict[str, Any]:
-    """Columns of the uncertainty for the result of a search, to first order in each input.
+    """Columns of the uncertainty of the result of a search, to first order in each input.
 
-    Each draw would need a search of its own.
+    Draws are not used, since each one would need a separate search.
     """
     fields: dict[str, Any] = {"interval_method": FIRST_ORDER}
     for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
@@ -201,13 +207,13 @@ def _normal_intervals(
 
 
 def _ratio(threshold: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Threshold divided by force: infinite for a force of 0, and 0 where both are 0."""
+    """Threshold divided by force.  It is infinite for a force of 0, and 0 if both are 0."""
     without = np.where(threshold > 0.0, math.inf, 0.0)
     return np.divide(threshold, force, out=without, where=force > 0.0)
 
 
 def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any]:
-    """Columns of the standard deviation and the 95 % interval; some draws can be infinite."""
+    """Columns of the standard deviation and the 95 % interval.  Some draws can be infinite."""
     low, high = np.quantile(draws, INTERVAL, method="nearest")
     return {
         f"{name}_spread{unit}": math.inf if np.isinf(draws).any() else float(np.std(draws)),
@@ -217,10 +223,10 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
 
 
 def _draws(count: int) -> np.ndarray:
-    """Independent standard normal numbers, shape (DRAWS, count).
+    """Draws of independent standard normal numbers, shape (DRAWS, count).
 
-    They are a Kronecker sequence.  Its irrational numbers are powers of the root of
-    x^(count + 1) = x + 1.
+    They form a Kronecker sequence, whose irrational numbers are powers of the root of x^(count + 1)
+    = x + 1.
     """
     from scipy.special import ndtri
 
@@ -245,12 +251,12 @@ def _state(request: Request) -> _State:
 
 
 class _Table:
-    """Closed forms at all draws, interpolated along each input alone.
+    """Quantities with closed forms at all draws, interpolated along one input at a time.
 
     Attributes
     ----------
     mu, still, largest, amplitude, poisson, force : np.ndarray, shape (DRAWS,)
-        Fields of a _State at each draw; force: None without a prescribed force.
+        Fields of a _State at each draw.  The force is None if no force is prescribed.
     one_shape : bool
         True if every state has the shape of the central one.
     """
@@ -294,7 +300,7 @@ class _Table:
 
 
 SMALLEST_LOGARITHM = -700.0
-"""Logarithm of a number near 1e-304, used for the logarithm of 0."""
+"""Logarithm of a number near 1e-304, which replaces the logarithm of 0."""
 
 
 def _log(value: float) -> float:
@@ -302,9 +308,10 @@ def _log(value: float) -> float:
 
 
 def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
-    """Nodes along one input: logarithms of its size, ascending, and the states there.
+    """Nodes along one input: logarithms of its absolute value, ascending, and the states at the
+    nodes.
 
-    Where predict does not accept a node, the last node is at the limit of the accepted values.
+    If predict does not accept a node, the last node is at the limit of the accepted values.
     """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))
@@ -339,7 +346,7 @@ def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list
 def _static_of(
     prediction: Prediction, request: Request, table: _Table, ends: Ends, draws: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of all draws, and its error estimate."""
+    """mu_static of all draws, and the error estimates."""
     static, static_error = prediction.mu_static, prediction.mu_static_error
     assert static is not None and static_error is not None  # the motion oscillates
     if not math.isfinite(static):

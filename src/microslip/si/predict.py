@@ -35,7 +35,7 @@ from microslip.si.validity import broken_assumptions, unchecked
 
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
-"""The outcome, and the first words of the solver's reason for it."""
+"""Outcomes, and the words with which the solver's reason for each of them begins."""
 UNKNOWN_WITHOUT = {
     "amplitude": ("amplitude_si",),
     "speed": ("speed_m_s",),
@@ -44,7 +44,8 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are NaN for a search without a solution, by its quantity."""
+"""Fields of a Prediction that are NaN if a search has no solution, by the quantity of the
+search."""
 
 
 def predict(
@@ -86,82 +87,87 @@ def predict(
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the SI
     unit.  A text can have a standard uncertainty, "10 N +- 5 %", except for the phase, densities,
-    hardnesses and the reduction.  A text with any other character raises InputError.
+    hardnesses and the reduction.  A text with other characters raises InputError.
 
     Parameters
     ----------
     motion : str
-        "transverse", "longitudinal", "zigzag", "bore" (the sphere spins to and fro about the
-        contact normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore",
-        "normal", or another translation or rotation of `microslip.solve`.
+        "transverse", "longitudinal", "zigzag", "bore" (the sphere oscillates about the contact
+        normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal", or
+        another translation or rotation of `microslip.solve`.
     radius, load, mu : quantity
-        Radius of the sphere, m, normal load, N, and coefficient of friction without vibration.
+        Radius of the sphere, m; normal load, N; coefficient of friction without vibration.
     speed : quantity
-        Forward speed of sliding, m/s.  With a spring, the speed of its far end.
+        Forward speed of sliding, m/s.  With a spring, it is the speed of the far end of the
+        spring.
     force : quantity
-        Constant forward force, N, in place of the speed.  The answer is the speed.
+        Constant forward force, N.  It replaces the speed, which is then the answer.
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
         Material of the body: a name, or a microslip.Material.
     counterbody : str, Material or pair of quantities, optional
-        "rigid", a material, or E and nu as in "70 GPa, 0.22" or (70e9, 0.22).  Default: rigid.
+        Second body: "rigid" (default), a material, or E and nu as in "70 GPa, 0.22" or (70e9,
+        0.22).
     counter_radius : quantity, optional
-        Radius of the counterbody, m, negative if hollow.  Default: flat.
+        Radius of the counterbody, m, negative if it is hollow.  By default, it is flat.
     radius_across : quantity, optional
-        Radius of curvature across the forward direction, m.  The contact is then an ellipse.
+        Radius of curvature across the forward direction, m.  With it, the contact is an ellipse.
     contact_radius, pressure : quantity, str, optional
-        In place of all radii, half the longer side of the contact, m, and a pressure of
-        microslip.solve: "ring:inner=0.5", "file:pad.csv".  Default: "hertz".
+        Half the longer side of the contact, m, which replaces all radii.  The pressure is one of
+        microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".  Default: "hertz".
     amplitude : quantity
-        Half stroke of the oscillation: a length, or for a bore an angle.  For a motion with several
-        oscillations it is the lateral half stroke.
+        Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
+        several oscillations it is the lateral half stroke.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
-        For a motion with several oscillations, half strokes forward, m, in spin, rad, and of the
-        load, N, and a phase, rad.  The forward oscillation of elliptic, the rotation of
-        transverse-bore, and the motion of normal follow sin(omega t + phase).  The others follow
-        sin(omega t).
+        Properties of a motion with several oscillations: half strokes of the forward motion, m, of
+        the spin, rad, and of the load, N, and a phase, rad.  The phase applies to the forward
+        oscillation of elliptic, to the rotation of transverse-bore and to the displacement of
+        normal, which follow sin(omega t + phase).  The other oscillations follow sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps) or angular (rad/s, deg/s, rpm, turn/s).  A
         number is in Hz.
     rotation : quantity
         Angular speed of a continuous bore, in the units of a frequency.  A number is in rad/s.
     reduction : quantity, optional
-        Requested reduction of friction, 0 to 1 or in per cent, in place of the amplitude, the speed
-        or the load.  The answer is the least amplitude, the largest speed or the largest load with
-        this reduction.  Not allowed with a force or a spring.
+        Requested reduction of friction, 0 to 1 or in per cent.  It replaces the amplitude, the
+        speed or the load.  The answer is the least amplitude, the largest speed or the largest
+        load with this reduction.  It is not allowed with a force or a spring.
     drive_stiffness, mass, damping : quantity, optional
-        Stiffness of a spring between the drive and the body, N/m, mass of the body, kg, and damping
-        of a dashpot beside the spring, N s/m.  A mass is also allowed under a force.
+        Stiffness of a spring between the drive and the body, N/m; mass of the body, kg; damping of
+        a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.
     contacts : str, optional
-        Contacts of a body on several equal contacts, as for microslip.solve: "phase=0;phase=180".
-        `load` is the sum over all contacts, divided in proportion to the `load` of each.  force,
-        drive_stiffness, mass and damping are those of the body.  Amplitudes are those of a contact
-        whose `amplitude` is 1.  Results for a single contact belong to one with the mean load,
-        warnings to the one with the largest load.
+        Several contacts of a body, of equal shape, as for microslip.solve: "phase=0;phase=180".
+        `load` is the sum over all contacts.  It is divided among them in proportion to the `load`
+        of each contact.  force, drive_stiffness, mass and damping belong to the body.  Amplitudes
+        belong to a contact whose `amplitude` is 1.  Results for a single contact belong to a
+        contact with the mean load.  Warnings belong to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Hardness, Pa or as in "700 HV" and "60 HRC", and density, kg/m^3, of the body and of the
-        counterbody.  They serve for warnings only.
+        Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or
+        a text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  They are used for warnings
+        only.
     tolerance : quantity
-        Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, the
-        largest relative error of the speed, default 1e-2; below a thousandth of the unit of speed
-        (omega u_lim, or that of the motion), it is relative to this thousandth.
+        Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it
+        is the largest accepted relative error of the speed, and the default is 1e-2.  For speeds
+        below a thousandth of the unit of speed, which is omega u_lim or that of the motion, the
+        error is relative to this thousandth.
     power : bool
         True to also compute the power of the oscillation.
 
     Returns
     -------
     Prediction
-        The request in words, the answer, and warnings where the theory does not apply.
+        The request as understood, the answer, and warnings if an assumption of the theory is
+        violated.
 
     Raises
     ------
     InputError
-        A ValueError with the argument, its value and what is allowed: for an input that is missing,
-        ambiguous or out of range, for a contact radius above half the radius of a body, and for a
-        reduction without a solution.
+        If an input is missing, ambiguous or out of range, if the contact radius is above half the
+        radius of a body, or if no solution has the requested reduction.  InputError is a
+        ValueError.  The message names the argument, its value and the allowed values.
     """
-    arguments = dict(locals())  # the arguments and nothing else
+    arguments = dict(locals())  # the arguments alone
     return predict_arguments(arguments.pop("motion"), arguments)
 
 
@@ -171,7 +177,8 @@ NOTHING["power"] = False
 
 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for arguments of predict by name, with the uncertainty of uncertain inputs."""
+    """The Prediction for arguments of predict by name, with its uncertainty if inputs are
+    uncertain."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
     prediction = answer_request(request_of(motion, plain))
     if not uncertain:
@@ -220,7 +227,8 @@ def answer_request(request: Request) -> Prediction:
 
 
 def without_solution(request: Request, reason: str) -> Prediction:
-    """The Prediction for a search without a solution: NaN for all that depends on it."""
+    """The Prediction for a search without a solution.  Fields that depend on the solution are
+    NaN."""
     assert request.sought is not None  # the request has a reduction
     nothing: dict[str, Any] = {"motion": request.motion.name, "pressure": request.contact.pressure}
     nothing |= {"model": "none", "reason": reason, "amplitude": math.nan, "poisson": math.nan}
@@ -231,13 +239,14 @@ def without_solution(request: Request, reason: str) -> Prediction:
 
 
 def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
-    """Fields of a quantity and of its error; unit: factor to SI units, si: end of their names."""
+    """Fields of a quantity and of its error.  unit: factor to SI units; si: end of the names of
+    the fields."""
     value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
     return {f"{name}{si}": value, f"{name}_error{si}": error}
 
 
 def _common(request: Request, answer: Result, threshold: Estimate | None) -> dict[str, Any]:
-    """Fields of every Prediction except the velocity."""
+    """Fields of every Prediction, except the velocity."""
     contact, still, friction = request.contact, request.still, answer.friction
     return {
         **_columns("mu_macro", friction),
@@ -264,7 +273,7 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
 
 
 def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict[str, Any]:
-    """Fields of an Oscillating Prediction."""
+    """Fields of Oscillating, the part common to motions that oscillate."""
     motion, mu = request.motion, request.contact.mu
     fields: dict[str, Any] = {
         "amplitude_si": motion.amplitude,
@@ -334,9 +343,9 @@ def _outcome(force: float, answer: Result) -> str | None:
 
 
 def _way_to_rest(request: Request) -> dict[str, Any]:
-    """Fields of the displacement of a contact that comes to rest, or the reason for its absence.
+    """Fields of the displacement of a contact that comes to rest, or the reason why it is unknown.
 
-    A contact that is not round would take minutes.
+    The displacement is not computed for a contact that is not round, which would take minutes.
     """
     contact, drive = request.contact, request.drive_groups
     if set(drive) != {"force"} or request.carriers.text is not None:

@@ -1,8 +1,8 @@
-"""Predictions for real contacts: one record for each question, with a common part.
+"""Predictions for real contacts: a record for each kind of request, and their common part.
 
-The record of a contact at a speed is `Sliding`, or `SteadySpin` without an oscillation.  Under a
-force it is `Rest`, `Drift` or `SpinDrift`.  `Prediction.to_dict` returns the columns of JSON and of
-tables, which are equal for all records.
+A contact at a prescribed speed has the record `Sliding`, or `SteadySpin` without an oscillation.  A
+contact under a force has the record `Rest`, `Drift` or `SpinDrift`.  `Prediction.to_dict` returns
+the columns of JSON and of tables, which are the same for all records.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ _NAMES = """
     probability_runs_away probability_error
 """
 COLUMNS = tuple(_NAMES.split())
-"""Columns of JSON and of tables, in order."""
+"""Names of the columns of JSON and of tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
-"""Values of missing columns."""
+"""Default values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "uncertainty")
 """Fields that are records with columns of their own."""
 
@@ -47,7 +47,7 @@ UNITS = {
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
     "_s": "s",
 }
-"""Units by the end of the name of a column; the first matching end counts."""
+"""Units by the end of the name of a column.  The first matching end counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
@@ -64,9 +64,9 @@ class DrivenBody:
     Attributes
     ----------
     drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        Stiffness of the spring, N/m, mass, kg, and damping, N s/m; None for a missing part.
+        Stiffness of the spring, N/m, mass, kg, and damping, N s/m.  A missing part is None.
     stiffness, mass, damping : float or None
-        Dimensionless stiffness, mass and damping of microslip.solve.
+        Dimensionless stiffness, mass and damping, as in microslip.solve.
     regime : str
         A key of regimes.REGIMES.
     natural_frequency : float or None
@@ -86,7 +86,8 @@ class DrivenBody:
 
 @dataclass(frozen=True)
 class Travel:
-    """Times to travel 1 mm and one contact radius under a force, and their error estimates, s."""
+    """Times to travel 1 mm and one contact radius under a force, s, and their error estimates,
+    s."""
 
     time_to_1_mm_s: float
     time_to_1_mm_error_s: float
@@ -103,7 +104,7 @@ class Search:
     sought : str
         "amplitude", "speed" or "load".
     sought_error : float
-        Error estimate of the quantity, in its SI unit.
+        Error estimate of this quantity, in its SI unit.
     """
 
     sought: str
@@ -119,7 +120,8 @@ class Power:
     vibration_power_W, vibration_power_error_W : float
         Mean power of the oscillation or of the spin, W.
     vibration_power_reason : str or None
-        Why the error is above the tolerance, else empty; None for a closed form.
+        Why the error is above the tolerance.  It is empty if the error is within the tolerance,
+        and None for a closed form.
     dissipated_power_W, dissipated_power_error_W : float
         Mean power of the oscillation and of the drag together, W.
     energy_per_cycle_J, energy_per_cycle_error_J : float
@@ -137,21 +139,21 @@ class Power:
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """Friction of a vibrated contact in SI units: the part common to all questions.
+    """Friction of a vibrated contact in SI units: the fields common to all requests.
 
-    Every column is an attribute; a missing column is None.
+    Every column is an attribute.  A missing column is None.
 
     Attributes
     ----------
     understood : dict of str
-        The arguments in the words of the user, by name.  The SI value follows if the unit is of
-        another kind ("1200 rpm = 20 Hz").  Not compared by ==.
+        The arguments as the user wrote them, by name.  The SI value is added if the unit is of
+        another kind ("1200 rpm = 20 Hz").  The operator == ignores this field.
     motion, pressure : str
-        The motion, and the pressure as for microslip.solve.
+        The motion, and the pressure as in microslip.solve.
     contacts : str or None
-        The contacts of the body as for microslip.solve; None for a single one.  For several
-        contacts, forces and powers are those of the body; sizes and dimensionless groups are those
-        of a contact with the mean load.
+        The contacts of the body as in microslip.solve; None for a single contact.  For several
+        contacts, forces and powers belong to the body, and sizes and dimensionless groups belong to
+        a contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Contact radius and indentation, m, and largest pressure, Pa.
     u_lim_m : float
@@ -161,13 +163,15 @@ class Prediction:
     load_N : float
         Normal force, N.
     speed_m_s : float
-        Forward speed, m/s.  Under a force it is the mean speed, NaN for a contact that runs away.
+        Forward speed, m/s.  Under a force it is the mean speed, which is NaN for a contact that
+        runs away.
     velocity : float or None
         Dimensionless speed; None for a bore of amplitude 0.
     mu_macro, mu_macro_error : float
-        Mean forward force with vibration divided by the force without, mu F_z; dimensionless.
+        Mean forward force with vibration divided by mu F_z, the force without vibration;
+        dimensionless.
     mu_apparent, mu_apparent_error : float
-        Coefficient of friction with vibration, mu mu_macro; dimensionless.
+        Coefficient of friction with vibration, mu times mu_macro; dimensionless.
     friction_force_N, friction_force_error_N, friction_force_still_N : float
         Mean forward force with vibration, its error estimate, and the force without vibration, N.
         Both forces belong to the same mean load.
@@ -180,20 +184,22 @@ class Prediction:
     model : str
         Contact model, or "closed-form".
     converged, reason : bool, str
-        True if the error estimate is at most the tolerance, else the reason.  It is the error of
-        mu_macro, or of the speed under a force, and of vibration_power_W if it was requested.
+        True if the error estimate is at most the tolerance; otherwise `reason` is set.  The error
+        is that of mu_macro, or of the speed under a force.  If vibration_power_W was requested,
+        its error must be within the tolerance, too.
     warnings : tuple of str
         Assumptions of the theory that the contact violates.
     not_checked : tuple of str
         Checks that need a missing property.
     power : Power or None
-        Power of the spin, or power of the oscillation if it was requested.
+        Power of the spin, or power of the oscillation if the user requested it.
     uncertainty : mapping
         Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
-        inputs, by column: NAME_spread, NAME_low and NAME_high, `interval_method` ("quantiles" of
-        draws, or "first order"), `probability_stays`, `probability_moves`, `probability_runs_away`
-        and `probability_error`.  A standard uncertainty is infinite if inputs within their
-        uncertainty have no answer.  Empty if every input is exact.
+        inputs, by column.  The columns are NAME_spread, NAME_low and NAME_high, `interval_method`
+        ("quantiles" of draws, or "first order"), `probability_stays`, `probability_moves`,
+        `probability_runs_away` and `probability_error`.  A standard uncertainty is infinite if
+        there is no answer for some inputs within their uncertainty.  Empty if every input is
+        exact.
     """
 
     understood: dict = field(compare=False)
@@ -259,7 +265,7 @@ class Oscillating(Prediction):
     Attributes
     ----------
     amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None if only other components
+        Half stroke of the oscillation, m, or rad for a bore.  It is None if only other components
         oscillate.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
         Further half strokes, and the phase, of a motion with several oscillations.
@@ -270,7 +276,7 @@ class Oscillating(Prediction):
     mu_static, mu_static_error : float
         mu_macro in the limit of vanishing speed, dimensionless.
     mu_static_apparent, mu_static_apparent_error : float
-        Coefficient of friction in this limit, mu mu_static; dimensionless.
+        Coefficient of friction in this limit, mu times mu_static; dimensionless.
     mu_static_reason : str
         Why the error of mu_static is above its tolerance; else empty.
     displacement_per_cycle_m, displacement_per_cycle_error_m : float
@@ -304,7 +310,8 @@ class Sliding(Oscillating):
 
     @property
     def sought_value(self) -> float | None:
-        """The result of a search in its SI unit; NaN without a solution, None without a search."""
+        """The result of a search in its SI unit.  It is NaN if there is no solution, and None
+        without a search."""
         values = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
         return None if self.search is None else values[self.search.sought]
 
@@ -335,14 +342,14 @@ class Forced(Prediction):
     force_N, force : float
         The force, N, and the dimensionless force.
     outcome : str or None
-        "moves", "stays" or "runs away"; "undecided" if the speed is below its error estimate; None
-        if the solver failed.
+        "moves", "stays", "runs away", or "undecided" if the speed is below its error estimate.  It
+        is None if the solver failed.
     speed_error_m_s, velocity_error : float
         Error estimates of speed_m_s and velocity.
     safety_factor, safety_factor_error : float or None
         Force threshold divided by the force; None if the threshold is unknown.
     travel : Travel or None
-        Times of a contact that moves; else None.
+        Times to travel, for a contact that moves; else None.
     """
 
     force_N: float
@@ -357,7 +364,7 @@ class Forced(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Forced, Oscillating):
-    """A contact that moves under a force, or can move within the error."""
+    """A contact that moves under a force, or that may move within the error."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -367,9 +374,10 @@ class Rest(Forced, Oscillating):
     Attributes
     ----------
     displacement_m, displacement_error_m : float or None
-        Forward displacement until it rests, m; None for a contact with a mass or not round.
+        Forward displacement until the contact rests, m.  It is None for a body with a mass, and
+        for a contact that is not round.
     cycles_to_rest : float or None
-        Periods until nine tenths of the displacement by the vibration.
+        Number of periods until the vibration has caused nine tenths of the displacement.
     displacement_reason : str
         Why the displacement is unknown; else empty.
     """

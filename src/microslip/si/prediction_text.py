@@ -31,17 +31,18 @@ UNDERSTOOD = (
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     *("frequency", "rotation", "reduction"),
 )
-"""Arguments, in the order of the output."""
+"""Arguments of predict, in the order in which they are printed."""
 PROBABILITIES = {
     "probability_stays": "stays",
     "probability_moves": "moves",
     "probability_runs_away": "runs away",
 }
-"""Outcomes by the column of their probability."""
+"""Names of the outcomes, by the columns of their probabilities."""
 LARGEST_NUMBER = 1e4
-"""Largest contact radius in the unit of the other lengths; a larger one has a unit of its own."""
+"""Largest number with which the contact radius is printed in the unit of the other lengths.  A
+larger radius is printed in another unit."""
 ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
-"""Names of the oscillation or spin for motions that do not only vibrate."""
+"""Names of the oscillation or spin, for motions other than a single vibration."""
 TIMES = (
     *(("years", 365.25 * 86400.0), ("days", 86400.0), ("h", 3600.0), ("min", 60.0)),
     *(("s", 1.0), ("ms", 1e-3), ("us", 1e-6)),
@@ -50,38 +51,39 @@ REFERENCE_LOADS = (
     "stiffness, mass and damping are divided by mu times the load without oscillation (the "
     "reference load), force and mu_macro by mu times the mean load"
 )
-"""Remark on the groups of a drive for an oscillating normal load."""
+"""Remark on the dimensionless groups of a drive for an oscillating normal load."""
 ALONG_THE_DRIVE = (
     "it is not the force threshold, because the vibration is along the drive: at a prescribed "
     "speed it reverses the force, which reduces the mean; under a constant force a body without "
     "mass follows the vibration, and all of friction holds it"
 )
-"""Explanation of a static friction that is below the force threshold."""
+"""Explanation of why the static friction is below the force threshold."""
 UNKNOWN_THRESHOLD = (
     "it is not the force threshold, because part of the vibration is along the drive; with --force "
     "the prediction says whether the contact moves"
 )
-"""Explanation of a static friction without a force threshold."""
+"""Explanation for a static friction without a known force threshold."""
 FROM_INPUTS = "from the uncertain inputs"
 FROM_LINEAR_MODEL = (
     f"{FROM_INPUTS} to first order: static friction is assumed to be linear in each of them"
 )
-"""Origin of an interval: quantiles, or first order."""
+"""Text for the method of an interval: quantiles, or first order."""
 NO_SPREAD_OF_SPEED = "none of the speed: the contact can run away"
-"""Text for a contact that runs away at some inputs within their uncertainty."""
+"""Text for a contact that runs away for some values of the inputs within their uncertainty."""
 STAYS_WITHIN_SPREADS = "none of the speed: the contact can move"
-"""Text for a contact that stays at inputs within one standard deviation, but can move outside."""
+"""Text for a contact that stays for inputs within one standard deviation, but can move for
+others."""
 OUTCOMES = {
     "moves": "it moves, cycle by cycle",
     "stays": "it stays: the force is below the threshold",
     "runs away": "{runs_away}",
     "undecided": "undecided within the error: it moves by at most {fastest}",
 }
-"""Sentences about the outcomes."""
+"""Sentences that describe the outcomes."""
 
 
 def prediction_text(record: Any) -> str:
-    """All lines of a prediction.Prediction."""
+    """All lines of a Prediction."""
     show, forced = _Texts(record).show, record.force_N is not None
     lines = [
         line(name.replace("_", " "), record.understood[name])
@@ -134,11 +136,11 @@ def _friction(record: Any, show: Show) -> list[str]:
 
 
 def _threshold(record: Any, show: Show) -> list[str]:
-    """Lines of the force threshold, none if it is unknown."""
+    """Lines of the force threshold.  There are none if it is unknown."""
     value, error = record.force_threshold_N, record.force_threshold_error_N
     if value is None or error is None:
         return []
-    rounding = ROUNDING * record.load_N  # as for static friction, times the load
+    rounding = ROUNDING * record.load_N  # as for static friction, multiplied by the load
     if value > max(error, rounding):
         sentence = "{force_threshold_N}: no smaller constant force moves the contact"
     elif value <= error <= rounding:
@@ -159,7 +161,7 @@ def _moves_at_static_friction(record: Any) -> bool:
 
 
 def _outcome(record: Any, show: Show) -> list[str]:
-    """Lines of a contact under a force: threshold, outcome and displacement."""
+    """Lines of a contact under a force: its threshold, outcome and displacement."""
     lines, factor, columns = (
         _threshold(record, show),
         record.safety_factor,
@@ -255,7 +257,7 @@ class _Texts(dict[str, Any]):
             self["natural_frequency_Hz"] = in_unit(frequency, 0.0, prefixed(frequency, "Hz"))
 
     def _seek(self, units: dict[str, tuple[str, float]]) -> None:
-        """Add the texts of the result of a search."""
+        """Add the texts for the result of a search."""
         record, unit = self.record, units[self.record.sought]
         self["sought_text"] = in_unit(record.sought_value, record.sought_error, unit)
         self["sought_exact"] = in_unit(record.sought_value, 0.0, unit)
@@ -266,14 +268,14 @@ class _Texts(dict[str, Any]):
             self["sought_spread_text"] = number_text(spread / unit[1], 0.0, unit[0], digits=2)
 
     def show(self, title: str, template: str, when: bool = True) -> list[str]:
-        """The line of a template; no line if a column in it is unknown."""
+        """The line of a template.  There is none if a column in the template is unknown."""
         try:
             return [line(title, template.format_map(self))] if when else []
         except KeyError:
             return []
 
     def __missing__(self, name: str) -> str:
-        """The text of a column or of an interval; raises KeyError for an unknown one."""
+        """The text of a column or of an interval.  Raises KeyError if it is unknown."""
         end = next((end for end in ENDS if name.endswith(end)), "")
         stem = name.removesuffix(end)
         if stem.endswith("_interval"):
@@ -294,7 +296,7 @@ class _Texts(dict[str, Any]):
         return in_unit(value, error or 0.0, unit)
 
     def _interval(self, stem: str, end: str) -> str:
-        """The text of a 95 % interval, with its origin."""
+        """The text of a 95 % interval, with its method."""
         columns, (name, size) = self.record.uncertainty, self.units.get(end, ("", 1.0))
         low, high = (columns[f"{stem}_{side}{end}"] / size for side in ("low", "high"))
         error = getattr(self.record, f"{stem}_error{end}") / size
@@ -305,6 +307,6 @@ class _Texts(dict[str, Any]):
 
 
 ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
-"""Ends of the names of columns, which name the unit."""
+"""Ends of the names of columns, which give the unit."""
 Show = Callable[..., list[str]]
-"""show(title, template, when) -> lines"""
+"""Function show(title, template, when) -> lines."""

@@ -23,17 +23,17 @@ PREFIXES = (
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
 """Smallest value of u_lim in the unit of all lengths of an answer.  The contact radius is some
-hundred times larger, so its value is between 1 and a few thousands."""
+hundred times larger, so that its value is between 1 and a few thousand."""
 NEWTONS = 1e-2, 1e4
-"""Range of forces whose unit has no prefix, N."""
+"""Range of forces that are printed in a unit without a prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (
     "u_lim and the contact radius belong to the load without oscillation (the reference load); "
     "forces and powers belong to mu times the mean load"
 )
-"""Remark on a propulsion line for an oscillating normal load."""
+"""Remark on a force-speed line for an oscillating normal load."""
 QUANTILES, FIRST_ORDER = "quantiles", "first order"
-"""Methods for an interval: quantiles of draws with a solved static friction, or a static friction
-that is linear in each input."""
+"""Methods for an interval: quantiles of draws for which the static friction is solved, or static
+friction that is assumed to be linear in each input."""
 EXCLUDED = 1e-3
 """Probability below which an outcome counts as excluded."""
 
@@ -49,7 +49,8 @@ def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float
 
 
 def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
-    """The unit with the largest prefix in which a value is at least `least`; without one for 0."""
+    """The unit with the largest prefix in which a value is at least `least`.  For 0, the unit has
+    no prefix."""
     prefix, size = unit_for(value or 1.0, PREFIXES, least)
     return f"{prefix}{base}", size
 
@@ -74,7 +75,8 @@ def probability_text(chance: float, error: float) -> str:
 
 
 def in_unit(value: float, error: float, unit: tuple[str, float]) -> str:
-    """Text of a quantity and its error, both in SI units, in the unit (name, size)."""
+    """Text of a quantity and its error in the unit (name, size).  Both arguments are in SI
+    units."""
     name, size = unit
     return number_text(value / size, error / size, name)
 
@@ -85,7 +87,7 @@ def length_unit(u_lim: float) -> tuple[str, float]:
 
 
 def not_converged(prediction: Any) -> list[str]:
-    """Lines for all quantities whose error estimate is above its tolerance."""
+    """Lines for all quantities whose error estimate is above the tolerance."""
     lines = []
     if not prediction.converged and prediction.outcome != "runs away":
         name = "mu_macro" if prediction.force_N is None else "speed"

@@ -21,7 +21,7 @@ from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
-"""Default tolerance of a force, over mu times the mean load."""
+"""Default tolerance of a force divided by mu times the mean load."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class RealPropulsionLine:
     Attributes
     ----------
     understood : dict of str
-        The arguments in words, as in prediction.Prediction.
+        The arguments as the user wrote them, see prediction.Prediction.
     motion : str
         The motion.
     contact_radius_m, u_lim_m : float
@@ -47,8 +47,8 @@ class RealPropulsionLine:
     no_load_speed_m_s, no_load_speed_error_m_s : float
         Speed without an opposing force, m/s.
     holding_force_low_N, holding_force_low_error_N : float or None
-        Lowest force under which the body stays at rest, N, below 0 if it is backward.  None if the
-        motion propels the contact.
+        Lowest force under which the body stays at rest, N.  It is negative if it points backward,
+        and None if the motion propels the contact.
     holding_force_high_N, holding_force_high_error_N : float or None
         Highest force under which the body stays at rest, N.
     speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
@@ -58,9 +58,9 @@ class RealPropulsionLine:
     power_in_W, power_in_error_W : np.ndarray, shape (points,)
         Power of the oscillation, W.
     efficiency, efficiency_error : np.ndarray, shape (points,)
-        Power out divided by power in, dimensionless.
+        Delivered power divided by the power of the oscillation, dimensionless.
     converged, reason : bool, str
-        True if all error estimates are within the tolerance, else the reason.
+        True if all error estimates are within the tolerance; otherwise `reason` is set.
     warnings, not_checked : tuple of str
         Assumptions that the contact violates, and checks that need a missing property.
     """
@@ -131,13 +131,13 @@ def predict_propulsion(
     motion : str
         A self-propelled motion, as for `microslip.propulsion`, without a rotation.
     amplitude : quantity
-        Half stroke of a component of the motion whose number is 1, m.  For an oscillating normal
-        load, `load` is the load without oscillation, and the load oscillates by its number times
-        `load` times the amplitude over u_lim.
+        Half stroke, m, of a component of the motion whose number is 1.  For an oscillating normal
+        load, `load` is the load without oscillation.  The amplitude of the load is its number
+        times `load`, times the amplitude divided by u_lim.
     tolerance : quantity
-        Largest accepted error of a force, over mu times the mean load.
+        Largest accepted error of a force divided by mu times the mean load.
     points : int
-        Number of points on the line, both ends included.
+        Number of points on the line, including both ends.
 
     The other arguments are those of `microslip.predict`.
 
@@ -149,7 +149,7 @@ def predict_propulsion(
     Raises
     ------
     InputError
-        For an argument that is missing, out of range or not allowed.
+        If an argument is missing, out of range or not allowed.
     """
     arguments = dict(locals())
     refuse_uncertainty(arguments, "propulsion")
@@ -197,14 +197,14 @@ def predict_propulsion(
 
 
 def _in_si(line: PropulsionLine, unit: float, name: str, *quantities: str) -> dict[str, Any]:
-    """Fields of quantities and their errors; unit: factor to SI units, name: name of the unit."""
+    """Fields of quantities and their errors.  unit: factor to SI units; name: name of the unit."""
     stems = [part for quantity in quantities for part in (quantity, f"{quantity}_error")]
     values = {stem: getattr(line, stem) for stem in stems}
     return {f"{stem}_{name}": None if one is None else unit * one for stem, one in values.items()}
 
 
 def _holding_forces(line: PropulsionLine, newtons: float) -> tuple[dict[str, Any], str]:
-    """Fields of the holding forces, and the reason; newtons: unit of the forces, N."""
+    """Fields of the holding forces, and the reason.  newtons: unit of the forces, N."""
     names = [f"holding_force_{name}" for name in ("low", "high")]
     fields = _in_si(line, newtons, "N", *names)
     low, low_error, high, high_error = fields.values()

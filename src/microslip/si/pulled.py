@@ -16,22 +16,23 @@ from microslip.si.static_limit import largest_force
 SLOWEST = 1e-3
 """Dimensionless velocity below which the accepted error is constant instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run, whose velocity can be smaller."""
+"""Safety factor on the accepted error of a second run.  Its velocity can be smaller than that of
+the first one."""
 
 
 def answer_of(request: Request, limit: Result | None, threshold: Estimate | None) -> Result:
     """Friction at the speed, or the velocity under the force.
 
-    Under a force below the threshold by more than its error, the contact comes to rest, and no
-    drift is computed.  If the force is within this error of the threshold, the result is not
-    converged: the small speed would take minutes.
+    If the force is below the threshold by more than the error of the threshold, the contact comes
+    to rest, and no drift is computed.  If the force is within this error of the threshold, the
+    result is not converged, since computing the small speed would take minutes.
 
     Parameters
     ----------
     limit : Result or None
         Friction in the limit of vanishing speed; None for a steady motion.
     threshold : Estimate or None
-        Smallest force that moves the contact, over mu F_z; None if it is unknown.
+        Smallest force that moves the contact, divided by mu F_z; None if it is unknown.
     """
     drive: dict[str, Any] = within_range(request.drive_groups)
     velocity, tolerance = request.groups[0], request.tolerance
@@ -62,10 +63,11 @@ def answer_of(request: Request, limit: Result | None, threshold: Estimate | None
 
 
 def within_range(drive: dict[str, float]) -> dict[str, float]:
-    """The dimensionless drive, limited to the range of the solver.
+    """The dimensionless drive, reduced to the range of the solver.
 
-    Above the largest force the contact runs away.  A heavier or stiffer body hardly moves; its
-    mass, stiffness and damping are scaled by one factor, which keeps its natural frequency.
+    Above the largest force of this range, the contact runs away.  A body that is too heavy or too
+    stiff hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves
+    the natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)

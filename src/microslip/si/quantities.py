@@ -1,7 +1,7 @@
-"""Quantities with units: texts such as "210 GPa" as values in SI units, by a strict grammar.
+"""Conversion of texts with units, such as "210 GPa", to values in SI units, by a strict grammar.
 
-A text is one number and one unit.  The number is a text that Python's float accepts, in the digits
-0 to 9 and without underscores; a Unicode minus counts as a minus.  The module `units` reads the
+A text is one number and one unit.  Python's float must accept the number, which has only the
+digits 0 to 9 and no underscores.  A Unicode minus is also accepted.  The module `units` reads the
 unit.  Every other text raises InputError.
 """
 
@@ -45,7 +45,7 @@ EXAMPLES = {
 }
 """An example of a quantity for each SI unit."""
 RATES = ("Hz", "rad/s")
-"""SI units of rates; a rate can be cyclic (Hz) or angular (rad/s)."""
+"""SI units of rates.  A rate can be cyclic (Hz) or angular (rad/s)."""
 
 AMBIGUOUS = ", which may mean Hz or rad/s; they differ by 2 pi, so write one of them"
 PER_SECOND = (("second", -1),)
@@ -57,7 +57,7 @@ HINTS = {
     ("Hz", PER_SECOND): AMBIGUOUS,
     ("rad/s", PER_SECOND): AMBIGUOUS,
 }
-"""Hints for a wrong unit, by the required SI unit and the root units of the wrong one."""
+"""Hints for a wrong unit, by the required SI unit and the root units of the wrong unit."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ class Quantity:
     si : float
         Value in the SI unit.
     text : str
-        The text of the user.  The SI value follows it where the unit is of another kind: turns for
-        an angle, revolutions per minute for hertz.
+        The text of the user.  The SI value is added if the unit is of another kind, such as turns
+        for an angle, or revolutions per minute for a frequency.
     """
 
     si: float
@@ -99,14 +99,14 @@ def read(
         The SI unit, a key of EXAMPLES.  Hz and rad/s accept cyclic frequencies (Hz, cps) and
         angular ones (rad/s, deg/s, rpm, turn/s); one turn is 2 pi.
     low, high : float
-        Allowed are finite values with low < value <= high.
+        Finite values with low < value <= high are allowed.
     low_open : bool
-        False to allow `low` itself.
+        False to allow the value `low`.
 
     Raises
     ------
     InputError
-        For a value that is not such a quantity, or out of range.
+        If the value is not such a quantity, or is out of range.
     """
     try:
         quantity = _from_text(value, unit) if isinstance(value, str) else _from_object(value, unit)
@@ -143,7 +143,7 @@ def _from_text(text: str, unit: str) -> Quantity:
     digits, rest = split_number(text)
     try:
         zero = Decimal(digits) == 0
-    except InvalidOperation:  # an exponent of twenty digits, which float accepts
+    except InvalidOperation:  # float accepts an exponent of twenty digits
         raise UnitError(
             f"read {digits}, whose exponent is beyond the range of floating-point numbers"
         ) from None
@@ -162,7 +162,7 @@ def _from_text(text: str, unit: str) -> Quantity:
 
 
 def _with_unit(digits: str, rest: str, unit: str) -> tuple[float, str]:
-    """SI value of a number and the text of its unit, and the text that follows the user's."""
+    """SI value of a number with a unit as text, and the text to add to that of the user."""
     if not rest and Decimal(digits) == 0:  # 0 is the same in all units
         return 0.0, f" {unit}"
     if not rest:
@@ -178,7 +178,7 @@ def _with_unit(digits: str, rest: str, unit: str) -> tuple[float, str]:
 
 
 def _converted(number: Decimal, source: Unit, unit: str) -> float:
-    """SI value of a number in another unit; raises UnitError where the dimensions differ."""
+    """SI value of a number in another unit.  Raises UnitError if the dimensions differ."""
     target = si_unit(unit)
     if source.root != target.root:
         hint = HINTS.get((unit, tuple(source.root.items())), "")
@@ -187,7 +187,8 @@ def _converted(number: Decimal, source: Unit, unit: str) -> float:
 
 
 def _si_text(source: Unit, unit: str, value: float) -> str:
-    """The text " = 62.83 rad/s" for a rate or an angle in a unit of another kind; else empty."""
+    """A text such as " = 62.83 rad/s" for a rate or an angle in a unit of another kind; else
+    empty."""
     (first, *others) = source.names
     same = {
         "Hz": first.endswith(CYCLIC) and not others,
@@ -209,7 +210,7 @@ def _from_object(value: object, unit: str) -> Quantity:
 
 
 def _plain_number(value: object) -> float:
-    """A real number as a float; raises UnitError for every other object."""
+    """A real number as a float.  Raises UnitError for every other object."""
     if type(value) is np.ndarray and value.ndim == 0:  # its subclasses may carry units
         value = value[()]
     if isinstance(value, np.generic) and value.dtype.kind not in "iuf":
@@ -230,7 +231,7 @@ def _plain_number(value: object) -> float:
 
 
 def _from_pint(value: Any, unit: str) -> Quantity:
-    """The quantity of a pint quantity from any registry."""
+    """The Quantity for a pint quantity from any registry."""
     number, source = Decimal(repr(_plain_number(value.magnitude))), pint_unit(value)
     si = _converted(number, source, unit)
     shown = _si_text(source, unit, si) if unit else ""

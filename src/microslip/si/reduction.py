@@ -1,4 +1,4 @@
-"""Search for the amplitude, the speed or the load with a prescribed reduction of friction."""
+"""Search for the amplitude, the speed or the load that gives a prescribed reduction of friction."""
 
 from __future__ import annotations
 
@@ -16,36 +16,38 @@ LARGEST_AMPLITUDE = 1e4
 SMALLEST_AMPLITUDE = 1e-6
 """Smallest dimensionless amplitude of the search."""
 SPEEDS = 1e-9, 1e6
-"""Smallest and largest velocity of the search; a rigid contact divides it by the amplitude."""
+"""Smallest and largest velocity of the search.  For a rigid contact, the velocity is divided by
+the amplitude."""
 STRIDE = 0.05
 """Step of the finite difference for the slope of friction, in the logarithm of the quantity."""
 
 
 class NotAttainedError(InputError):
-    """The requested reduction is outside the range of the search; only a solve can show this."""
+    """The requested reduction is outside the range of the search.  Only a solve can show this."""
 
 
 class _NoAnswerError(Exception):
-    """The solver has no result at a place of the search."""
+    """The solver has no result at a point of the search."""
 
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of requests along which friction decreases; a place on it is a real number.
+    """A line of requests along which friction decreases.  A place on the line is a real number.
 
     Attributes
     ----------
     at : callable
-        at(place) -> Request.
+        Function at(place) -> Request.
     low, start, high : float
-        First place of the search, first candidate for its upper bound, and last place.
+        First place of the search, first candidate for the upper bound of the solution, and last
+        place.
     size : callable
-        size(place) -> the quantity at this place, in its SI unit.
+        Function size(place) -> quantity at this place, in its SI unit.
     every, none : str
-        Subjects of the messages for a reduction that is too large at `low`, and too small
+        Subjects of the messages if the reduction is too large at `low`, and if it is too small
         everywhere.
     end : float or None
-        Place with the least friction; None if it is unknown.
+        Place with the least friction; None if this place is unknown.
     rate : float
         Derivative of the logarithm of the size with respect to the place.
     """
@@ -62,20 +64,20 @@ class _Line:
 
 
 def reduce_friction(request: Request) -> tuple[Request, float]:
-    """Search for the least amplitude, the largest speed or the largest load with a reduction.
+    """Search for the least amplitude, the largest speed or the largest load that gives a reduction.
 
     Returns
     -------
     tuple of Request and float
         The request with this quantity, and the error estimate of the quantity in its SI unit.  If
-        the solver fails, the request at which it failed, and NaN.
+        the solver fails, the tuple contains the request at which it failed, and NaN.
 
     Raises
     ------
     NotAttainedError
-        If the reduction is smaller, or larger, in the whole range of the search.
+        If the reduction is too small, or too large, in the whole range of the search.
     InputError
-        For a reduction that no search can determine.
+        If no search can determine the quantity.
     """
     from scipy.optimize import brentq
 
@@ -87,7 +89,7 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
     last, error, reductions = request, 0.0, []
 
     def excess(place: float) -> float:
-        """mu_macro minus the requested one."""
+        """mu_macro minus the requested mu_macro."""
         nonlocal last, error
         last = line.at(place)
         answer = last.solve(last.groups[0], tolerance)
@@ -95,7 +97,7 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
         if not math.isfinite(friction):
             raise _NoAnswerError
         if last.motion.speed == 0.0 and friction <= error:
-            friction = 0.0  # the whole contact slides; the remaining digits are errors
+            friction = 0.0  # the whole contact slides, and the rest is an error
         reductions.append((100.0 * (1.0 - friction), 100.0 * error))
         return friction - (1.0 - share)
 
@@ -139,7 +141,7 @@ def _check_share(request: Request, share: float) -> None:
 
 
 def _amplitudes(request: Request, _share: float) -> _Line:
-    """The line of amplitudes; a place is the logarithm of the dimensionless amplitude."""
+    """The line of amplitudes.  A place is the logarithm of the dimensionless amplitude."""
     contact = request.contact
     unit = contact.u_lim / (contact.contact_radius if request.motion.spins else 1.0)
     slides = "the amplitude at which the whole contact slides"
@@ -155,7 +157,8 @@ def _amplitudes(request: Request, _share: float) -> _Line:
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """The line of speeds, the fastest first; a place is minus the logarithm of the speed."""
+    """The line of speeds, from the fastest to the slowest.  A place is minus the logarithm of the
+    speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
         unit *= max(1.0, size)  # for a rigid contact the speed of the vibration
@@ -173,7 +176,7 @@ def _speeds(request: Request, _share: float) -> _Line:
 
 
 def _loads(request: Request, share: float) -> _Line:
-    """The line of loads; a place is the logarithm of the dimensionless amplitude.
+    """The line of loads.  A place is the logarithm of the dimensionless amplitude.
 
     The dimensionless amplitude is a power of the load, with a negative exponent.
     """
@@ -192,8 +195,9 @@ def _loads(request: Request, share: float) -> _Line:
     def load_at(place: float) -> float:
         return here * (size_at(here) / math.exp(place)) ** (1.0 / power)
 
-    # Under a large load nothing slips, and under a small one a bore is fast.  The reduction is
-    # largest in between, and small steps from large loads find the first load with the reduction.
+    # Under a large load nothing slips, and under a small load the dimensionless velocity of a bore
+    # is large.  The reduction is largest in between.  Small steps from large loads downwards find
+    # the first load with the requested reduction.
     low, high = math.log(SMALLEST_AMPLITUDE), math.log(LARGEST_AMPLITUDE)
     return _Line(
         lambda place: request.at(contact=contact.with_load(load_at(place))),

@@ -1,15 +1,17 @@
-"""Regimes of a drive: nearly constant velocity, nearly constant force, or an oscillation.
+"""Regimes of a drive: nearly constant velocity, nearly constant force, or oscillating velocity and
+force.
 
 A vibration makes the forward force oscillate, by up to mu F_z, at multiples n of a basic frequency.
-The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless; that of the contact
-is 1.5.  If the body is ten times as stiff as the contact at all relevant n, its velocity is nearly
-constant.  If the force that makes it follow is small against mu F_z, the force is nearly constant.
-A vibration along the drive reverses the force, and its limits are ten times stricter.
+The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless.  The stiffness of
+the contact is 1.5.  If the body is ten times as stiff as the contact at all relevant n, its
+velocity is nearly constant.  If the force that makes the body follow the contact is small compared
+with mu F_z, the force is nearly constant.  A vibration along the drive reverses the force, so that
+the limits are ten times stricter.
 
-Measured for some hundred random drives just within these limits, at amplitudes of 0.3 to 10 and
-velocities of 0.01 to 3: friction differs by less than SAME from that at a constant velocity, or
-from that of the softest and lightest drive.  The limit for a soft drive along the vibration is an
-estimate: the force changes by the stiffness times the amplitude.
+The limits were tested with some hundred random drives just within them, at amplitudes from 0.3 to
+10 and velocities from 0.01 to 3.  Friction differs by less than SAME from that at a constant
+velocity, or from that with the softest and lightest drive.  The limit for a soft drive along the
+vibration is an estimate: the force changes by the stiffness times the amplitude.
 """
 
 from __future__ import annotations
@@ -24,13 +26,14 @@ SAME = 0.01
 CONTACT_STIFFNESS = 1.5
 """Stiffness of a sticking Hertz contact, 2 G* a divided by mu F_z / u_lim."""
 STIFFER = 10.0
-"""Stiffness of a body with a nearly constant velocity, divided by that of the contact."""
+"""Smallest stiffness of a body with a nearly constant velocity, divided by the stiffness of the
+contact."""
 LEAST_FORCE = 0.03
-"""Change of a nearly constant force, over mu F_z."""
+"""Largest change of a nearly constant force, divided by mu F_z."""
 ALONG = 10.0
-"""Factor on both limits for a vibration along the drive."""
+"""Factor by which both limits are stricter for a vibration along the drive."""
 HARMONICS = 4
-"""Number of multiples of the basic frequency."""
+"""Number of multiples of the basic frequency that are checked."""
 REGIMES = {
     "velocity": "stiff or heavy: the velocity is nearly constant",
     "force": "soft and light: the force is nearly constant",
@@ -65,7 +68,7 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
 def natural_frequency(drive: Drive) -> float | None:
     """Natural frequency of the body on its spring and the sticking contact.
 
-    It is divided by the frequency of the vibration; None without a mass.
+    It is divided by the frequency of the vibration.  It is None without a mass.
     """
     if drive.mass == 0.0:
         return None

@@ -1,4 +1,4 @@
-"""The request for a prediction: checked and made dimensionless before any solve."""
+"""Requests for predictions.  They are checked and made dimensionless before any solve."""
 
 from __future__ import annotations
 
@@ -38,21 +38,22 @@ from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
 
 LARGEST_TOLERANCE = 0.1
-"""Largest accepted tolerance: absolute for mu_macro, relative for a speed."""
+"""Largest allowed tolerance, absolute for mu_macro and relative for a speed."""
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
-"""Default tolerances of mu_macro, and of the speed under a force."""
+"""Default tolerance of mu_macro, and default tolerance of the speed under a force."""
 ANY_LOAD = 1e-12
-"""Placeholder for the load of a search, N; small enough for Hertz's theory of all bodies."""
+"""Placeholder for the load that a search determines, N.  It is small enough for Hertz's theory to
+apply to all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
 """Quantities that a search can determine."""
 ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
-"""Arguments of predict by the corresponding arguments of microslip.solve."""
+"""Arguments of microslip.solve, and the corresponding arguments of predict."""
 NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes of real machines"
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A contact, its motion and its drive.
+    """A contact with its motion and its drive, as requested from predict.
 
     Attributes
     ----------
@@ -63,13 +64,14 @@ class Request:
     contact, motion, drive : TwoBodies, RealMotion, RealDrive
         The contact, its motion and the drive of the body, in SI units.
     carriers : several.Carriers
-        All contacts of the body; `contact` carries their mean load.
+        All contacts of the body.  The load of `contact` is their mean load.
     sought, share : str or None, float or None
-        Name of the quantity of a search, and the requested reduction of friction, 0 to 1.
+        Name of the quantity that a search determines, and the requested reduction of friction, 0 to
+        1.
     tolerance : float
         Accepted error of mu_macro, or relative error of the speed.
     understood : dict of str
-        The arguments in words, by name.
+        The arguments as the user wrote them, by name.
     """
 
     arguments: Arguments
@@ -89,9 +91,9 @@ class Request:
         return replace(self, contact=contact, motion=replace(self.motion, **changes))
 
     def under(self, load: float) -> Request:
-        """A copy under the load of a search, N.
+        """A copy with another load, N, for a search.
 
-        Raises InputError where Hertz's theory does not hold under this load.
+        Raises InputError if Hertz's theory does not apply under this load.
         """
         try:
             contact, _ = read_contact(self.bodies, self.arguments, load=load)
@@ -102,7 +104,7 @@ class Request:
 
     @cached_property
     def still(self) -> float:
-        """mu times the mean normal load of all contacts, N: friction without vibration."""
+        """Friction of all contacts without vibration, N: mu times the mean normal load."""
         return full_friction(self.motion, self.contact) * self.carriers.count
 
     @property
@@ -112,12 +114,12 @@ class Request:
 
     @cached_property
     def groups(self) -> tuple[float | None, float | None]:
-        """Velocity and amplitude of microslip.solve; None for a missing one."""
+        """Velocity and amplitude for microslip.solve.  A missing one is None."""
         return groups(self.motion, self.contact)
 
     @cached_property
     def drive_groups(self) -> dict[str, float]:
-        """Force, stiffness, mass and damping of microslip.solve, for one contact."""
+        """Force, stiffness, mass and damping for microslip.solve, for one contact."""
         return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
 
     def problem(self) -> Problem:
@@ -135,7 +137,7 @@ class Request:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Further arguments of microslip.solve for one contact."""
+        """Further arguments for microslip.solve, for one contact."""
         return {"poisson": self.contact.poisson, "pressure": self.contact.pressure}
 
     def solve(
@@ -152,8 +154,8 @@ class Request:
         Parameters
         ----------
         velocity : float or None
-            Dimensionless velocity; None under a force.  A velocity above the largest one of the
-            solver is replaced by that one: there the vibration has no effect.
+            Dimensionless velocity; None under a force.  A velocity above the range of the solver
+            is replaced by the largest allowed one, at which the vibration has no effect.
         tolerance : float
             Largest accepted error.
         amplitude, poisson : float, optional
@@ -164,7 +166,8 @@ class Request:
         Raises
         ------
         InputError
-            For an argument of the solver that is out of range; it names the argument of predict.
+            If an argument of the solver is out of range.  The message names the argument of
+            predict.
         """
         settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
@@ -180,7 +183,7 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """The error with the argument of predict in place of that of the solver."""
+        """A copy of the error that names the argument of predict instead of that of the solver."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
             return error
@@ -212,7 +215,7 @@ class Request:
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The request for the arguments of predict, all of them by name; raises InputError."""
+    """The Request for all arguments of predict by name.  Raises InputError."""
     for name, value in arguments.items():
         if name != "counterbody" and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
@@ -252,7 +255,7 @@ def request_of(motion: str, arguments: Arguments) -> Request:
     if sought is None:
         request.check_range()
     if carrier_texts:
-        request.problem()  # raises InputError where several contacts are not allowed
+        request.problem()  # raises InputError if several contacts are not allowed
     return request
 
 
@@ -265,7 +268,8 @@ def _is_sequence(value: object) -> bool:
 
 
 def _sought(motion: str, arguments: Arguments) -> str | None:
-    """Name of the quantity of a search, which is the missing one; None without a reduction.
+    """Name of the quantity that a search determines, which is the missing one; None without a
+    reduction.
 
     Raises InputError unless exactly one quantity is missing.
     """

@@ -1,4 +1,4 @@
-"""Response of a real contact to a measured path: columns with units to forces in newtons.
+"""Forces of a real contact that follows a measured path, given as columns with units.
 
 forward [um],lateral [um],load [N]
 0,0,10
@@ -37,25 +37,26 @@ ARGUMENTS = (
 
 @dataclass(frozen=True, eq=False)
 class RealResponse:
-    """Forces of a real contact along a path, one row each, in SI units.
+    """Forces of a real contact along a path, in SI units.  Each row is a point of the path.
 
     Attributes
     ----------
     path : dict of str to np.ndarray
         Columns of the path in SI units, by name.
     force_forward_N, force_lateral_N, torque_N_m : np.ndarray, shape (rows,)
-        Forces and torque, in the direction of the displacement that they resist.
+        Forces and torque.  They are positive in the direction of the displacement that they
+        resist.
     force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
-        Estimated error of either force, the larger of both, and of the torque.
+        Error estimate of the forces, the larger one of both, and error estimate of the torque.
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
-        Work of friction since the first row, and its estimated error.
+        Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
         Fraction of the area in contact that sticks, see adaptive.response.Response.
     u_lim_m, contact_radius_m, load_N, mu : float
-        Displacement at which the whole contact slides, contact radius, load of the reference state
-        and coefficient of friction.
+        Displacement at which the whole contact slides, m, contact radius, m, load of the reference
+        state, N, and coefficient of friction.
     tolerance : float
-        Requested largest error of a force over mu times the load.
+        Largest accepted error of a force divided by mu times the load.
     converged : bool
         Whether every error is within the tolerance.
     reason : str
@@ -120,17 +121,17 @@ def predict_response(
     ----------
     path : path of a CSV file, mapping or pandas DataFrame
         Columns `forward`, `lateral`, `angle`, and `load` or `indentation`, with units as in
-        "forward [um]"; numbers without a unit are in the SI unit.
+        "forward [um]".  Columns without a unit are in SI units.
     tolerance : float
-        Largest error of the forces over mu times the load, and of the torque over its value at full
-        slip.
+        Largest accepted error of a force divided by mu times the load, and of the torque divided by
+        its value at full slip.
     decimal, encoding : str
         Decimal mark and encoding of a file.
     progress : callable or None
         As for `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
-        contact.  The load is that of the reference state.
+        contact.  The load belongs to the reference state.
 
     Returns
     -------
@@ -139,7 +140,7 @@ def predict_response(
     Raises
     ------
     InputError
-        For bad input; it names the argument or the column.
+        If an argument or a column is invalid.  The message names it.
     """
     strange = sorted(contact.keys() - set(ARGUMENTS))
     if strange:
@@ -184,7 +185,7 @@ def predict_response(
 
 
 def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response:
-    """`microslip.response` to the columns of a table, which messages name as `path`."""
+    """Call `microslip.response` with the columns of a table, which messages call `path`."""
     try:
         return response(**columns, **settings)
     except InputError as error:
@@ -195,7 +196,7 @@ def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response
 
 
 def _scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Units of `microslip.response` in SI units, by column."""
+    """Units of the columns of `microslip.response`, in SI units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
@@ -218,14 +219,14 @@ def read_path(
     path : path of a CSV file, mapping or pandas DataFrame
         The table.
     units : dict of str
-        SI units of the allowed columns; "" for pure numbers.
+        SI units of the allowed columns.  The unit of pure numbers is "".
     decimal, encoding : str
         Decimal mark and encoding of a file.
 
     Raises
     ------
     InputError
-        For a column or a line that cannot be read: a path has no gaps.
+        If a column or a line cannot be read.  Lines cannot be skipped, since a path has no gaps.
     """
     needed = {name: bool(unit) for name, unit in units.items()}
     table = table_of("path", path, needed, decimal=decimal, encoding=encoding)
@@ -251,7 +252,7 @@ def read_path(
 
 
 def _number(where: int, cell: object, name: str, unit: str) -> float:
-    """A cell in the SI unit; raises ValueError with its line."""
+    """The value of a cell in the SI unit.  Raises ValueError with the line number."""
     try:
         if isinstance(cell, str):
             number, space, written = cell.partition(" ")
@@ -268,5 +269,5 @@ def _number(where: int, cell: object, name: str, unit: str) -> float:
 
 @lru_cache
 def _factor(name: str, written: str, unit: str) -> float:
-    """A unit over the SI unit."""
+    """A unit divided by the SI unit."""
     return read(name, f"1 {written}", unit).si

@@ -1,7 +1,7 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The drive
-of the body is divided by the number of contacts, and forces are multiplied by it.
+All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The
+drive of the body is divided by the number of contacts.  Forces are multiplied by this number.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ class Carriers:
     count : int
         Number of contacts.
     heaviest, widest : float
-        Largest load divided by the mean load, and largest amplitude divided by that of the body.
+        Largest load of a contact divided by the mean load, and largest amplitude of a contact
+        divided by the amplitude of the body.
     """
 
     text: str | None = None
@@ -42,7 +43,7 @@ class Carriers:
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
-        """The contact with the largest load; contact: the one with the mean load."""
+        """The contact with the largest load.  contact: the contact with the mean load."""
         if self.heaviest == 1.0:
             return contact
         load = contact.load * self.heaviest
@@ -54,9 +55,9 @@ class Carriers:
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and a dict of their text by argument; raises InputError.
+    """The Carriers, and their text in a dict by argument.  Raises InputError.
 
-    alone: values of arguments that are allowed for a single contact only.
+    alone: values of arguments that are allowed only for a single contact.
     """
     if contacts is None:
         return Carriers(), {}

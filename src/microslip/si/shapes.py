@@ -1,4 +1,4 @@
-"""Contacts of other shapes in SI units: two principal radii, or a prescribed size and pressure."""
+"""Contacts that are not round, or have a prescribed size and pressure, in SI units."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ShapedContact(TwoBodies):
     size: float = 0.0
 
     def with_load(self, load: float) -> TwoBodies:
-        """A copy under another load, N; a prescribed size stays constant."""
+        """A copy under another load, N.  A prescribed size stays constant."""
         over = load / self.load
         if self.radii:  # the size of Hertz's ellipse depends on the load
             return replace(self, load=load, size=self.size * over ** (1.0 / 3.0))
@@ -40,7 +40,7 @@ class ShapedContact(TwoBodies):
 
     @property
     def contact_radius(self) -> float:
-        """The size, m."""
+        """Outer radius of the contact, or half its longer side, m."""
         return self.size
 
     @cached_property
@@ -76,8 +76,8 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        b/a <= 1, and a divided by (3 F R / (4 E*))^(1/3) with the larger radius R (K. L. Johnson,
-        Contact Mechanics, 4.2).
+        The ratio b/a, at most 1, and the semi-axis a divided by (3 F R / (4 E*))^(1/3).  R is the
+        larger radius (K. L. Johnson, Contact Mechanics, 4.2).
     """
     from scipy.optimize import brentq
     from scipy.special import ellipe, ellipk
@@ -87,7 +87,7 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
         return 1.0, 1.0
 
     def curvatures(ratio: float) -> float:
-        """Curvature along the long axis divided by that along the short one."""
+        """Curvature along the long axis divided by the curvature along the short axis."""
         m = 1.0 - ratio**2
         return ratio**2 * (ellipk(m) - ellipe(m)) / (ellipe(m) - ratio**2 * ellipk(m))
 
@@ -98,9 +98,9 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
 
 
 def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
-    """The contact with another radius of relative curvature across the forward direction, m.
+    """A contact with another radius of relative curvature across the forward direction, m.
 
-    Raises InputError for an ellipse that is too slender for the solver.
+    Raises InputError if the ellipse is too slender for the solver.
     """
     ratio, stretch = ellipse_of_radii(contact.radius, radius_across)
     if ratio < SMALLEST_RATIO:
@@ -117,9 +117,9 @@ def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
 
 
 def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
-    """The contact with a prescribed size, m, and pressure.
+    """A contact with a prescribed size, m, and pressure.
 
-    Its radius is that of a sphere with the same contact radius under the same load.
+    Its radius is that of a sphere that has the same contact radius under the same load.
     """
     radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
     shared = (contact.first, contact.second, radius, contact.load, contact.mu)

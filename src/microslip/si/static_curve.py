@@ -14,16 +14,17 @@ from microslip.si.request import Request
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
 DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
-"""Solved amplitudes: quantiles of the drawn amplitudes, in standard deviations of a normal
-distribution.  1.96 deviations are the ends of a 95 % interval."""
+"""Solved amplitudes.  They are quantiles of the drawn amplitudes, given in standard deviations of
+a normal distribution.  The ends of a 95 % interval are at 1.96."""
 REFINEMENTS = 3
-"""Number of further solved amplitudes near the force, and of bisections of the smallest amplitude
-whose static limit is 0."""
+"""Number of further amplitudes solved where the static limit is close to the force, and number of
+bisections for the smallest amplitude whose static limit is 0."""
 CLOSEST = 64
-"""One draw in 64 counts as close to the force; a refinement solves their median amplitude."""
+"""One draw in 64 counts as close to the force.  A refinement solves the median amplitude of these
+draws."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Relative range of the amplitude, and standard deviation of Poisson's ratio, below which a change
-is a rounding error."""
+"""Relative range of the amplitude, and standard deviation of Poisson's ratio, below which changes
+are rounding errors."""
 
 
 def static_limits(
@@ -38,28 +39,29 @@ def static_limits(
     Parameters
     ----------
     request : request.Request
-        The request at the central values.
+        The request for the central values.
     centre : tuple of float
-        Amplitude, Poisson's ratio, mu_static and its error estimate at the central values, all
+        Amplitude, Poisson's ratio, mu_static and its error estimate for the central values, all
         dimensionless.
     amplitudes, poisson : np.ndarray, shape (draws,)
         Dimensionless amplitude and Poisson's ratio of each draw.
     forces : tuple of np.ndarray or None
         Friction without vibration and the prescribed force of each draw, N.  More amplitudes are
-        solved where the two are close.
+        solved where the two forces are close.
 
     Returns
     -------
     tuple of np.ndarray, shape (draws,)
-        mu_static, and its error estimate.
+        mu_static and its error estimate.
     """
     from scipy.interpolate import PchipInterpolator
     from scipy.special import ndtr
 
     limit = _limits_of(request)
     amplitude, ratio, *solved = centre
-    # The interpolation variable x = A / (A + centre) is proportional to a small amplitude A, and
-    # 1 - x to 1 / A at a large one: the static limit is a smooth function of x at both ends.
+    # The interpolation variable is x = A / (A + centre).  For a small amplitude A, x is
+    # proportional to A.  For a large one, 1 - x is proportional to 1 / A.  So the static limit is
+    # a smooth function of x at both ends.
     nodes: dict[float, tuple[float, float]] = {0.5: (solved[0], solved[1])}
     where = np.minimum(amplitudes, LARGEST["amplitude"])
     where = where / (where + amplitude)
@@ -104,7 +106,8 @@ def static_limits(
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
-    """Derivative of mu_static with respect to Poisson's ratio; deviation: standard deviation."""
+    """Derivative of mu_static with respect to Poisson's ratio.  deviation: standard deviation of
+    Poisson's ratio."""
     if deviation < SAME_POISSON:
         return 0.0
     ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]
@@ -115,7 +118,8 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
 
 
 def _limits_of(request: Request) -> Callable[[float, float], tuple[float, float] | None]:
-    """The function limit(amplitude, poisson) -> (mu_static, error); None if the solver fails."""
+    """The function limit(amplitude, poisson) -> (mu_static, error).  It returns None if the solver
+    fails."""
     tolerance = tolerance_of(request, TOLERANCE)
 
     @cache

@@ -17,8 +17,8 @@ from microslip.si.request import Request
 TOLERANCE = 1e-3
 """Largest accepted error of mu_static under a force, dimensionless."""
 TOLERANCE_OF_COMBINED = 1e-2
-"""Smallest tolerance of mu_static for a motion with several oscillations, dimensionless.  A smaller
-error takes more than a minute."""
+"""Smallest tolerance of mu_static for a motion with several oscillations, dimensionless.  Smaller
+errors take more than a minute."""
 
 
 def static_limit(request: Request) -> Result | None:
@@ -32,22 +32,23 @@ def static_limit(request: Request) -> Result | None:
 
 
 def tolerance_of(request: Request, tolerance: float) -> float:
-    """The tolerance of a static limit; it is larger for a motion with several oscillations."""
+    """The tolerance of a static limit.  It is larger for a motion with several oscillations."""
     combined = request.motion.name in COMBINED
     return max(tolerance, TOLERANCE_OF_COMBINED) if combined else tolerance
 
 
 def equals_static_limit(request: Request) -> bool | float | None:
-    """Relation of the force threshold to the static limit.
+    """Whether the force threshold equals the static limit, or else the value of the threshold.
 
     The threshold equals the static limit if the oscillation exerts no forward force, or if the
-    forward forces of several contacts cancel.  Otherwise a contact without mass follows the forward
-    oscillation.  If it has no other oscillation, its threshold is mu F_z.
+    forward forces of several contacts cancel.  Otherwise a contact without mass follows the
+    forward oscillation.  If there is no other oscillation, the threshold is mu F_z.
 
     Returns
     -------
     bool, float or None
-        True if the two are equal, else the threshold over mu F_z; None if it is unknown.
+        True if the two are equal.  Otherwise, the threshold divided by mu F_z, or None if it is
+        unknown.
     """
     if request.motion.steady:
         return 0.0  # under a steady spin any force moves the contact
@@ -59,17 +60,17 @@ def equals_static_limit(request: Request) -> bool | float | None:
 
 
 def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
-    """Smallest constant force that moves the contact, over mu F_z.
+    """Smallest constant force that moves the contact, divided by mu F_z.
 
     A contact without mass follows the forward oscillation.  Its threshold is the static limit of
-    the other components; it is computed only under a force.
+    the other components.  It is computed only under a force.
 
     Parameters
     ----------
     request : Request
         The request.
     limit : Result or None
-        The static limit of the motion; None for a steady one.
+        The static limit of the motion; None for a steady motion.
 
     Returns
     -------
@@ -89,9 +90,10 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
 
 
 def largest_force(request: Request) -> float:
-    """Smallest constant force over mu F_z under which the contact runs away.
+    """Smallest constant force under which the contact runs away, divided by mu F_z.
 
-    It is 1 for a body with a mass, else the least normal load of a period over the mean load.
+    It is 1 for a body with a mass.  Otherwise it is the least normal load of a period divided by
+    the mean load.
     """
     if request.drive.mass or request.motion.steady:
         return 1.0

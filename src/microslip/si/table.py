@@ -1,4 +1,4 @@
-"""Predictions for a table of contacts, as a dataset."""
+"""Predictions for a table of contacts, returned as a dataset."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "power"}
-"""Columns of a file, each an argument of predict.  No heading needs a unit."""
+"""Allowed columns of a file.  Each one is an argument of predict, and needs no unit in its
+heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
-"""Columns of texts.  Another column without a value is a column of numbers."""
+"""Columns of texts.  Other columns without a value are columns of numbers."""
 
 
 def predict_table(
@@ -42,26 +43,26 @@ def predict_table(
     motion : str
         Motion of all contacts, as for `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length by argument of predict: {"load": ["1 N", "10 N"]} or
-        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
-        sample or comment are copied to the dataset.
+        Sequences of equal length, by argument of predict, as in {"load": ["1 N", "10 N"]} or {"load
+        [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id, sample
+        or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
-        Arguments of `microslip.predict` for all cases.
+        Arguments of `microslip.predict` that all cases share.
 
     Returns
     -------
     xarray.Dataset
-        Every column of a Prediction over the dimension `case`, with units; NaN for a missing value.
-        Several texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is the
-        error message of a case without a prediction, else empty.
+        Every column of a Prediction, over the dimension `case`, with units.  Missing values are
+        NaN. Lists of texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is
+        the error message of a case without a prediction, else empty.
 
     Raises
     ------
     InputError
-        For an invalid table, and for a table without a valid case.  The error is then that of the
-        first case, with its number.
+        If the table is invalid or has no valid case.  Without a valid case, the error is that of
+        the first case, with its number.
     """
     table = Table({}, [], {})
     if is_table(cases):
@@ -80,8 +81,8 @@ def predictions(
 ) -> Iterator[Prediction | NoPrediction]:
     """The prediction of each case in turn.
 
-    All cases are read before the first one is solved.  A search without a solution gives a
-    Prediction that is not converged.  The arguments and errors are those of predict_table.
+    All cases are checked before the first one is solved.  A search without a solution gives a
+    Prediction that is not converged.  The arguments and errors are the same as for predict_table.
     """
     count = _count(table.columns, shared)
     wrong: dict[int, str | InputError] = dict(table.errors)
@@ -117,7 +118,7 @@ def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | No
 
 
 def _request(motion: str, arguments: Mapping[str, object]) -> Request:
-    """The checked request of a case; raises the errors that need no solve."""
+    """The checked Request of a case.  Raises the errors that need no solve."""
     for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
@@ -126,7 +127,7 @@ def _request(motion: str, arguments: Mapping[str, object]) -> Request:
 
 
 def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
-    """Number of cases; raises InputError for an invalid table."""
+    """Number of cases.  Raises InputError for an invalid table."""
     for name, values in columns.items():
         if name in shared:
             raise InputError(name, shared[name], "not allowed: the table has it")
@@ -143,7 +144,7 @@ def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
 
 
 def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-    """The Dataset of predict_table; cases: the predictions."""
+    """The Dataset of predict_table.  cases: the predictions."""
     import xarray as xr
 
     rows = [one.to_dict() if isinstance(one, Prediction) else vars(one) for one in cases]
@@ -168,7 +169,7 @@ def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPredict
 
 
 def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
-    """A variable over the cases; numbers have a unit."""
+    """A variable over the cases.  Numbers have a unit."""
     if name in ("warnings", "not_checked"):
         return "case", ["; ".join(texts) for texts in values], {}
     if any(isinstance(value, bool) for value in values):

@@ -4,9 +4,9 @@ load [N],speed [mm/s],counterbody
 10,1,steel
 20,1,"70 GPa, 0.22"
 
-`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a load
-with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an unclosed
-quote, renames a duplicate column, and its messages do not have the line of a cell.
+`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a
+load with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an
+unclosed quote and renames duplicate columns.  Its messages do not contain the line of a cell.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
-"""Text that resembles a number; `quantities.read` checks it later."""
+"""Pattern of a text that resembles a number.  `quantities.read` checks it later."""
 LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of texts that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
@@ -39,9 +39,9 @@ class Table:
     Attributes
     ----------
     columns : dict of list
-        Values by name: texts with units, or other objects; None for an empty cell.
+        Values by name.  They are texts with units or other objects; an empty cell is None.
     lines : list of int
-        Line number of each row in the file, from 1; empty without a file.
+        Line number of each row in the file, starting at 1.  The list is empty without a file.
     errors : dict of str
         Error messages of invalid rows, by index of the row.
     """
@@ -70,7 +70,7 @@ def table_of(
     decimal: str = ".",
     encoding: str = "utf-8",
 ) -> Table:
-    """The table of a file or of columns.
+    """Read the table in a file or in columns.
 
     Parameters
     ----------
@@ -79,14 +79,15 @@ def table_of(
     source : path, mapping or pandas DataFrame
         A file, or columns with headings such as "load [N]".
     names : mapping of bool
-        Allowed columns of a file besides labels; True for a column that needs a unit.
+        Allowed columns of a file, besides labels.  The value is True for a column that needs a
+        unit.
     decimal, encoding : str
         Decimal mark and encoding of the file.
 
     Raises
     ------
     InputError
-        For an invalid table, and for a file without a valid line.
+        If the table is invalid, or the file has no valid line.
     """
     csv_text.check_format(decimal, encoding)
     if not isinstance(source, str | os.PathLike):
@@ -103,17 +104,17 @@ def table_of(
 def read_table(
     content: bytes, names: Mapping[str, bool], *, decimal: str = ".", encoding: str = "utf-8"
 ) -> Table:
-    """The table of the content of a file.
+    """The table in the content of a file.
 
-    Commas, semicolons or tabs separate the columns; a cell that contains one of them is in double
-    quotes.  Cells under a heading with a unit are numbers in that unit, other cells are texts with
-    units.  Empty lines, lines that begin with #, and empty columns at the end are skipped.  The
-    arguments are those of `table_of`.
+    Commas, semicolons or tabs separate the columns.  A cell that contains the separator is in
+    double quotes.  Cells under a heading with a unit are numbers in that unit.  Other cells are
+    texts with units.  Empty lines, lines that begin with #, and empty columns at the end are
+    skipped.  The arguments are those of `table_of`.
 
     Raises
     ------
     ValueError
-        For an invalid table, and if no line is valid.  The message begins with the line number.
+        If the table is invalid or has no valid line.  The message begins with the line number.
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
@@ -149,7 +150,8 @@ def read_table(
 def _headings(
     where: int, heading: str, names: Mapping[str, bool]
 ) -> tuple[str, dict[str, str | None]]:
-    """The separator of a table, and the unit of each column; None without brackets."""
+    """The separator of a table, and the unit of each column.  A column without brackets has the
+    unit None."""
     units_are = "each with its unit" if any(names.values()) else "with a unit or without"
     allowed = f"allowed: some of {', '.join(names)}, {units_are}, as in speed [mm/s]"
     for separator in csv_text.SEPARATORS:
@@ -174,7 +176,7 @@ def _headings(
 
 
 def _unit(heading: re.Match) -> str | None:
-    """The unit of a heading: empty for a pure number, None without brackets."""
+    """The unit in a heading.  It is empty for a pure number, and None without brackets."""
     unit = heading[2] if heading[3] is None else heading[3]
     if unit is None:
         return None
@@ -184,7 +186,8 @@ def _unit(heading: re.Match) -> str | None:
 def _text(
     where: int, name: str, cell: str, unit: str | None, decimal: str, needed: bool
 ) -> str | None:
-    """The text of a cell with its unit, None if it is empty; needed: the heading needs a unit."""
+    """The text of a cell with its unit, or None if the cell is empty.  needed: True if the heading
+    needs a unit."""
     if not cell:
         return None
     if name not in TEXTS:
@@ -199,7 +202,7 @@ def _text(
 
 
 def _by_names(argument: str, table: Any) -> dict[str, Any]:
-    """Columns of a mapping or a DataFrame as lists, None for missing values.
+    """Columns of a mapping or a DataFrame as lists.  Missing values become None.
 
     Numbers under a heading with a unit become texts with this unit.  A value that is not a sequence
     is returned unchanged.

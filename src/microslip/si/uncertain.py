@@ -1,9 +1,9 @@
 """Uncertain inputs: "0.3 +- 0.03", "10 N +- 5 %".
 
-The number after +- is a standard uncertainty.  Each one is propagated by two predictions, one
-standard uncertainty below and above the value.  Half their difference is its contribution.  The
-inputs are independent, so the total is the root of the sum of squares (JCGM 100, Guide to the
-Expression of Uncertainty in Measurement, 5.1).
+The number after +- is a standard uncertainty.  It is propagated by two predictions, at one
+standard uncertainty below and above the value.  Half the difference of the predictions is the
+contribution of the input.  The inputs are independent, so the total is the root of the sum of
+squares (JCGM 100, Guide to the Expression of Uncertainty in Measurement, 5.1).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ SPREADS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Columns of the standard uncertainty, by the attribute of a Prediction."""
+"""Columns of the standard uncertainty, by the attributes of a Prediction that they belong to."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
@@ -62,20 +62,21 @@ def without_uncertainty(
 
 
 def refuse_uncertainty(arguments: Mapping[str, object], where: str) -> None:
-    """Raise InputError for the first argument with an uncertainty; where: the command, in words."""
+    """Raise InputError for the first argument with an uncertainty.  where: description of the
+    command."""
     for name, value in arguments.items():
         if _parts(value) is not None:
             raise InputError(name, value, f"allowed is a quantity without uncertainty for {where}")
 
 
 def _parts(value: object) -> tuple[str, str] | None:
-    """Texts of a value and of its uncertainty; None for an exact value."""
+    """Texts of a value and of its uncertainty, or None for an exact value."""
     match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
     return None if match is None else (match[1], match[2])
 
 
 def _uncertain(name: str, value: str, parts: tuple[str, str], unit: str) -> UncertainInput:
-    """An uncertain input in SI units; raises InputError for a text that is not valid."""
+    """An uncertain input in SI units.  Raises InputError if the text is invalid."""
     text, spread = parts
     try:
         centre = read(name, text, unit, low=QUANTITIES[name].low).si
@@ -98,20 +99,20 @@ def with_uncertainty(
     uncertain: list[UncertainInput],
     answer: Callable[[Request], Prediction],
 ) -> Prediction:
-    """The Prediction at the central values, with its uncertainty.
+    """The Prediction for the central values, with its uncertainty.
 
     Parameters
     ----------
     prediction : Prediction
-        The Prediction at the central values.
+        The Prediction for the central values, without its uncertainty.
     motion : str
         The motion.
     plain : mapping
-        Arguments of predict at the central values.
+        Arguments of predict with the central values.
     uncertain : list of UncertainInput
         The uncertain arguments.
     answer : callable
-        answer(request) -> Prediction.
+        Function answer(request) -> Prediction.
     """
 
     def request_at(changes: Mapping[str, float]) -> Request:

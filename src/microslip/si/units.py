@@ -1,4 +1,4 @@
-"""Units as texts: a strict grammar, a short list of units, and pint for their values."""
+"""Reading of units by a strict grammar, with a short list of units and pint for their values."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from pathlib import Path
 from typing import Any
 
 DEFINITIONS = Path(__file__).with_name("units.txt")
-"""Definitions of the accepted units; the units of the group `metric` take prefixes."""
+"""Definitions of the accepted units.  The units of the group `metric` accept prefixes."""
 PREFIXES = ("", "p", "n", "µ", "m", "c", "d", "da", "h", "k", "M", "G", "T")
 """Symbols of the metric prefixes, used in hints."""
 MOST_FACTORS = 12
-"""Largest number of factors in a unit; pint parses long products by recursion."""
+"""Largest number of factors in a unit, since pint parses long products by recursion."""
 PLURALS = frozenset({"lb", "oz"})
-"""Symbols with a plural.  After other symbols an s would be a second without an operator, as in Pas
-for Pa*s."""
+"""Symbols with a plural.  After other symbols, an s could be read as a second without an operator,
+as in Pas for Pa*s."""
 CYCLIC = ("hertz", "counts_per_second")
-"""Endings of the names of cyclic frequencies.  1 Hz is one turn per second, here 2 pi rad/s."""
+"""Endings of the names of cyclic frequencies.  Here, 1 Hz is one turn per second, or 2 pi
+rad/s."""
 
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 _FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
-"""Text after the numerator of a fraction."""
+"""Pattern of the text after the numerator of a fraction."""
 _NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
 _POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
 _SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
@@ -33,7 +34,8 @@ _EXACT = Context(prec=40)
 
 
 class UnitError(Exception):
-    """A text or an object that is not a quantity; the message is the reason, part of a sentence."""
+    """Error for a text or an object that is not a quantity.  The message is the reason, as part of
+    a sentence."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class Unit:
     Raises
     ------
     UnitError
-        For a product that contains a cyclic frequency.
+        If the product contains a cyclic frequency.
     """
 
     names: dict
@@ -64,7 +66,7 @@ class Unit:
             raise UnitError(f"{self} leaves open whether 2 pi belongs to the hertz")
 
     def __str__(self) -> str:
-        """The unit in a message."""
+        """The unit as text for messages."""
         if not self.names:
             return "that of a pure number"
         return "*".join(name if n == 1 else f"{name}^{n:g}" for name, n in self.names.items())
@@ -74,7 +76,7 @@ class Unit:
 def registry() -> Any:
     """The pint.UnitRegistry of the accepted units.
 
-    It computes in decimals: "1 um", "1e-3 mm" and "0.000001 m" become equal floats.
+    It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" become equal floats.
     """
     import pint
 
@@ -84,8 +86,9 @@ def registry() -> Any:
 def factors(text: str) -> list[tuple[str, int]]:
     """Names and exponents of the units in a product, in the order of the text.
 
-    A whole exponent follows ^ or **, or is a superscript.  One of *, / and the dot separates two
-    units; division is read from left to right.  Raises UnitError at the first other character.
+    An integer exponent follows ^ or **, or is a superscript.  Two units are separated by *, / or a
+    dot.  Division is read from left to right.  Raises UnitError at the first character that does
+    not fit.
     """
     units, place, sign = [], 0, 1
     while True:
@@ -108,7 +111,7 @@ def factors(text: str) -> list[tuple[str, int]]:
 
 
 def read_unit(text: str) -> Unit:
-    """The unit of a text such as "kg/m^3"; raises UnitError."""
+    """The unit of a text such as "kg/m^3".  Raises UnitError."""
     with localcontext(_EXACT):
         names = [("degree" if name == "°" else name, power) for name, power in factors(text)]
         for name, _ in names:
@@ -126,7 +129,7 @@ def pint_unit(quantity: Any) -> Unit:
     zero, one = (type(quantity)(size, quantity.units).to_root_units() for size in (0, 1))
     if zero.magnitude != 0:
         raise UnitError(f"{quantity.units} is a scale with an offset or a logarithm, not a factor")
-    factor = Decimal(repr(float(one.magnitude)))  # the shortest decimals, as in the definition
+    factor = Decimal(repr(float(one.magnitude)))  # shortest decimals, as in the definition
     unit = Unit(_exponents(quantity.units), _exponents(one.units), factor)
     if list(unit.names.values()) == [1] and next(iter(unit.names)).endswith(CYCLIC):
         hertz = si_unit("Hz")  # pint leaves out the turn
@@ -136,7 +139,8 @@ def pint_unit(quantity: Any) -> Unit:
 
 
 def _check_name(name: str) -> None:
-    """Raise UnitError unless a name is an accepted unit, with a prefix only if it takes one."""
+    """Raise UnitError unless a name is an accepted unit, with a prefix only if the unit accepts
+    one."""
     units = registry()
     metric = units.get_group("metric").members
     readings = units.parse_unit_name(name)
@@ -163,18 +167,18 @@ def _exponents(unit: Any) -> dict[str, Any]:
 
 @cache
 def si_unit(text: str) -> Unit:
-    """The SI unit of a text such as "kg/m^3"; the empty text is the unit of pure numbers."""
+    """The SI unit of a text such as "kg/m^3".  The empty text is the unit of pure numbers."""
     return read_unit(text) if text else Unit({}, {}, Decimal(1))
 
 
 def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
-    """number * ratio / over as a float; only the conversion to a float rounds."""
+    """number * ratio / over as a float.  Only the conversion to a float rounds."""
     with localcontext(_EXACT):
         return float(number * ratio / over)
 
 
 def split_number(text: str) -> tuple[str, str]:
-    """The number at the start of a text, in digits that float accepts, and the rest of the text."""
+    """The number at the start of a text, as a text that float accepts, and the rest of the text."""
     text = text.strip()
     number = _NUMBER.match(text)
     if _NOT_FINITE.match(text):
@@ -188,7 +192,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 
 def stopped(read_so_far: str, rest: str) -> str:
-    """A message with the place where reading stopped, and a hint at the likely meaning."""
+    """A message with the place at which reading stopped, and a hint about the likely meaning."""
     hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:

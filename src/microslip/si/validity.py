@@ -1,7 +1,7 @@
-"""Warnings for a real contact that violates an assumption of the theory.
+"""Warnings if a real contact violates an assumption of the theory.
 
-The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence for
-contacts beyond this limit.  The page of the explorer evaluates the rules too.
+The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence
+for contacts beyond this limit.  The page of the explorer also evaluates the rules.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ RUBBERY = 0.45
 """Smallest Poisson's ratio of a rubber.  A rubber does not yield but has internal losses, and its
 modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
-"""Order of magnitude of the work of adhesion of clean smooth surfaces by van der Waals forces, N/m
-(J. N. Israelachvili, Intermolecular and Surface Forces)."""
+"""Order of magnitude of the work of adhesion of clean smooth surfaces due to van der Waals forces,
+N/m (J. N. Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
-"""Range of van der Waals forces, m, of the order of the distance between atoms."""
+"""Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
-"""Smallest Tabor number of JKR's theory and largest one of DMT's (K. L. Johnson and J. A.
+"""Smallest Tabor number for JKR's theory, and largest one for DMT's theory (K. L. Johnson and J. A.
 Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
 """Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""Largest value of a ratio that the theory neglects."""
+"""Largest value of ratios that the theory neglects."""
 STEEP = 0.2
 """Contact radius a divided by the smaller radius of the bodies, or by the radius R of relative
 curvature, above which half-spaces are a poor approximation.  Hertz's theory assumes a << R1, R2 and
 a << R (K. L. Johnson, Contact Mechanics, 4.2)."""
 SENSELESS = 0.5
-"""Contact radius divided by the smaller radius of the bodies from which on predict raises an error.
-There the surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Hertz's
-parabola."""
+"""Contact radius divided by the smaller radius of the bodies, above which predict raises an error.
+At this ratio, the surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than
+Hertz's parabola."""
 
 
 class Rule(NamedTuple):
@@ -51,9 +51,9 @@ class Rule(NamedTuple):
     Attributes
     ----------
     where : tuple of tuple
-        Conditions (left, factor, right): left > factor * right.  Each side is a number or the name
-        of a measure.  The rule applies if all conditions are true; a condition on a missing measure
-        is false.
+        Conditions (left, factor, right), which mean left > factor * right.  Each side is a number
+        or the name of a measure.  The rule applies if all conditions are true.  A condition on a
+        missing measure is false.
     text : str
         The sentence, a template of str.format with the measures.
     """
@@ -168,7 +168,8 @@ CHECKS = (
         ),
     ),
 )
-"""Groups of rules in the order of the warnings; the first rule of a group that applies counts."""
+"""Groups of rules, in the order of the warnings.  Of each group, the first rule that applies gives
+the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """Checks that need an optional property of a body, by the name of the property."""
 MISSING = "{what} (the {name} of {whose} is missing)"
@@ -194,7 +195,7 @@ def _applies(rule: Rule, values: dict[str, float | None]) -> bool:
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
-    """Texts of the checks that need a missing property."""
+    """Texts of the checks that a missing property prevents."""
     sides, texts = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
@@ -204,7 +205,7 @@ def unchecked(contact: TwoBodies) -> list[str]:
 
 
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """Measures of a contact by name; None for a measure that is unknown or does not apply.
+    """Measures of a contact by name.  A measure that is unknown or does not apply is None.
 
     Pressures and the contact radius belong to the largest load of a period.
     """
@@ -253,7 +254,7 @@ def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
 
 
 def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
-    """Measures of the motion; those of inertia are None without a density."""
+    """Measures of the motion.  Measures of inertia are None without a density."""
     steady, along = motion.frequency is None, motion.swing[0]
     values: dict[str, float | None]
     values = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}

@@ -1,6 +1,7 @@
-"""Fit of a contact's coefficient of friction, and of u_lim or G, to measured friction.
+"""Fit of the coefficient of friction of a contact, and of u_lim or G, to measured friction.
 
-`measured` reads and checks the table.  `scales` converts its rows to dimensionless points for a
-guess of both numbers.  `friction_models` computes the friction of the points.  `estimate` is the
-least squares with its intervals.  `fit` is the public function, and `fitted` its result.
+`measured` reads and checks the table.  `scales` converts the rows to dimensionless points for
+given values of both unknowns.  `friction_models` computes the friction of the points.  `estimate`
+contains the least-squares fit and its intervals.  `fit` contains the public function, and `fitted`
+contains its result.
 """

@@ -1,4 +1,4 @@
-"""From the best fit to the result: intervals, undetermined unknowns, warnings."""
+"""Intervals, undetermined unknowns and warnings of a fit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.validity import broken_assumptions
 
 WIDEST_MU = 2.0
-"""Largest ratio of both ends of an interval of mu; rows with a wider one are refused."""
+"""Largest allowed ratio of the upper to the lower end of the interval of mu."""
 UNLIKELY = 0.01
 """Probability below which a sum of squares leads to a warning."""
 
@@ -32,14 +32,14 @@ def concluded(
     confidence: float,
     texts: dict,
 ) -> Fit:
-    """The result of a fit; raises InputError if the rows do not determine mu.
+    """The result of a fit.  Raises InputError if the rows do not determine mu.
 
     Parameters
     ----------
     scale : Scale
         The second unknown, with the measured rows.
     model : FrictionModel
-        The model, anchored at the best fit.
+        The model, corrected at the best fit.
     rows : estimate.Rows
         Rows of the least squares.
     fits : sequence of estimate.Best
@@ -122,7 +122,7 @@ def _second(
 ) -> dict[str, float | None]:
     """Fields of u_lim and of the shear modulus.
 
-    allowed: threshold of the sum of squares; None if the rows leave the second unknown open.
+    allowed: threshold of the sum of squares; None if the rows do not determine the second unknown.
     """
     names = ("u_lim_m", "u_lim_low_m", "u_lim_high_m")
     moduli = ("shear_modulus_Pa", "shear_modulus_low_Pa", "shear_modulus_high_Pa")
@@ -144,7 +144,7 @@ def _second(
 
 
 def _open(scale: Scale, ends: np.ndarray) -> str:
-    """The reason why the rows leave the second unknown open; ends: its interval."""
+    """The reason why the rows do not determine the second unknown; ends: ends of its interval."""
     low, high = ends
     which = f"any {scale.name}"
     if low > 0.0:
@@ -163,8 +163,8 @@ def _warnings(
 ) -> Iterator[str]:
     """Warnings about a fit.
 
-    allowed: threshold of the sum of squares; 0 if the rows leave the second unknown open.
-    chance: probability of a larger sum of squares; None if the errors are unknown.
+    allowed: threshold of the sum of squares; 0 if the rows do not determine the second unknown.
+    chance: probability that the sum of squares is larger by chance; None if the errors are unknown.
     """
     best, *others = fits
     if chance is not None and chance < UNLIKELY:

@@ -1,4 +1,4 @@
-"""The model curve of a fit: friction between the rows, on an axis fine enough to draw."""
+"""The model curve of a fit: the friction between the rows, at enough points for a figure."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
 PIECES = 60
-"""Number of points with even steps, and of points with even ratios, on a curve."""
+"""Number of points with equal steps on a curve, and number of points with equal ratios."""
 
 
 class Curve(NamedTuple):
-    """Points of the model curves of a fit, one curve after another, shape (n,) each.
+    """Points of all model curves of a fit, one curve after another.  Arrays have shape (n,).
 
-    The abscissa is the condition with the most values.  At least two rows with equal other
-    conditions share a curve.
+    The abscissa is the condition with the most different values.  Rows whose other conditions are
+    equal share a curve, if there are at least two.
 
     Attributes
     ----------
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray
-        The conditions, as for the rows of a Fit.
+        The conditions, in the units of a Fit.
     fitted, fitted_error : np.ndarray
-        Friction of the model and its error estimate, in the unit of the rows.
+        Friction of the model, and its error estimate, in the unit of the measured values.
     """
 
     speed_m_s: np.ndarray
@@ -38,19 +38,20 @@ class Curve(NamedTuple):
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
-    """Name of the condition with the most values; the first one of equals."""
+    """Name of the condition with the most different values; the first one if several have as
+    many."""
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
 def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curve:
-    """The model curves through the rows of a fit.
+    """Compute the model curves for the rows of a fit.
 
     Parameters
     ----------
     scale : Scale
         The second unknown, with the rows.
     model : FrictionModel
-        Model, anchored at the best fit.
+        The model, corrected at the best fit.
     mu, size : float
         Both unknowns at the best fit.
     """
@@ -59,7 +60,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     along = abscissa(columns)
     others = np.stack([values for name, values in columns.items() if name != along], axis=1)
     _, curve_of_row = np.unique(others, axis=0, return_inverse=True)
-    # The correction of the coarse map is known at the rows, and interpolated between them.
+    # The correction of the coarse map is computed at the rows and interpolated between them.
     points = scale.points(mu, size)
     correction, error = model.at(points) - model.rough(points), model.errors(points)
     parts = [np.empty((6, 0))]
@@ -82,7 +83,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
 
 
 def _axis(values: np.ndarray) -> np.ndarray:
-    """Sorted values, with more values between them in even steps and in even ratios."""
+    """The sorted values, with further values between them in equal steps and in equal ratios."""
     least, most = values[values > 0.0][0], values[-1]
     even = np.linspace(values[0], most, PIECES), np.geomspace(least, most, PIECES)
     return np.unique(np.clip(np.concatenate([values, *even]), values[0], most))

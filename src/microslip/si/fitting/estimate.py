@@ -1,10 +1,11 @@
-"""Least squares of two positive numbers, with intervals from the profile of the sum of squares.
+"""Least-squares fit of two positive numbers, with intervals from the profile of the sum of squares.
 
-The unknowns are theta = (ln mu, ln scale).  The interval of one unknown holds all of its values
-for which the least sum of squares over the other unknown stays below a threshold.  The threshold is
-the least sum of squares plus a quantile: of chi square if the rows have errors, else of the F
-distribution times the mean square residual.  Such an interval does not depend on the
-parametrisation, and it may be infinite on one side.
+The unknowns are theta = (ln mu, ln scale).  For each value of one unknown, the sum of squares is
+minimised over the other unknown.  The interval contains the values for which this minimum is below
+a threshold.  The threshold is the least sum of squares plus a quantile.  If the rows have errors,
+it is a quantile of chi square.  Otherwise it is a quantile of the F distribution times the mean
+square residual.  Such an interval does not depend on the parametrisation.  It may be infinite on
+one side.
 """
 
 from __future__ import annotations
@@ -25,23 +26,25 @@ PASSES = 3
 STILL = 1e-10
 """Smallest change of theta that counts."""
 FIRST_STEP = 0.1
-"""First step from the best fit towards an end of an interval, if the curvature is singular."""
+"""First step from the best fit towards an end of an interval, used if the curvature is singular."""
 DOUBLINGS = 12
-"""Largest number of steps towards the end of an interval, each twice as long as the last one."""
+"""Largest number of steps towards the end of an interval.  Each step is twice as long as the last
+one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Measured rows, and the model for them: value = mu * weight * ratio + error.
+    """Measured rows and their model: value = mu * weight * ratio + error.
 
     Attributes
     ----------
     ratios : callable
         Takes thetas, shape (k, 2), and returns the ratios, shape (k, n).
     value, weight : np.ndarray, shape (n,)
-        Measured values, in any unit, and the factors from mu to a value.
+        Measured values, in any unit, and the factors that convert mu to a value.
     error : np.ndarray, shape (n,)
-        Standard errors in the unit of the values.  If they are unknown, a common scale.
+        Standard errors in the unit of the values.  If they are unknown, all are equal to an
+        arbitrary scale.
     absolute : bool
         Whether the errors are known.
     lower, upper : np.ndarray, shape (2,)
@@ -69,9 +72,9 @@ class Best:
     Attributes
     ----------
     theta : np.ndarray, shape (2,)
-        Its position.
+        Position of the minimum.
     squares : float
-        Its value.
+        Sum of squares at the minimum.
     slopes : np.ndarray, shape (n, number of free unknowns)
         Derivatives of the residuals.
     """
@@ -82,14 +85,14 @@ class Best:
 
 
 def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Best:
-    """The minimum of the sum of squares next to a start, over some unknowns.
+    """Minimise the sum of squares over some unknowns, from an initial guess.
 
     Parameters
     ----------
     theta : np.ndarray, shape (2,)
-        The start.
+        The initial guess.
     free : sequence of int
-        Indices of the unknowns to fit; the other one is fixed.
+        Indices of the unknowns to fit.  Other unknowns are fixed.
     """
     from scipy.optimize import least_squares
 
@@ -128,13 +131,13 @@ def starts(rows: Rows) -> list[np.ndarray]:
 
 
 def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> float:
-    """Largest difference from the least sum of squares inside an interval.
+    """Largest excess over the least sum of squares inside an interval.
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
         Largest error of the model in each row, divided by the error of the row.  The threshold is
-        at least the mean square of these.
+        at least the mean square of these numbers.
     """
     from scipy.stats import chi2, f
 
@@ -147,7 +150,8 @@ def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> f
 
 
 def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float, float]:
-    """Both ends of the interval of one unknown; an end that the rows do not determine is infinite.
+    """Both ends of the interval of one unknown.  An end that the rows do not determine is
+    infinite.
 
     Parameters
     ----------
@@ -165,7 +169,8 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
     last = best.theta
 
     def excess(value: float) -> float:
-        """Least sum of squares at a value of the unknown, above the threshold."""
+        """Least sum of squares at a value of the unknown, minus the threshold at the end of the
+        interval."""
         nonlocal last
         start = np.where(np.arange(2) == which, value, last)
         minimum = best_near(rows, start, free=[1 - which])
@@ -186,7 +191,7 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
 
 
 def _first_step(best: Best, which: int, allowed: float) -> float:
-    """Half width of the interval of a linear model."""
+    """Half the width of the interval for a linear model."""
     curvature = best.slopes.T @ best.slopes
     if np.linalg.cond(curvature) > 1e12:
         return FIRST_STEP
@@ -194,14 +199,14 @@ def _first_step(best: Best, which: int, allowed: float) -> float:
 
 
 def shifts(best: Best, model: np.ndarray, determined: list[int]) -> np.ndarray:
-    """Largest effect of the errors of the model on theta, to first order, shape (2,).
+    """Largest change of theta that the errors of the model cause, to first order, shape (2,).
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
         Largest error of the model in each row, divided by the error of the row.
     determined : list of int
-        Indices of the unknowns that the rows determine.  The shift of the other one is 0.
+        Indices of the unknowns that the rows determine.  The change of other unknowns is 0.
     """
     shift = np.zeros(2)
     shift[determined] = np.abs(np.linalg.pinv(best.slopes[:, determined])) @ model

@@ -1,4 +1,4 @@
-"""mu and u_lim, or the shear modulus, of a contact whose friction was measured."""
+"""Fit of mu, and of u_lim or the shear modulus, to the measured friction of a contact."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from microslip.si.quantities import read
 
 SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
-"""Default and largest accepted error of mu_macro, where the solver computes it."""
+"""Default value, and largest allowed value, of the accepted error of mu_macro in the solver."""
 CONFIDENCE = 0.95
 """Default confidence level of the intervals."""
 MOST_PASSES = 6
-"""Largest number of fits with a newly anchored model."""
+"""Largest number of fits.  The model is corrected before each fit."""
 SETTLED = 5e-4
-"""Relative change of both numbers between two fits that ends the iteration."""
+"""The iteration ends if both numbers change by less than this fraction between two fits."""
 
 
 def fit(
@@ -55,31 +55,33 @@ def fit(
     """Fit mu, and u_lim or the shear modulus, to measured friction.
 
     Without a radius, the unknowns are mu and u_lim, and Poisson's ratio is the only property of the
-    bodies.  With a radius, the unknowns are mu and the shear modulus.  In both cases the dependence
-    on the load follows Hertz's theory.
+    bodies.  With a radius, the unknowns are mu and the shear modulus.  In both cases, Hertz's
+    theory gives the dependence on the load.
 
     Parameters
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
     measured : path, mapping or pandas DataFrame
-        A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns
-        under such headings; without a unit they are in SI units.  The columns are speed,
-        amplitude, frequency, load; friction (mean forward force) or mu (friction over load);
+        A CSV file with a heading line such as `speed [mm/s],amplitude [um],friction [N]`, or
+        columns with such names.  Columns without a unit are in SI units.  The columns are speed,
+        amplitude, frequency, load; friction (mean forward force) or mu (friction divided by load);
         optionally their standard errors friction_error or mu_error, and texts named label, name,
         id, sample or comment.
     map : xarray.Dataset, optional
-        Dataset of a sweep of this motion, see open_map.  Interpolation in a map is fast.  Without a
-        map the solver computes every point.
+        Dataset of a sweep of this motion, see `open_map`.  Interpolation in a map is fast.
+        Without a map, the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
-        Common value of all rows, in place of a column.
+        Common value for all rows.  It replaces a column.
     nu : quantity, optional
-        Poisson's ratio of the equivalent half-space; default: that of the map, or 0.  With a radius
-        it is required, and is Poisson's ratio of the bodies.
+        Poisson's ratio of the equivalent half-space.  The default is Poisson's ratio of the map,
+        or 0 without a map.  With a radius, this is Poisson's ratio of the bodies, and it is
+        required.
     radius : quantity, optional
-        Radius of relative curvature, m; for a sphere on a flat the radius of the sphere.
+        Radius of relative curvature, m.  For a sphere on a flat it is the radius of the sphere.
     counterbody : str, optional
-        With a radius: "rigid" (default), or "same" for the material of the first body.
+        Only with a radius.  The counterbody is "rigid" (default), or "same" for the material of
+        the first body.
     confidence : quantity, optional
         Confidence level of the intervals, default 0.95.
     tolerance : quantity, optional
@@ -90,13 +92,14 @@ def fit(
     Returns
     -------
     Fit
-        Both numbers with intervals, or mu alone and the reason.
+        Both numbers with intervals.  If the rows determine mu alone, the fit contains mu and the
+        reason.
 
     Raises
     ------
     InputError
-        For an unreadable table, too few rows, rows of one condition, and rows that do not determine
-        mu.
+        If the table cannot be read, if it has too few rows or a single condition, or if the rows do
+        not determine mu.
     """
     if not isinstance(motion, str) or motion not in UNIT_OF_AMPLITUDE:
         raise InputError("motion", motion, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
@@ -150,7 +153,7 @@ def _refuse_too_few(rows: Measured, table: object) -> None:
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
 ) -> tuple[Scale, dict[str, str]]:
-    """The second unknown, and the texts of its inputs."""
+    """The second unknown, and the inputs that belong to it as texts."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
@@ -177,7 +180,7 @@ def _rows(
     """The rows, weights and limits for the least squares."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
-        """Ratios of all guesses in one call, which is faster for a map."""
+        """Ratios for all guesses in one call, which is faster for a map."""
         parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
         return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
 
@@ -194,7 +197,8 @@ def _rows(
 
 
 def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
-    """The best fit, with the model anchored at it, then the fits from other initial guesses."""
+    """The best fit, then the fits from other initial guesses.  The model is corrected at the best
+    fit."""
     fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
     best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Fit:
     """Coefficient of friction and u_lim of a contact, from measured friction.
 
-    An interval covers the scatter of the rows at a confidence level, plus the error estimate of the
-    model, which is not random.
+    An interval includes the scatter of the rows, at a confidence level, and the error estimate of
+    the model, which is not random.
 
     Attributes
     ----------
@@ -28,50 +28,51 @@ class Fit:
     quantity : str
         Measured quantity: "friction", a force in N, or "mu", a coefficient.
     mu, mu_low, mu_high : float
-        Coefficient of friction without vibration, dimensionless, and its interval.
+        Coefficient of friction without vibration, dimensionless, and the ends of its interval.
     u_lim_m, u_lim_low_m, u_lim_high_m : float or None
-        Displacement at which the whole contact slides under the mean load, m, and its interval.
-        None if the rows do not determine it, or leave the interval open on this side.
+        Displacement at which the whole contact slides under the mean load, m, and the ends of its
+        interval.  A number that the rows do not determine is None; so is an infinite end of its
+        interval.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
-        Shear modulus of the bodies, Pa, and its interval; None in a fit without a radius.
+        Shear modulus of the bodies, Pa, and the ends of its interval; None in a fit without a
+        radius.
     load_N : float
         The mean load, N.
     confidence : float
         Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
-        Largest relative effect of model errors on mu, and on u_lim or the shear modulus, which the
-        intervals include.
+        Largest relative change that model errors cause in mu, and in u_lim or the shear modulus.
+        The intervals include it.
     standard_error : float or None
         Standard error of one row, from the residuals of the fit, in the unit of the rows.  None for
         rows with standard errors.
     chi_square, p_value : float or None
-        Weighted sum of squares, and the probability of a larger one by chance.  None for rows
+        Weighted sum of squares, and the probability that it is larger by chance.  None for rows
         without standard errors.
     degrees_of_freedom : int
         Number of rows minus 2.
     told : tuple of str
         Numbers that the rows determine: "mu", and "u_lim" or "shear_modulus".
     reason : str
-        The reason if the rows do not determine both numbers, else empty.
+        The reason why the rows do not determine both numbers; empty if they do.
     warnings : tuple of str
-        Doubts about the result.
+        Reasons to doubt the result.
     understood : dict of str
         Inputs as text.
     labels : dict of list
-        Columns of texts in the table, by their names.
+        Columns of texts in the table, by name.
     left_out : tuple of str
-        Unreadable lines of the table, with reasons; the fit does not use them.
+        Unreadable lines of the table, with reasons.  The fit ignores these lines.
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
-        Conditions of each row; the amplitude in m, or rad for a bore.
+        Conditions of each row.  The amplitude is in m, or in rad for a bore.
     velocity, amplitude : np.ndarray, shape (rows,)
-        Speed and amplitude of each row as dimensionless groups at the best fit, as for
-        microslip.solve.
+        Dimensionless velocity and amplitude of each row at the best fit, as in microslip.solve.
     measured, measured_error : np.ndarray, shape (rows,)
         Measured values and standard errors, N or dimensionless; NaN for an unknown error.
     fitted, fitted_error : np.ndarray, shape (rows,)
         Values of the model and their error estimates, in the unit of the measured values.
     residual : np.ndarray, shape (rows,)
-        (measured - fitted) / standard error, dimensionless.
+        Measured minus fitted values, divided by the standard error, dimensionless.
     curve : Curve
         Friction of the model between the rows, for figures.
     """
@@ -115,7 +116,7 @@ class Fit:
     curve: Curve = field(repr=False)
 
     def to_dict(self) -> dict:
-        """All fields except the curve as a dict, with lists for arrays and tuples."""
+        """All fields except the curve as a dict.  Arrays and tuples become lists."""
 
         def plain(value: object) -> object:
             if isinstance(value, np.ndarray):
@@ -126,9 +127,10 @@ class Fit:
         return {name: plain(getattr(self, name)) for name in names}
 
     def to_xarray(self) -> xr.Dataset:
-        """The fit as a dataset: rows along `row`, numbers without a dimension, texts as attributes.
+        """The fit as a dataset.  Rows are along the dimension `row`, numbers have no dimension,
+        and texts are attributes.
 
-        The curve is in variables `curve_NAME` along `curve_point`.
+        Variables `curve_NAME` along `curve_point` contain the curve.
         """
         import xarray as xr
 

@@ -1,7 +1,7 @@
-"""Friction of the rows of a fit: from a finished map, or from the solver and a coarse map.
+"""Friction of the rows of a fit, from an existing map or from the solver and a coarse map.
 
-A fit needs the friction of all rows at hundreds of guesses of both unknowns.  The solver computes a
-coarse map once, for the change of friction between guesses.  Then it computes the rows themselves
+A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver computes
+a coarse map once, which gives the change of friction between two guesses.  Then it solves the rows
 at the best guess so far, which corrects the coarse map there.  At the end, the remaining error of
 the coarse map is of second order.
 """
@@ -22,41 +22,43 @@ LEAST, MOST = 0.03, 20.0
 """Smallest and largest amplitude of the coarse map.  Below, nearly all of the contact sticks;
 above, nearly all of it slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Smallest and largest velocity over amplitude (velocity for a bore) of the coarse map."""
+"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, it is the
+velocity."""
 PROVED = ("transverse", "bore")
-"""Motions whose maps have values outside the tabulated range, for Poisson's ratio 0."""
+"""Motions whose maps can be evaluated outside the tabulated range, for Poisson's ratio 0."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
-"""Nodes of the coarse map per decade."""
+"""Number of nodes of the coarse map per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes; 0 saves time."""
+"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes, and the value 0 saves
+time."""
 MOST_SOLVED = 200
 """Largest number of rows for a fit without a map."""
 
 
 class FrictionModel:
-    """A model that gives mu_macro of the rows and its estimated error, shape (n,) each."""
+    """A model that computes mu_macro of the rows and its error estimate, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
-        """mu_macro of all rows, for one guess after the other.
+        """mu_macro of all rows for each guess.
 
-        Its errors far from the anchor only affect the path of the iteration.
+        Errors far from the best guess affect only the path of the iteration.
         """
         raise NotImplementedError
 
     def rough(self, points: Points) -> np.ndarray:
-        """mu_macro at any points, without the corrections at the anchor."""
+        """mu_macro at any points, without the corrections."""
         return self.at(points)
 
     def anchor(self, points: Points) -> None:
         """Compute corrections at the points of the best guess so far."""
 
     def errors(self, points: Points) -> np.ndarray:
-        """Error estimates of `at` next to the points of the last anchor."""
+        """Error estimates of `at` near the points of the last correction."""
         raise NotImplementedError
 
 
 class MapFriction(FrictionModel):
-    """A dataset of a sweep with its accessor `friction`, see datasets.query.
+    """Friction from the dataset of a sweep, by its accessor `friction`, see datasets.query.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ class MapFriction(FrictionModel):
     Raises
     ------
     InputError
-        For another dataset, or one without this Poisson's ratio.
+        If the dataset is not of this motion, or does not contain this Poisson's ratio.
     """
 
     def __init__(self, dataset: Any, motion: str, poisson: float | None):
@@ -112,10 +114,10 @@ class MapFriction(FrictionModel):
 
 
 class SolvedFriction(FrictionModel):
-    """The solver by way of a coarse map over the logarithms of amplitude and ratio.
+    """Friction from the solver and a coarse map over the logarithms of amplitude and ratio.
 
-    The ratio is the velocity over the amplitude, which does not depend on u_lim; for a bore the
-    velocity itself is such a ratio.
+    The ratio is the velocity divided by the amplitude, which does not depend on u_lim.  For a
+    bore, the ratio is the velocity.
 
     Parameters
     ----------
@@ -124,12 +126,12 @@ class SolvedFriction(FrictionModel):
     poisson, tolerance : float
         Arguments of microslip.solve.
     ends : list of Points
-        Points of the rows at the smallest and the largest guess.
+        Points of the rows for the smallest and the largest second unknown.
 
     Raises
     ------
     InputError
-        For more than MOST_SOLVED rows.
+        If there are more than MOST_SOLVED rows.
     """
 
     def __init__(self, motion: str, poisson: float, tolerance: float, ends: list[Points]):
@@ -165,7 +167,7 @@ class SolvedFriction(FrictionModel):
         return np.where(points.amplitude > 0.0, self._coarse(points), 1.0)
 
     def _coordinates(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
-        """Logarithms of amplitude and ratio, within the range of the coarse map."""
+        """Logarithms of amplitude and ratio, clipped to the range of the coarse map."""
         velocity, amplitude = points
         moving = amplitude > 0.0
         size = np.clip(amplitude, LEAST, MOST)
@@ -190,7 +192,7 @@ class SolvedFriction(FrictionModel):
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 
     def _solved(self, velocity: float, amplitude: float) -> tuple[float, float]:
-        """mu_macro and its error estimate by the solver; each point is solved once."""
+        """mu_macro and its error estimate from the solver.  Each point is solved once."""
         point = float(velocity), float(amplitude)
         if point not in self._known:
             self._known[point] = _solution(self._motion, *point, self._settings)
@@ -200,7 +202,7 @@ class SolvedFriction(FrictionModel):
 def _solution(
     motion: str, velocity: float, amplitude: float, settings: dict[str, Any]
 ) -> tuple[float, float]:
-    """mu_macro and its error estimate by the solver."""
+    """mu_macro and its error estimate from the solver."""
     if amplitude == 0.0:
         return 1.0, 0.0
     point = (min(part, LARGEST["velocity"]) for part in (velocity, amplitude))
@@ -213,7 +215,7 @@ def _solution(
 
 
 def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
-    """At least four nodes that cover some logarithms."""
+    """At least four nodes that cover the range of these logarithms."""
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
     return np.linspace(low, high, count)

@@ -1,4 +1,4 @@
-"""Rows of a table of measured friction, with the values that all rows share.
+"""A table of measured friction, with the values that all rows share.
 
 speed [mm/s],amplitude [um],friction [N]
 1,0.5,1.93
@@ -21,14 +21,14 @@ from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, is_table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
-"""Conditions of every row."""
+"""Names of the conditions of each row."""
 COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
     "friction": Range("N", low=-math.inf),
     "friction_error": Range("N"),
     "mu": Range("", low=-math.inf),
     "mu_error": Range(""),
 }
-"""Allowed columns; the amplitude of a bore is in rad."""
+"""SI units of the allowed columns.  The amplitude of a bore is in rad."""
 MOST_ROWS = 10_000
 """Largest number of rows."""
 
@@ -40,15 +40,15 @@ class Measured:
     Attributes
     ----------
     speed, amplitude, frequency, load : np.ndarray
-        m/s, m (rad for a bore), Hz and N.
+        Conditions of each row, in m/s, m (rad for a bore), Hz and N.
     value, error : np.ndarray
         Measured friction, N or dimensionless, and its standard error; NaN if unknown.
     quantity : str
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
-        Inputs that all rows share, as text.
+        Conditions that all rows share, as text.
     labels : dict of list
-        Columns of texts, by their names.
+        Columns of texts, by name.
     left_out : tuple of str
         Unreadable lines, with reasons.
     """
@@ -70,12 +70,12 @@ class Measured:
 
     @property
     def weight(self) -> np.ndarray:
-        """Factor from a coefficient of friction to the measured quantity, (n,)."""
+        """Factor that converts a coefficient of friction to the measured quantity, shape (n,)."""
         return self.load if self.quantity == "friction" else np.ones_like(self.load)
 
     @property
     def omega(self) -> np.ndarray:
-        """Angular frequency, rad/s, (n,)."""
+        """Angular frequency, rad/s, shape (n,)."""
         return 2.0 * math.pi * self.frequency
 
     @property
@@ -87,18 +87,19 @@ class Measured:
 def read_measured(
     motion: str, source: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
 ) -> Measured:
-    """The rows of a CSV file or of a table of columns, checked; raises InputError.
+    """Read and check the rows of a CSV file or of a table of columns; raises InputError.
 
     Parameters
     ----------
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
     source : path, mapping or pandas DataFrame
-        The file, or columns by their names: in SI units, or with a unit as in "speed [mm/s]".
+        The file, or columns by name.  A column without a unit, as in "speed [mm/s]", is in SI
+        units.
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
-        Values of speed, amplitude, frequency and load in place of columns.
+        Values of speed, amplitude, frequency and load that replace columns.
     """
     if not is_table(source):
         raise InputError("measured", source, "allowed is the path of a CSV file, or its columns")
@@ -139,10 +140,10 @@ def read_measured(
 def _numbers(
     table: Table, source: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
-    """Columns in SI units, labels, and messages about unreadable lines of a file.
+    """Columns in SI units, columns of labels, and messages about unreadable lines of a file.
 
-    Rows without any value and unreadable lines of a file are left out.  An unreadable value of
-    other tables raises InputError.
+    Empty rows, and unreadable lines of a file, are omitted.  An unreadable value in another table
+    raises InputError.
     """
     names = [name for name in table.columns if name not in LABELS]
     unknown = [name for name in names if name not in COLUMNS]
@@ -181,7 +182,7 @@ def _numbers(
 
 
 def _number(name: str, value: object, units: Mapping[str, str]) -> float:
-    """A value in SI units; raises InputError."""
+    """Read a value in SI units; raises InputError."""
     if value is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
@@ -202,5 +203,5 @@ def _quantity(table: Mapping[str, np.ndarray], source: object) -> str:
 
 
 def named(source: Any) -> str | list:
-    """A table in messages: its path, or the names of its columns."""
+    """Name of a table in messages: its path, or the names of its columns."""
     return str(source) if isinstance(source, str | os.PathLike) else list(source)

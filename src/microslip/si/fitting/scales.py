@@ -1,7 +1,7 @@
-"""From a guess of both unknowns to the dimensionless points of all rows.
+"""Conversion of both unknowns of a fit to the dimensionless points of all rows.
 
-The unknowns are mu, and either u_lim at the mean load or the shear modulus.  For u_lim no property
-of the bodies is needed.  u_lim is proportional to load^(2/3), and the contact radius to load^(1/3)
+The unknowns are mu, and either u_lim at the mean load or the shear modulus.  A fit of u_lim needs
+no elastic modulus.  u_lim is proportional to load^(2/3), and the contact radius to load^(1/3)
 (Hertz).
 """
 
@@ -19,7 +19,7 @@ from microslip.theory import hertz
 
 
 class Points(NamedTuple):
-    """Points for microslip.solve: velocity and amplitude, shape (n,) each."""
+    """Dimensionless points for microslip.solve: velocity and amplitude, shape (n,) each."""
 
     velocity: np.ndarray
     amplitude: np.ndarray
@@ -34,9 +34,10 @@ class Scale:
     rows : Measured
         The measurements.
     poisson : float
-        Poisson's ratio of the equivalent half-space, or of the bodies.
+        Poisson's ratio of the equivalent half-space for u_lim, or of the bodies for the shear
+        modulus.
     unit, name : str
-        Unit of the second unknown, and its name in words.
+        Unit and name of the second unknown.
     """
 
     rows: Measured
@@ -54,11 +55,11 @@ class Scale:
         raise NotImplementedError
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown that gives amplitudes from `least` to `most`."""
+        """Range of the second unknown for which the amplitudes are from `least` to `most`."""
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row; rows: others than those of the fit."""
+        """Velocity and amplitude of each row; rows: default the rows of the fit."""
         rows = self.rows if rows is None else rows
         u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
         return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
@@ -66,7 +67,7 @@ class Scale:
 
 @dataclass(frozen=True, eq=False)
 class Displacement(Scale):
-    """The second unknown is u_lim at the mean load, m; for motions along a line."""
+    """A scale whose second unknown is u_lim at the mean load, m, for motions along a line."""
 
     unit, name = "m", "u_lim"
 
@@ -75,9 +76,10 @@ class Displacement(Scale):
         return scale
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of u_lim that gives amplitudes from `least` to `most`.
+        """Range of u_lim for which the amplitudes are from `least` to `most`.
 
-        At the ends of the range, all amplitudes except 0 are at most `least`, or at least `most`.
+        At one end of the range, all positive amplitudes are at most `least`.  At the other end,
+        they are at least `most`.
         """
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
@@ -86,9 +88,9 @@ class Displacement(Scale):
 
 @dataclass(frozen=True, eq=False)
 class Modulus(Scale):
-    """The second unknown is the shear modulus, Pa.
+    """A scale whose second unknown is the shear modulus, Pa.
 
-    The bodies are of this modulus, or one of them is rigid.
+    Both bodies have this modulus, or one of them is rigid.
 
     Attributes
     ----------
@@ -112,19 +114,19 @@ class Modulus(Scale):
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row; rows: others than those of the fit."""
+        """Velocity and amplitude of each row; rows: default the rows of the fit."""
         rows = self.rows if rows is None else rows
         if not self.spin:
             return super().points(mu, scale, rows)
         contact, share = self.contact(mu, scale), rows.load / self.mean_load
         arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
-        moving = arc > 0.0  # at an angle of 0 the velocity does not matter
+        moving = arc > 0.0  # at an angle of 0 the velocity has no effect
         velocity = np.divide(rows.speed, rows.omega * arc, out=np.zeros_like(arc), where=moving)
         size = arc / (contact.u_lim * share ** (2.0 / 3.0))
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Smallest and largest shear modulus of solid bodies, for all amplitudes."""
+        """Smallest and largest shear modulus of solid bodies, whatever the amplitudes are."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:
@@ -133,4 +135,5 @@ class Modulus(Scale):
 
 
 SOFTEST, HARDEST = 1e2, 1e13
-"""Smallest and largest shear modulus, Pa: that of a weak gel, and one above diamond."""
+"""Smallest and largest shear modulus, Pa.  A weak gel has the smallest one; the largest one is
+above that of diamond."""
