@@ -42,7 +42,7 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """Return a variable of codes, which are indices of `meanings`, as a tuple for xarray.Dataset."""
+    """Return a variable of codes as a tuple for xarray.Dataset; codes are indices of `meanings`."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 
 

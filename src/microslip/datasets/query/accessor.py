@@ -66,7 +66,7 @@ class Friction:
                 "velocity or a spring; use microslip.at of a certified map, sel or interp"
             )
         self._dataset = dataset
-        # Only the name of the motion is stored, because a motion has lambdas, which cannot be pickled.
+        # The name is stored instead of the motion, which has lambdas that cannot be pickled.
         self._motion, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._has_limits = beyond.has_limits(dataset)
@@ -86,8 +86,8 @@ class Friction:
         Between the nodes of a map, the error bound is the sum of the interpolation error and the
         errors of the nodes (see `interpolation` and, between Poisson's ratios, `nodes`).  In a
         certified map it is the bound of the cell (see `cells`).  Outside the tabulated range it is
-        half the width of a bracket (see `beyond`).  Next to a point that did not converge,
-        mu_macro is NaN or its error bound is infinite.
+        the larger distance to the two ends of a bracket (see `beyond`).  Next to a point that did
+        not converge, mu_macro is NaN or its error bound is infinite.
 
         The dataset can be a selection or a join of datasets, in memory or in chunks of dask.  It
         must have mu_macro, mu_macro_error, their coordinates and the attributes.  If there is no
@@ -198,13 +198,12 @@ class Friction:
         Returns
         -------
         xarray.Dataset
-            Every root is a place at which the map has the value, in an interval.  The following
-            variables have the dimensions of the arguments and the dimension `root`: the searched
-            coordinate (NaN if the map has the value nowhere in the interval); the lower and upper
-            ends of the interval in which friction equals the value to within its error, with
-            the suffixes `_low` and `_high`; and `bounded`, True if both ends are inside the
-            searched range.  The variable `outcome`, an index into OUTCOMES, has the dimensions of
-            the arguments only.
+            The dimension `root` counts the intervals in which friction equals the value to within
+            its error.  The ends of the intervals have the name of the searched coordinate with
+            the suffixes `_low` and `_high`.  The variable without a suffix is the coordinate at
+            which the map has exactly this value (NaN if there is none in the interval).  `bounded`
+            is True if both ends are inside the searched range.  `outcome` is an index into
+            OUTCOMES, without the dimension `root`.
 
         Raises
         ------
