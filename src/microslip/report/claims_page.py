@@ -120,7 +120,10 @@ def _with_error(value: float, error: float) -> str:
 
 
 def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
-    """Return the table of the static limit, with a row for each amplitude and excesses of formulas."""
+    """Return the table of the static limit, with a row for each amplitude.
+
+    It also has the excess of each formula over the limit.
+    """
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     gaps = [
         (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))

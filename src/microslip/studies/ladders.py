@@ -11,8 +11,8 @@ from microslip.solver.method_names import SHIPPED, declared, missing, split
 
 
 class Level(NamedTuple):
-    """Resolution of a run: cells (rings, or squares along a side), angles on half the disc, and time
-    steps in a period."""
+    """Resolution of a run: cells (rings, or squares along a side), angles on half the disc, and
+    time steps in a period."""
 
     cells: int
     angles: int

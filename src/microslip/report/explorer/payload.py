@@ -102,7 +102,7 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
-    """Pack the periods of a map, and the index of the period of each point, or -1 if it has none."""
+    """Pack the periods of a map, and the index of the period of each point (-1 if it has none)."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)

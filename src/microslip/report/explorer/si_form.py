@@ -1,6 +1,6 @@
 """Pack the data of the form for a real contact: fields, units, materials, rules and messages.
 
-The data are those of microslip.predict, so that the page has the same checks, warnings and messages.
+The data are those of microslip.predict. Thus the page has the same checks, warnings and messages.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
-    """Draw a line for each competitor: fraction of points against the ratio to the smallest cost."""
+    """Draw a line for each competitor: fraction of points against ratio to the smallest cost."""
     ratios = contest["profile_ratio"].transpose("competitor", "point").values
     high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
     names = contest["competitor"].values.astype(str)

@@ -138,7 +138,7 @@ def _points(dataset: xr.Dataset, poisson: float) -> xr.Dataset:
 
 
 def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return the cells at the smallest Poisson's ratio: outlines, shape (n, 2), and error bounds."""
+    """Return outlines, shape (n, 2), and error bounds of the cells at the smallest ratio."""
     coordinates = certified_map.coordinates_in(dataset)
     ends = [
         [dataset[name].values for name in certified_map.BORDERS[direction]]

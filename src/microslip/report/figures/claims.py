@@ -1,4 +1,4 @@
-"""Figures of the study `claims`: static limits, fractions of the friction bound, and stick zones."""
+"""Figures of the study `claims`: static limits, fractions of the friction bound, stick zones."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ AREAS = (
 
 
 def static(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw friction against the amplitude, and fractions of the friction bound against the radius."""
+    """Draw friction against the amplitude, and fractions of the bound against the radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
     for column, (motion, title, quantity, curves) in enumerate(MOTIONS):
@@ -112,7 +112,7 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """Draw points that stick, coloured by traction divided by bound, and points that slip, white."""
+    """Draw points that stick, coloured by traction divided by bound. Points that slip are white."""
     lateral, forward, share = columns(at, "patch_lateral", "patch_forward", "patch_share")
     line = np.linspace(-1.0, 1.0, PIXELS)
     x, y = np.meshgrid(line, line)

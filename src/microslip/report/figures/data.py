@@ -42,7 +42,7 @@ def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]
 
 
 def at_one_poisson(dataset: xr.Dataset) -> tuple[xr.Dataset, float]:
-    """Select the Poisson's ratio nearest 0, that of the paper. Returns the dataset and the ratio."""
+    """Select the Poisson's ratio nearest 0 (as in the paper). Returns the dataset and the ratio."""
     if "poisson" not in dataset.variables:
         return dataset, 0.0
     if "poisson" in dataset.dims:

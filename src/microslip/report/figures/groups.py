@@ -29,7 +29,7 @@ NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns for each number of maps. For all other numbers it is 3."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height of a row of maps for each number of columns, and total height of the margins, in inches."""
+"""Height in inches of a row of maps for each number of columns, and of the margins together."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Levels of the contours. There are fewer levels than on a large map."""
 BEYOND = 0.01

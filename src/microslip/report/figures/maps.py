@@ -149,7 +149,7 @@ def _curve(axes: Axes, parts: Cut, motion: str, name: str, **at: float) -> None:
     form, (color, ls) = FORMS[motion][name], CURVES[motion][name]
     label = form.label
     if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in parts):
-        label = r"limit at $\nu = 0$"  # it is exact for this ratio only
+        label = r"limit at $\nu = 0$"  # the closed form is exact for this ratio only
     x, y = curve(limit(parts[0][0], name), **at)
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 

@@ -128,7 +128,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def number(value: float) -> str:
-    """Format a number with three digits as mathtext. Large and small numbers have a power of ten."""
+    """Format a number with three digits as mathtext. A large or small one has a power of ten."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
@@ -169,7 +169,7 @@ def literal(text: str) -> str:
 
 
 def width(text: str, size: float) -> float:
-    """Return the width in inches of a text, which can contain mathtext, at a font size in points."""
+    """Return the width in inches of a text at a font size in points. The text can have mathtext."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
 
 

@@ -33,7 +33,7 @@ COSTS = {
 }
 """Variable and label of the abscissa of each figure."""
 COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
-"""Number of panels in a row. Width of a panel, and heights of a row and a legend line, in inches."""
+"""Number of panels in a row; width of a panel, height of a row and of a legend line, in inches."""
 BELOW_REFERENCE = 3.0
 """Errors below the error of the reference divided by this number are drawn at the bottom."""
 MOST = 1e6
