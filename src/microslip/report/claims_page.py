@@ -1,4 +1,4 @@
-"""The page of the study `claims`: verdicts, their numbers, and the commands that repeat each run.
+"""Write the page of the study `claims`: verdicts, their numbers, and commands to repeat the runs.
 
 The page is one self-contained HTML file, made from the dataset and the template claims.html.
 """

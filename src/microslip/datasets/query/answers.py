@@ -9,7 +9,7 @@ from microslip.datasets.variables import attributes, flag_attributes, link_error
 
 NEEDS = "microslip.at needs"
 LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
-"""Message for a dataset without a variable of a map."""
+"""Message if the dataset of a map lacks a variable."""
 SOURCES = (
     "map",
     "no vibration",

@@ -236,7 +236,7 @@ def within_the_balance(
     velocity: np.ndarray,
     amplitude: np.ndarray,
 ) -> tuple:
-    """Clip values and errors to the bounds from the energy balance; NaN remains NaN."""
+    """Clip values and errors to the bounds from the energy balance. NaN is not changed."""
     low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
     value = np.clip(value, low, 1.0)
     reach = np.maximum(1.0 - value, value - low) + ROUNDING

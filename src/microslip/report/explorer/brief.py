@@ -26,7 +26,7 @@ POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
 """Possible axes of a dataset besides Poisson's ratio."""
 DRIVE = "drive"
-"""Attribute of datasets with a drive."""
+"""Attribute that only datasets with a drive have."""
 SPARE_COLOURS = (style.SKY, style.GREY)
 NAMES = {
     name: form

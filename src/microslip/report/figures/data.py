@@ -59,7 +59,7 @@ def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
 
 
 def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float]:
-    """Reduce a dataset so that `mu_macro` has exactly the dimensions `dims`, ascending.
+    """Reduce a dataset so that `mu_macro` has the dimensions `dims` only, in ascending order.
 
     Returns the dataset and its Poisson's ratio. Raises ValueError if a dimension is missing, or if
     another dimension has more than one entry.

@@ -22,7 +22,7 @@ GOOD = 0.01
 AS_A_VELOCITY = 1e5
 """Smallest dimensionless stiffness that is labelled as a constant velocity."""
 MARGIN = 1.1
-"""Ratio of the ends of the axis to the first and the last velocity."""
+"""Factor by which the axis of the velocity extends beyond the first and the last velocity."""
 MU = ("mu_macro", "mu_macro_error", "converged")
 
 

@@ -22,7 +22,7 @@ CONDITIONS = {
     "row_load_N": ("load", "N"),
     "frequency_Hz": ("frequency", "Hz"),
 }
-"""Conditions that can differ between rows: name and SI unit."""
+"""Name and SI unit of the conditions that can differ between rows."""
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PARAMETERS = (
     (r"\mu", "mu{}", ""),
@@ -31,9 +31,9 @@ PARAMETERS = (
 )
 """Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
 BAND = 2.0
-"""Half width in standard errors of the band with about 95 % of the residuals."""
+"""Half the width of the band with about 95 % of the residuals, in standard errors."""
 WIDE = 10.0
-"""Ratio of the ends of an axis above which it is logarithmic."""
+"""An axis is logarithmic if the ratio of its ends is above this number."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

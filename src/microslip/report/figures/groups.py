@@ -115,7 +115,7 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
 def _label_maps(
     figure: Figure, grid: Sequence[Axes], dim: str, datasets: Sequence[xr.Dataset]
 ) -> None:
-    """Label an axis once for all panels if they share it, else on each panel."""
+    """Label an axis once if all panels have the same label, else on each panel."""
     texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
     if len(set(texts)) == 1:
         write = figure.supxlabel if dim == "velocity" else figure.supylabel

@@ -37,7 +37,7 @@ COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
 BELOW_REFERENCE = 3.0
 """Errors below the error of the reference divided by this number are drawn at the bottom."""
 MOST = 1e6
-"""Largest ratio of the ends of the axis of errors."""
+"""Largest ratio of the upper end of the axis of errors to its lower end."""
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 AS_CHEAP = 1.5
-"""Ratio of two measured times below which they count as equal."""
+"""Two measured times count as equal if their ratio is below this number."""
 
 
 def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:

@@ -12,7 +12,7 @@ from microslip.studies import requests
 from microslip.studies.ladders import exact_model
 
 PAPER_VELOCITY = 0.005
-"""Smallest velocity in the paper's maps of both motions."""
+"""Smallest velocity in the paper's maps of the two motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
 """Number of squares along a side in the paper, and of steps in a period of our run."""
 PAPER_TOLERANCE = 1e-3

@@ -43,7 +43,7 @@ Margin = Callable[[float, float], float]
 Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
 """Source of values. It yields the place, the value, the error estimate and the runs."""
 Amplitudes = Callable[[float], bool]
-"""Condition on an amplitude."""
+"""Function that returns True for the amplitudes that a part applies to."""
 
 
 def check(

@@ -1,4 +1,4 @@
-"""Runs behind the verdicts: results by request, and the command that repeats each of them."""
+"""Runs by which the verdicts are decided, and the command that repeats each run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
