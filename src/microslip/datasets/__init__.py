@@ -1,1 +1,1 @@
-"""Datasets: from records to xarray and netCDF, with limits from theory; interpolation."""
+"""Datasets in xarray and netCDF, built from records, with limits from theory and interpolation."""

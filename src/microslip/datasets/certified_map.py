@@ -1,12 +1,12 @@
-"""The dataset of a certified map: its points, and the cells for interpolation between them.
+"""The dataset of a certified map, with its points and the cells for interpolation between them.
 
     certified_transverse.nc     dims point, cell and node
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is the
-polynomial through its points: 5 along the velocity, 5 along the amplitude and 3 along Poisson's
-ratio if that is a direction.  cell_error bounds the error in the cell.  A map of drift is over
-force and amplitude, in the coordinates of sweeps.drift_coordinates; its cells interpolate
-asinh(velocity).  Equal records give equal bytes.
+polynomial through its points: 5 along the velocity, 5 along the amplitude and, if Poisson's ratio
+is a direction of the map, 3 along Poisson's ratio.  cell_error bounds the error in the cell.  A map
+of drift depends on force and amplitude, in the coordinates of sweeps.drift_coordinates, and its
+cells interpolate asinh(velocity).  Equal records give equal bytes.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     Raises
     ------
     KeyError
-        For a point without a record.
+        If a point has no record.
     """
     record_of = lookup(records := list(records))
     answers, cells = map_refinement.refine(map_, lambda requests: map(record_of, requests))
@@ -98,7 +98,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,
-        points=len(set(places)),  # a point between slow and fast cells can be two nodes
+        points=len(set(places)),  # points between slow and fast cells can occur twice
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
@@ -114,7 +114,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Lines of text: number of points, error bound of the map, cells with a larger error."""
+    """Yield lines of text: number of points, error bound of the map, cells with a larger error."""
     drifts = is_of_drift(dataset)
     values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
     failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
@@ -128,18 +128,18 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def is_of_drift(dataset: xr.Dataset) -> bool:
-    """True for a certified map of the velocity under a force."""
+    """Return True for a certified map of the velocity under a force."""
     return COORDINATES in dataset.attrs and "force" in dataset.attrs.get("directions", "").split()
 
 
 def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
-    """Coordinates of the map of a dataset; raises KeyError or ValueError if it has none."""
+    """Read the coordinates of a map; raises KeyError or ValueError if the dataset has none."""
     kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
     return kind.from_json(dataset.attrs[COORDINATES])
 
 
 def _point_variables(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
-    """Variables of the solved quantity and its error."""
+    """Return the variables of the solved quantity and of its error."""
     name, text = "mu_macro", MU_MACRO.description
     if map_.force is not None:
         name, text = "velocity", "mean forward velocity"
@@ -157,7 +157,7 @@ def _bound_of(map_: CertifiedMap) -> str:
 
 
 def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:
-    """Variables of the lower and upper ends of the cells, in scaled coordinates."""
+    """Return the variables with the lower and upper ends of the cells, in scaled coordinates."""
     ends, borders = np.array(cells), {}  # ends: (cell, lower or upper, direction)
     for i, direction in enumerate(coordinates.directions):
         text = "Poisson's ratio" if direction == "poisson" else direction

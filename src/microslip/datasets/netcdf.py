@@ -1,8 +1,8 @@
-"""Datasets to and from netCDF files with groups.
+"""Write datasets to netCDF files with groups, and read them.
 
-The root of a file holds the variables over the axes of the sweep, so that it converts to one table
-and joins with other files.  Variables over other axes, such as curves and single runs, are in
-groups, which are opened by name:
+The root of a file holds the variables with the axes of the sweep, so that it can be converted to
+one table and joined with other files.  Variables with other axes, such as curves and single runs,
+are in groups, which are opened by name:
 
     xr.open_dataset(path)                    # the root
     xr.open_dataset(path, group="history")   # one of its groups
@@ -25,22 +25,22 @@ Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
 
 def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """Divide a dataset into the dataset of the root and those of the groups.
+    """Divide a dataset into one dataset for the root of a file and one for each group.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         All variables.
     groups : mapping of str to (str, tuple of str)
-        Title and dimensions by the name of a group.  A variable goes to the first group that has
-        all its dimensions.
+        Title and dimensions of each group, by name.  A variable is assigned to the first group
+        that has all its dimensions.
 
     Returns
     -------
     root : xarray.Dataset
         Variables that fit no group or have no dimension, with all attributes of the dataset.
     parts : dict of xarray.Dataset
-        Datasets of the groups that are not empty, by name.
+        Datasets of the groups, by name.  Empty groups are omitted.
     """
     place = {}
     for name, variable in dataset.data_vars.items():
@@ -58,9 +58,9 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
 
 
 def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr.Dataset]) -> None:
-    """Write a root and its groups to a new netCDF-4 file; equal datasets give equal bytes.
+    """Write a root and its groups to a new netCDF-4 file.  Equal datasets give equal bytes.
 
-    The file is not written atomically; files.writing_beside does that.
+    The file is not written atomically.  Use files.writing_beside for that.
     """
     _append(root, path, mode="w")
     for group, part in parts.items():
@@ -84,18 +84,18 @@ def _encoding(name: Hashable, kind: str) -> dict:
 
 
 def characters_of(name: Hashable) -> str:
-    """Name of the dimension of characters of a text variable.
+    """Return the name of the character dimension of a text variable.
 
-    Each variable has its own, so that a selection of a dataset can be saved.
+    Each variable has its own character dimension, so that a selection of a dataset can be saved.
     """
     return f"characters_of_{name}"
 
 
 def refuse_oversized(path: str | os.PathLike[str]) -> None:
-    """Raise CacheError for a file that declares more values than it has bytes.
+    """Raise CacheError if a file declares more values than it has bytes.
 
-    xarray reads coordinates into memory when it opens a file, so that a damaged file could fill the
-    memory.  The data of a sweep hardly compress, so that a whole file has more bytes than values.
+    xarray reads coordinates into memory when it opens a file, so a damaged file could fill the
+    memory.  The data of a sweep hardly compress, so an intact file has more bytes than values.
     """
     size = os.stat(path).st_size
     with netCDF4.Dataset(path) as file:
@@ -114,16 +114,16 @@ def refuse_oversized(path: str | os.PathLike[str]) -> None:
 
 
 def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
-    """Names of the groups of a file, in their order."""
+    """Return the names of the groups of a file, in the order of the file."""
     with netCDF4.Dataset(path) as file:
         return tuple(file.groups)
 
 
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read root and groups of a file into one dataset in memory, with the attributes of the root.
+    """Read the root and all groups of a file into one dataset with the attributes of the root.
 
-    Raises CacheError for a file that declares more values than it has bytes, and the errors of
-    xarray for a file that is not netCDF.
+    Raises CacheError if the file declares more values than it has bytes, and the errors of xarray
+    if it is not a netCDF file.
     """
     refuse_oversized(path)
     with xr.open_dataset(path, engine="netcdf4") as file:

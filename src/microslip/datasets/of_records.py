@@ -1,4 +1,4 @@
-"""Datasets of single results: points, histories, periods, propulsion lines, predictions."""
+"""Convert single results to datasets: points, histories, periods, propulsion lines, predictions."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ AXES: dict[type, tuple[str, ...]] = {
     PropulsionLine: ("velocity",),
     Period: ("phase", "point"),
 }
-"""Axes of the datasets of records, by class."""
+"""Names of the axes of a dataset, by the class of the record."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound")
-"""Arrays of a Period that have one axis and are over its points."""
+"""Arrays of a Period whose only axis is `point`."""
 
 
 def to_xarray(record: object) -> xr.Dataset:
-    """Convert a result to a dataset: numbers and arrays to variables, texts to attributes.
+    """Convert a result to a dataset.  Numbers and arrays become variables, texts attributes.
 
     Parameters
     ----------
@@ -39,13 +39,14 @@ def to_xarray(record: object) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        History has the dimension `phase`, PropulsionLine `velocity`, Period `phase` and `point`,
-        and a response `row`; the others have none.  Fields that are None are left out.
+        The dimension of a History is `phase`, that of a PropulsionLine is `velocity`, and that of
+        a response is `row`.  A Period has the dimensions `phase` and `point`.  Other results have
+        no dimension.  Fields that are None are omitted.
 
     Raises
     ------
     InputError
-        For another type.
+        If the record has another type.
     """
     if isinstance(record, Response | RealResponse):
         columns = {
@@ -78,7 +79,7 @@ def to_xarray(record: object) -> xr.Dataset:
 
 
 def _axes_of(name: str, value: np.ndarray, axes: tuple[str, ...]) -> tuple[str, ...]:
-    """Names of the axes of an array."""
+    """Return the names of the axes of the array of a field."""
     if value.ndim == 2:
         return axes
     return (axes[1],) if name in OF_POINTS and len(axes) == 2 else (axes[0],)

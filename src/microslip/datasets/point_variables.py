@@ -1,4 +1,4 @@
-"""Variables of the points of a sweep, written to its dataset block by block.
+"""Write the variables of the points of a sweep to its dataset, block by block.
 
 At most BLOCK points are in memory at a time.
 """
@@ -36,16 +36,16 @@ POINT_VARIABLES = {
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge"),
 }
-"""Variables over the axes of a sweep: name -> (type, long_name).
+"""Variables with the axes of a sweep: name -> (type, long_name).
 
-A count that does not apply is 0.  A long_name is short enough for the axis of a plot; the attribute
-`description`, from DESCRIPTIONS, explains the others.
+A count that does not apply is 0.  A long_name is short enough for the axis of a plot.  Variables
+that need a longer explanation have the attribute `description`, see DESCRIPTIONS.
 """
 VELOCITY_VARIABLES = {
     "velocity": (float, "mean forward velocity"),
     "velocity_error": (float, "estimated error of velocity"),
 }
-"""Further variables of a sweep over forces, where mu_macro equals the force."""
+"""Additional variables of a sweep over forces, in which mu_macro equals the force."""
 TORQUE = "torque over its value at velocity 0"
 TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
@@ -55,8 +55,8 @@ CHANGES = {
     "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest nu"),
     "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
 }
-"""Further variables of a sweep over Poisson's ratios, relative to the smallest ratio:
-name -> (variable, factor of its value at the smallest ratio, long_name)."""
+"""Changes of variables from the smallest Poisson's ratio, in a sweep over Poisson's ratios:
+name -> (variable, factor of its value at the smallest ratio in the sum, long_name)."""
 DESCRIPTIONS = {
     "error_resolution": "part of mu_macro_error from cells, angles and time steps",
     "error_periodicity": "part of mu_macro_error from the distance to the periodic state",
@@ -76,9 +76,9 @@ DESCRIPTIONS = {
 MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 WIDTHS = {"model": 32, "reason": 256}
-"""Number of bytes of a text in a dataset; longer texts are cut, see `_text`."""
+"""Maximum number of bytes of a text variable.  Longer texts are cut, see `_text`."""
 BLOCK = 4096
-"""Number of points that are written together, and of a chunk of larger datasets."""
+"""Number of points in a block that is written at once, and in a chunk of a large dataset."""
 Box = tuple[slice, ...]
 """A block of a grid: a slice for each axis."""
 
@@ -95,7 +95,7 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     axes : dict
         Coordinates by dimension, in the order of the dimensions of the variables.
     points : iterable of dict
-        Records in the order of the grid.
+        Records of the points, in the order of the grid.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     Raises
     ------
     ValueError
-        If the number of records differs from that of the points.
+        If the number of records differs from the number of points.
     """
     table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
     if not sweep.velocity:
@@ -137,7 +137,10 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
 
 
 def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
-    """Write CHANGES: the change of mu_macro from the smallest Poisson's ratio, and its error."""
+    """Write CHANGES, the change of mu_macro from the smallest Poisson's ratio and its error.
+
+    box: as for `_create`.
+    """
     file.set_auto_mask(False)
     for name, (source, sign, long_name) in CHANGES.items():
         _create(file, name, float, long_name, dims, box)
@@ -148,7 +151,7 @@ def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) 
 
 
 def _boxes(shape: tuple[int, ...]) -> Iterator[Box]:
-    """Blocks of at most BLOCK points that fill a grid in C order."""
+    """Yield blocks of at most BLOCK points that fill a grid in C order."""
     whole = len(shape)
     while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
         whole -= 1  # the axes from `whole` on are not cut
@@ -172,7 +175,7 @@ def _create(
     dims: tuple[str, ...],
     box: Box | None,
 ) -> None:
-    """Create an empty variable; box: a block of the size of its chunks, None for no chunks."""
+    """Create an empty variable.  box: a block of the size of its chunks, or None for no chunks."""
     stored: Any = {bool: np.int8, str: "S1"}.get(kind, kind)
     chunks = None if box is None else tuple(part.stop - part.start for part in box)
     more: dict[str, Any] = {}
@@ -195,7 +198,7 @@ def _create(
 
 
 def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
-    """Values of a variable in records, as an array; texts become bytes along a further axis."""
+    """Return the values of a variable in records.  Texts become bytes along an additional axis."""
     values = [record["result"].get(name) for record in block]
     filled = [MISSING[kind] if value is None else value for value in values]
     if kind is str:
@@ -205,7 +208,7 @@ def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
 
 
 def _text(value: str, width: int) -> bytes:
-    """Encode a text in at most `width` bytes; a longer text is cut and ends with dots."""
+    """Encode a text in at most `width` bytes.  A longer text is cut and ends with dots."""
     coded = value.encode()
     if len(coded) <= width:
         return coded

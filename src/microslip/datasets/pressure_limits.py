@@ -1,7 +1,7 @@
-"""Closed forms for other pressures than Hertz's, as in theory.catalogue.
+"""Closed forms for pressures other than that of a sphere, with the types of theory.catalogue.
 
-There are closed forms for any pressure (Eqs 6 and 7), for axisymmetric indenters, and for elliptic
-Hertz contacts, which share some with circular ones.
+Some closed forms are valid for any pressure (Eqs 6 and 7), others for axisymmetric indenters.  Some
+closed forms of circular Hertz contacts are also valid for elliptic ones.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ ZONE = replace(
 
 
 def formulas_under(motion: str, name: str) -> dict:
-    """Closed forms of a motion under a pressure, both by name: dict of ClosedForm by name."""
+    """Return a dict of the closed forms by name, for the names of a motion and a pressure."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     if motion == "continuous-bore" and pressure.is_round:
         return _steady(pressure, of_sphere)
@@ -38,7 +38,9 @@ def formulas_under(motion: str, name: str) -> dict:
         zone, static = _of_indenter(motion, pressure)
         exact = replace(exact, function=_each(static))
     elif pressure.hertzian and motion != "bore":
-        zone = paper.static_transverse  # an elliptic stick zone carries the same share of the load
+        zone = (
+            paper.static_transverse
+        )  # an elliptic stick zone carries the same fraction of the load
         exact = replace(exact, function=_each(exact.function))
     else:
         return forms
@@ -47,7 +49,7 @@ def formulas_under(motion: str, name: str) -> dict:
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
-    """Static friction of an indenter, of the whole stick zone and exact: functions of amplitude."""
+    """Return two functions of the amplitude: static friction of the whole stick zone, and exact."""
     if motion == "bore":
 
         def stick_radius(amplitude: float) -> float:
@@ -83,7 +85,7 @@ def _load_inside(pressure: Pressure, radius: float) -> float:
 
 
 def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
-    """Closed forms of the steady bore: Eqs 17 and 18 in place of Eqs 21 and 22."""
+    """Return the closed forms of the steady bore, with Eqs 17 and 18 instead of Eqs 21 and 22."""
     forms = {}
     for part, (name, form) in enumerate(of_sphere.items()):
         equation, what = (("Eq 17", "mu_macro"), ("Eq 18", "mu_torque"))[part]

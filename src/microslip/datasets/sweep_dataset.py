@@ -1,9 +1,9 @@
-"""The dataset of a sweep, an xarray Dataset in a netCDF file.
+"""Write the dataset of a sweep to a netCDF file.
 
-Every dataset follows the CF conventions.  It holds the limits from theory as variables, and its
-attributes record its provenance.  The root of a file is the map; finer curves and single runs are
-in groups (see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes: a file
-does not depend on the time, the computer or the number of jobs.
+Every dataset follows the CF conventions.  It contains the limits from theory as variables, and its
+attributes record its provenance.  The root of a file contains the map; fine curves and single runs
+are in groups (see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes:
+a file does not depend on the time, the computer or the number of jobs.
 """
 
 import os
@@ -35,8 +35,9 @@ def write_sweep(
 ) -> None:
     """Write the dataset of a sweep to a netCDF-4 file, atomically.
 
-    The root has the dimensions (poisson, amplitude, velocity), without amplitude for a steady
-    motion and without poisson unless that is an axis.  Variables over other axes are in GROUPS.
+    The root has the dimensions (poisson, amplitude, velocity).  A steady motion has no dimension
+    `amplitude`, and a sweep at one Poisson's ratio has no dimension `poisson`.  Variables with
+    other axes are in GROUPS.
 
     Parameters
     ----------
@@ -45,16 +46,16 @@ def write_sweep(
     sweep : records.Sweep
         The sweep.
     points : iterable of dict
-        Records in the order of batches.PointRequests, read in blocks.
+        Records of the points in the order of batches.PointRequests.  They are read in blocks.
     histories : list of dict
-        Records in the order of batches.history_requests.
+        Records of single runs in the order of batches.history_requests.
     settings : dict
         Settings of the configuration, stored as provenance.
 
     Raises
     ------
     ValueError
-        If the number of records differs from that of the points.
+        If the number of records differs from the number of points.
     CacheError
         If the file cannot be written.
     """
@@ -90,11 +91,11 @@ GROUPS = {
     "field": "Tractions all over the contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
-"""Titles of the groups in the file of a sweep; a motion has some of them."""
+"""Titles of the groups in the file of a sweep.  Each motion has only some of the groups."""
 
 
 def _root(sweep: Sweep) -> xr.Dataset:
-    """Dataset of the axes and the limits from theory, without the points."""
+    """Return the dataset of the axes and the limits from theory, without the points."""
     coords: dict[str, tuple] = {
         name: (name, np.array(values)) for name, values in _axes(sweep).items()
     }
@@ -107,7 +108,7 @@ def _root(sweep: Sweep) -> xr.Dataset:
 
 
 def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
-    """Datasets of the GROUPS that a sweep has, by name."""
+    """Return the datasets of the groups of a sweep, by the names in GROUPS."""
     variables = theory_limits.curves(sweep) | _single_runs(sweep, histories)
     about = {"motion": solver_names(sweep)[0]}
     return {
@@ -118,7 +119,7 @@ def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
 
 
 def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
-    """Attributes with the provenance of a dataset.
+    """Return the attributes with the provenance of a dataset.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
     versions : set of str
         Versions of the libraries that computed the results.
     **more : object
-        Further attributes.
+        Additional attributes.
     """
     return {
         "Conventions": CONVENTIONS,
@@ -148,16 +149,16 @@ def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = No
     """Write a dataset to a netCDF-4 file, atomically.
 
     groups: groups of the file, as for `netcdf.divide`.  Equal datasets give equal bytes.  Raises
-    CacheError if the file cannot be written; its one line recommends a remedy.
+    CacheError, with a message of one line, if the file cannot be written.
     """
     with writing_beside(path) as beside:
         netcdf.write(beside, *netcdf.divide(dataset, groups or {}))
 
 
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
-    """Lines of text: the number of points, and a line for each point that did not converge.
+    """Yield lines of text: the number of points, and a line for each point that did not converge.
 
-    name: name of the sweep; the motion by default.
+    name: name of the sweep, by default that of the motion.
     """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
@@ -181,7 +182,7 @@ def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
 
 
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
-    """Set the attributes of the axes; `formula` is the definition of a coordinate."""
+    """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
     motion = motion_named(sweep.motion)
     axes = [(VELOCITY, motion.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
@@ -204,7 +205,7 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
 
 
 def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
-    """Variables of the groups of single runs: dict by group of dict by variable."""
+    """Return a dict of variables for each group of single runs, by the name of the group."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # `report` lists failed runs
     if sweep.motion == "transverse":

@@ -1,7 +1,7 @@
 """Limits from theory in the dataset of a sweep.
 
-Each closed form of theory.catalogue is a variable on the axes of the sweep, for comparison with the
-points, and a curve on a fine axis, for drawing.
+Each closed form of theory.catalogue is stored twice: at the points of the sweep, for comparison,
+and on a fine axis, for drawing.
 """
 
 import numpy as np
@@ -16,9 +16,9 @@ CURVE_POINTS = 241
 
 
 def formulas(motion: str, pressure: str = "hertz") -> dict:
-    """Closed forms of a motion under a pressure, both by name.
+    """Return the closed forms for the names of a motion and a pressure.
 
-    Returns a dict of catalogue.ClosedForm by name, empty if there are none.
+    The result is a dict of catalogue.ClosedForm by name.  It is empty if no closed form is known.
     """
     if pressure == "hertz":
         return catalogue.FORMS.get(motion, {})
@@ -28,9 +28,9 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Closed forms that are valid for a sweep; under a drive those of the amplitude alone."""
+    """Return the closed forms for a sweep.  With a drive they depend on the amplitude only."""
     if sweep.contacts is not None:
-        return {}  # closed forms hold for one contact
+        return {}  # closed forms are valid for one contact
     forms = formulas(*solver_names(sweep))
     if sweep.drives:
         forms = {name: form for name, form in forms.items() if form.arguments == ("amplitude",)}
@@ -38,7 +38,7 @@ def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
 
 
 def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Closed forms of the drift velocity, for a sweep over forces."""
+    """Return the closed forms of the drift velocity, for a sweep over forces."""
     motion, pressure = solver_names(sweep)
     form = catalogue.DRIFT_FORMS.get(motion)
     if sweep.contacts is not None:
@@ -55,11 +55,11 @@ def _axis(sweep: Sweep, dim: str) -> np.ndarray:
 
 
 def variables(sweep: Sweep) -> dict:
-    """Closed forms on the axes of a sweep: name -> (dims, values, attributes)."""
+    """Evaluate the closed forms at the points of a sweep: name -> (dims, values, attributes)."""
     limits = {}
     for name, form in (_forms(sweep) | _drift_forms(sweep)).items():
         axes = [_axis(sweep, dim) for dim in form.arguments]
-        # meshgrid and the datasets put the first argument last
+        # In meshgrid and in the datasets, the first argument is the last dimension.
         values = form.function(*np.meshgrid(*axes))
         about: dict = {"description": form.description} if form.description else {}
         limits[name] = variable(form.arguments[::-1], values, form.long_name, **about)
@@ -67,10 +67,10 @@ def variables(sweep: Sweep) -> dict:
 
 
 def curves(sweep: Sweep) -> dict:
-    """Closed forms on fine axes, in the groups `velocity_curves` and `amplitude_curves`.
+    """Evaluate the closed forms on fine axes, for `velocity_curves` and `amplitude_curves`.
 
-    Each has a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`.  One that depends
-    on both is evaluated at the largest amplitude.
+    Each closed form becomes a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`.
+    A closed form that depends on both is evaluated at the largest amplitude.
     """
     groups: dict[str, dict] = {}
     for name, form in _forms(sweep).items():
@@ -87,10 +87,13 @@ def curves(sweep: Sweep) -> dict:
 
 
 def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
-    """Fine axis over the range of an axis; velocities in equal ratios from the smallest above 0."""
+    """Return a fine axis over the range of an axis.
+
+    Velocities have equal ratios and start at the smallest velocity above 0.
+    """
     positive = axis[axis > 0.0]
     if dim == "velocity" and len(positive):
-        # twelve digits, so that rounding of logarithms does not depend on the machine
+        # Rounding to twelve digits, because the last digits of logarithms depend on the machine.
         spaced = np.geomspace(positive[0], axis[-1], CURVE_POINTS)
         return np.array([float(f"{v:.12g}") for v in spaced])
     return np.linspace(axis[0], axis[-1], CURVE_POINTS)

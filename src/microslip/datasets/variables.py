@@ -9,15 +9,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
-"""Attribute of a variable with the name of the variable of its error."""
+"""Attribute of a variable that contains the name of the variable with its error."""
 
 
 def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
-    """Attributes of a variable of type `kind`; flags: meanings of False and True."""
+    """Return the attributes of a variable of type `kind`.  flags: meanings of False and True."""
     if kind is str:
         return {"long_name": long_name}
     if kind is bool:
-        # Stored as bytes, which xarray reads as bool.
+        # Booleans are stored as bytes, which xarray reads as bool.
         values = np.array([0, 1], np.int8)
         return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
     return {"long_name": long_name, "units": units}
@@ -31,7 +31,10 @@ def variable(
     units: str = "1",
     **more: str,
 ) -> tuple:
-    """A variable as a tuple for xarray.Dataset; kind: type of the values; more: attributes."""
+    """Return a variable as a tuple for xarray.Dataset.
+
+    kind: type of the values; more: additional attributes.
+    """
     values = np.array(values).astype(object if kind is str else kind)
     return dims, values, attributes(kind, long_name, units) | more
 
@@ -39,25 +42,25 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """A variable of codes, indices of `meanings`, as a tuple for xarray.Dataset."""
+    """Return a variable of codes as a tuple for xarray.Dataset; codes are indices of `meanings`."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 
 
 def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
-    """Attributes of a variable of codes, indices of `meanings`."""
+    """Return the attributes of a variable of codes.  Codes are indices of `meanings`."""
     numbers = np.arange(len(meanings), dtype=np.int8)
     words = " ".join(name.replace(" ", "_") for name in meanings)
     return {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}
 
 
 def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
-    """Attribute that links a variable to its error, if the error is among the names; else {}."""
+    """Return the attribute that links a variable to its error, or {} if `names` lacks the error."""
     error = f"{name}_error"
     return {ANCILLARY: error} if error in names else {}
 
 
 def link_errors(dataset: xr.Dataset) -> xr.Dataset:
-    """Copy of a dataset in which every variable is linked to its error."""
+    """Return a copy of a dataset in which every variable is linked to its error."""
     linked = dataset.copy()
     for name in linked.variables:
         linked[name].attrs |= error_of(name, linked.variables)

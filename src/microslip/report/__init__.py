@@ -1,1 +1,1 @@
-"""Figures and pages from datasets. Nothing is computed here."""
+"""Figures and pages of datasets. This package computes no results."""

@@ -1,4 +1,4 @@
-"""The page of the study `claims`: verdicts, their numbers, and the commands that repeat each run.
+"""Write the page of the study `claims`: verdicts, their numbers, and commands to repeat the runs.
 
 The page is one self-contained HTML file, made from the dataset and the template claims.html.
 """
@@ -23,7 +23,7 @@ MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of a dataset to a file; lines: log of collecting it.
+    """Write the page of a dataset to a file. lines: log of the collection of the dataset.
 
     Raises CacheError if the file cannot be written.
     """
@@ -31,7 +31,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """The text of the page. It depends on the arguments only."""
+    """Return the text of the page, which depends on the arguments only."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = {"number": _number, "with_error": _with_error, "is_finite": np.isfinite}
     environment.filters.update(filters)
@@ -56,9 +56,9 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Entries along a dimension: the coordinate as `name`, and variables without a prefix.
+    """Return the entries along a dimension. The coordinate of an entry is its attribute `name`.
 
-    prefix: removed from the names of variables, by default the name of the dimension.
+    prefix: text that is removed from the names of variables, by default the name of the dimension.
     """
     columns = {
         name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
@@ -70,7 +70,7 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """Runs by name, with their row on the page and a description."""
+    """Return the runs by name, with a description and the row of each run on the page."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row
@@ -85,7 +85,7 @@ def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
 
 
 def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[SimpleNamespace]:
-    """Parts of all claims, each with its checks and the decisive one."""
+    """Return the parts of all claims, each with its checks and the decisive check."""
     checks, parts = _records(dataset, "check"), _records(dataset, "part")
     for check in checks:
         check.run, check.other_run = runs[check.run], runs.get(check.other_run)
@@ -96,7 +96,7 @@ def _parts(dataset: xr.Dataset, runs: dict[str, SimpleNamespace]) -> list[Simple
 
 
 def _decisive(checks: list[SimpleNamespace]) -> SimpleNamespace | None:
-    """The clearest check against a part, else the narrowest check in favour of it."""
+    """Return the check that fails most clearly, else the check that holds most narrowly."""
     for outcome in ("fails", "holds"):
         deciding = [check for check in checks if OUTCOMES[check.outcome] == outcome]
         if deciding:
@@ -109,7 +109,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """A number and its error estimate, with the significant digits."""
+    """Return a number with its significant digits and its error estimate as text."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):
@@ -120,7 +120,10 @@ def _with_error(value: float, error: float) -> str:
 
 
 def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
-    """The table of the static limit: rows by amplitude, and excess of the formulas."""
+    """Return the table of the static limit, with a row for each amplitude.
+
+    It also has the excess of each formula over the limit.
+    """
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     gaps = [
         (equation, *(float(dataset[f"{motion}_gap_{name}{end}"]) for end in ("", "_at")))

@@ -1,4 +1,4 @@
-"""A page that describes a dataset: contents and provenance."""
+"""Write a page that describes the contents and the provenance of a dataset."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ import yaml
 from microslip.foundation.files import write_atomically
 
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
-"""Variables whose ranges are on the page."""
+"""Variables whose smallest and largest values are on the page."""
 MOST_LINES = 40
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of a dataset to a file; lines: log of collecting it.
+    """Write the page of a dataset to a file. lines: log of the collection of the dataset.
 
     Raises CacheError if the file cannot be written.
     """
@@ -30,7 +30,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """The text of the page. It depends on the arguments only."""
+    """Return the text of the page, which depends on the arguments only."""
     shown = lines[:MOST_LINES]
     if len(lines) > MOST_LINES:
         shown.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")
@@ -42,7 +42,7 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 def provenance(
     dataset: xr.Dataset, lines: Sequence[str] = (), without: Sequence[str] = ("title",)
 ) -> Iterator[str]:
-    """Lines with the attributes except `without`, then `lines`, then the configuration."""
+    """Return lines with the attributes (except `without`), `lines` and the configuration."""
     attributes = {name: value for name, value in dataset.attrs.items() if name not in without}
     configuration = json.loads(attributes.pop("configuration", "{}"))
     yield from (f"  {name}: {value}" for name, value in attributes.items())

@@ -1,4 +1,4 @@
-"""The page of a study."""
+"""Write the page of a study."""
 
 import os
 
@@ -7,11 +7,11 @@ import xarray as xr
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
-"""Modules of studies with a special page."""
+"""Modules that write the page of a study. All other studies have a page of `dataset_page`."""
 
 
 def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
-    """Write the page of a study's dataset to a file; lines: log of collecting it.
+    """Write the page of a study to a file. lines: log of the collection of its dataset.
 
     Raises CacheError if the file cannot be written.
     """

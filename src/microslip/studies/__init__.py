@@ -1,1 +1,1 @@
-"""Studies of accuracy and cost, of the stability of methods, and of the paper's claims."""
+"""Studies of accuracy and cost, stability of methods, claims of the paper, and propulsion."""

@@ -1,7 +1,7 @@
 """Ladders: resolutions of each model, from coarse to fine, and the models of each motion.
 
-Cells, angles and steps are refined together, so that their errors fall together. The file of a
-method can fix a model and a resolution for this method.
+Cells, angles and steps are refined together, so that their errors decrease together. The file of a
+method can prescribe a model and a resolution for this method.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,8 @@ from microslip.solver.method_names import SHIPPED, declared, missing, split
 
 
 class Level(NamedTuple):
-    """Cells (rings, or squares along a side), angles on half the disc, and steps in a period."""
+    """Resolution of a run: cells (rings, or squares along a side), angles on half the disc, and
+    time steps in a period."""
 
     cells: int
     angles: int
@@ -19,7 +20,7 @@ class Level(NamedTuple):
 
 
 def _doubled(cells: int, angles: int, steps: int, count: int) -> tuple[Level, ...]:
-    """`count` levels; each number doubles from level to level, except that 1 stays 1."""
+    """Return `count` levels. Each number doubles from level to level, except that 1 stays 1."""
     return tuple(
         Level(*(1 if n == 1 else n * 2**k for n in (cells, angles, steps))) for k in range(count)
     )
@@ -37,16 +38,16 @@ LADDERS = {
     ),
     "cartesian": _doubled(8, 1, 16, 4),
 }
-"""Levels by model. Squares have few levels, because they are by far the most expensive."""
+"""Levels of each model. Squares have few levels, because they are by far the most expensive."""
 
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels by model for methods that are not shipped, which can be slow or use dense
-matrices."""
+"""Number of levels of each model for all methods except the shipped one. These methods can be slow
+or use dense matrices."""
 
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""Distance of a run from its periodic state, over mu F_z: its value at the first level, and the
-power of the number of steps with which it falls. It is below the discretisation error of every
-level (rings at nu = 0: 1e-4 to 1e-6)."""
+"""Tolerance of the periodic state, as a force divided by mu F_z: its value at the first level, and
+the exponent with which it decreases with the number of steps. At every level it is below the
+discretisation error (rings at nu = 0: 1e-4 to 1e-6)."""
 
 
 TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
@@ -54,18 +55,18 @@ TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
 
 
 def models_of(motion: str, poisson: float) -> list[str]:
-    """Names of the models of a motion at a Poisson's ratio, from crude to expensive."""
+    """Return the names of the models of a motion at a Poisson's ratio, from coarse to expensive."""
     allowed = MODELS_OF_MOTION[motion]
     return [m for m in LADDERS if m in allowed and (m != "radial" or poisson == 0)]
 
 
 def exact_model(motion: str, poisson: float) -> str:
-    """The model that `model="auto"` selects: rings if they apply, else angular points."""
+    """Return the model that `model="auto"` selects: rings if they apply, else angular points."""
     return "radial" if "radial" in models_of(motion, poisson) else "polar"
 
 
 def ladder(model: str, method: str, count: int) -> list:
-    """List of at most `count` tuples (number of the level, Level, tolerance) for a method."""
+    """Return at most `count` tuples (number of the level, Level, tolerance) for a method."""
     name, _ = split(method)
     own = declared(name, "resolution")
     if own is not None:
@@ -81,10 +82,11 @@ def ladder(model: str, method: str, count: int) -> list:
 
 
 def models_for(method: str, motion: str, poisson: float) -> list[str]:
-    """Models that a method is run on: all models for the shipped method, else one.
+    """Return the models with which a method is run.
 
-    The one model is that of the method, or the model that `model="auto"` selects. The list is empty
-    if the method does not support rotations, or if a package that it requires is not installed.
+    The shipped method is run with all models. Any other method is run with the model of its file,
+    or with the model that `model="auto"` selects. The list is empty if the method does not support
+    the motion, or if a package that the method requires is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:

@@ -1,9 +1,9 @@
-"""Studies: cost of accuracy, failures of methods, claims of the paper, and propulsion.
+"""All studies: cost of accuracy, failures of methods, claims of the paper, and propulsion.
 
-Each study has a package with two modules. The module of its requests (`accuracy_cost`, `stability`,
-`claims`, `propulsion`) is plain data and imports nothing heavy, because the workflow reads it at
-every start. The module `dataset` builds a dataset from the results. `ladders` holds the resolutions
-of the models, `requests` the forms of the requests.
+Each study has a package with two modules. The first one (`accuracy_cost`, `stability`, `claims` or
+`propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
+every start. The second one, `dataset`, builds a dataset from the results. The modules `ladders`
+(resolutions of the models) and `requests` (forms of the requests) are common to the studies.
 """
 
 from __future__ import annotations
@@ -24,34 +24,35 @@ DATASETS = {
     "claims": "claims",
     "propulsion": "propulsion",
 }
-"""Studies, named as in the configuration, and the names of their datasets and request modules."""
+"""Names of the dataset and the request module of each study, by the name in the configuration."""
 
 
 def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
-    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
+    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
     return _module(study, DATASETS[study]).pieces(getattr(configuration, study))
 
 
 def settings(study: str, configuration: Configuration) -> dict:
-    """All settings that the dataset of a study depends on, as a dict for JSON."""
+    """Return all settings that affect the dataset of a study, as a dict for JSON."""
     return getattr(configuration, study).model_dump()
 
 
 def build(study: str, configuration: Configuration, answer: Callable) -> object:
-    """Assemble the xarray.Dataset of a study.
+    """Build the xarray.Dataset of a study.
 
-    configuration: records.Configuration. answer(request) -> record, see microslip.sweeps.batches.
+    configuration: records.Configuration; answer: function that returns the record of a request, see
+    microslip.sweeps.batches.
     """
     return _module(study, "dataset").build(getattr(configuration, study), answer)
 
 
 def groups(study: str) -> dict:
-    """Groups in the file of a dataset, as for netcdf.divide: title and dims by name."""
+    """Return title and dimensions of the groups of a dataset by name, as for netcdf.divide."""
     return _module(study, "dataset").GROUPS
 
 
 def report(study: str, dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text that summarise the dataset of a study."""
+    """Yield lines of text that summarise the dataset of a study."""
     return _module(study, "dataset").report(dataset)
 
 

@@ -1,13 +1,15 @@
-"""Requests of the studies: plain dicts with numbers as canonical strings, see sweeps.batches.
+"""Requests of the studies, as dicts with numbers as canonical strings (see sweeps.batches).
+
+The kinds of requests are:
 
 - trial: a timed run at a point, with a model, a method and a resolution;
-- choice: a timed solve at a tolerance, which selects its own model and resolution;
-- probe: a solve with another method, not timed;
-- point: a point of a sweep at a tight tolerance, the reference of the others;
+- choice: a timed solve at a tolerance, which selects the model and the resolution itself;
+- probe: a solve with another method, without a measurement of time;
+- point: a solve at a tight tolerance, which is the reference of the other requests;
 - propulsion: the force-velocity line of a self-propelled motion;
 - scaling: the cost of a step at one size.
 
-Timed requests (trial, choice, scaling) contain the model of the CPU, so that times of different
+Timed requests (trial, choice, scaling) contain the name of the CPU. Therefore times of different
 CPUs have different keys and are not drawn in one chart.
 """
 
@@ -18,13 +20,14 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references: with rings, which are cheap, and with angular points."""
+"""Tolerances of references with rings, which are cheap, and with angular points."""
 MOST_WORK = 5_000_000
-"""Limit of step solves times unknowns of a probe: several times the work of the shipped method."""
+"""Budget of a probe, as step solves times unknowns. It is several times the work of the shipped
+method."""
 
 
 class Point(NamedTuple):
-    """A point of a motion, in dimensionless numbers; the amplitude is None for a steady motion."""
+    """A motion with its dimensionless parameters. The amplitude of a steady motion is None."""
 
     motion: str
     velocity: float
@@ -33,7 +36,7 @@ class Point(NamedTuple):
 
 
 def of_point(point: Point) -> dict:
-    """The entries of a request that describe the point."""
+    """Return the entries of a request that describe the point."""
     return {
         "motion": point.motion,
         "velocity": number(point.velocity),
@@ -45,7 +48,10 @@ def of_point(point: Point) -> dict:
 def trial(
     point: Point, model: str, method: str, level: Level, tolerance: float, repeats: int
 ) -> dict:
-    """Request for a timed run at a ladders.Level. The steps of a steady motion are None."""
+    """Return the request for a timed run at a level of a ladder (ladders.Level).
+
+    The number of steps of a steady motion is None.
+    """
     return of_point(point) | {
         "kind": "trial",
         "cpu": cpu_model(),
@@ -60,7 +66,7 @@ def trial(
 
 
 def choice(point: Point, tolerance: float, repeats: int) -> dict:
-    """Request for a timed solve at a tolerance."""
+    """Return the request for a timed solve at a tolerance."""
     kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
     return of_point(point) | kind | {"repeats": repeats}
 
@@ -68,9 +74,9 @@ def choice(point: Point, tolerance: float, repeats: int) -> dict:
 def probe(
     point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
 ) -> dict:
-    """Request for a solve with another method, which takes at most MOST_WORK.
+    """Return the request for a solve with another method, with the budget MOST_WORK.
 
-    cells, steps: imposed resolution; None: chosen by the tolerance.
+    cells, steps: imposed resolution. If it is None, the tolerance determines the resolution.
     """
     kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
     budget = {"most_work": MOST_WORK}
@@ -78,7 +84,10 @@ def probe(
 
 
 def reference(point: Point, tolerance: float | None = None) -> dict:
-    """Request for a point; tolerance: by default RINGS_TOLERANCE or TOLERANCE, by its model."""
+    """Return the request for the reference of a point.
+
+    tolerance: by default RINGS_TOLERANCE if the model is rings, else TOLERANCE.
+    """
     if tolerance is None:
         rings = exact_model(point.motion, point.poisson) == "radial"
         tolerance = RINGS_TOLERANCE if rings else TOLERANCE
@@ -87,6 +96,6 @@ def reference(point: Point, tolerance: float | None = None) -> dict:
 
 
 def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
-    """Request for the cost of a step at a resolution, measured over a period of `steps` steps."""
+    """Return the request for the cost of a step, measured over a period of `steps` steps."""
     sizes = {"cells": cells, "angles": angles, "steps": steps}
     return {"kind": "scaling", "cpu": cpu_model(), "model": model, "poisson": "0"} | sizes

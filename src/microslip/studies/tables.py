@@ -1,4 +1,4 @@
-"""Functions that all datasets of studies share: results by request, tables, provenance."""
+"""Functions for the datasets of all studies: results of requests, tables, and provenance."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Kind = TypeVar("Kind")
 
 
 class Answers:
-    """Results by request.
+    """Results of requests.
 
-    Collects the keys of the results, the versions of the libraries that computed them, and the
-    computers that times were measured on (machines, a list of dicts).
+    The object collects the keys of the results, the versions of the libraries that computed them,
+    and the computers on which times were measured (`machines`, a list of dicts).
 
-    answer(request) -> record, see microslip.sweeps.batches.
+    answer: function that returns the record of a request, see microslip.sweeps.batches.
     """
 
     def __init__(self, answer: Callable):
@@ -32,7 +32,7 @@ class Answers:
         self.machines: list[dict] = []
 
     def record(self, request: dict) -> dict:
-        """The record of a request."""
+        """Return the record of a request."""
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
@@ -45,7 +45,10 @@ class Answers:
         return self.record(request)["result"]
 
     def machine_of(self, result: dict) -> int:
-        """Index in `machines` of the computer that a time was measured on; -1 without a time."""
+        """Return the index in `machines` of the computer on which a time was measured.
+
+        If there is no time, the index is -1.
+        """
         machine = result.get("machine")
         return self.machines.index(machine) if machine in self.machines else -1
 
@@ -59,7 +62,10 @@ def value_of(result: dict, name: str, kind: type[Kind]) -> Kind: ...
 
 
 def value_of(result: dict, name: str, kind: type = float) -> Any:
-    """A value of a result, converted to `kind`; a missing value is NaN, 0, False or empty text."""
+    """Return a value of a result, converted to `kind`.
+
+    A missing value is NaN, 0, False or an empty text.
+    """
     value = result.get(name)
     if value is None:
         return np.nan if kind is float else kind()
@@ -69,10 +75,10 @@ def value_of(result: dict, name: str, kind: type = float) -> Any:
 def table(
     dim: str | tuple[str, ...], rows: Iterable[tuple], columns: dict[str, tuple]
 ) -> dict[str, tuple]:
-    """Variables over rows, as xarray.Dataset takes them.
+    """Return the variables of a table as arguments of xarray.Dataset.
 
-    columns: name -> (function of the items of a row, long_name, kind, units). The defaults of kind
-    and units are those of `variable`.
+    columns: name -> (function of the items of a row, long_name, kind, units). kind and units have
+    the defaults of `variable`.
     """
     rows = list(rows)
     return {
@@ -89,11 +95,11 @@ def finished(
     coordinates: Iterable[str] = (),
     **attributes: object,
 ) -> xr.Dataset:
-    """A Dataset of variables with its provenance; the settings are an attribute in JSON.
+    """Return a dataset with provenance. The settings are stored as an attribute in JSON.
 
-    coordinates: names of coordinates that are not named like their dimension.
+    coordinates: names of coordinates that differ from the name of their dimension.
     """
-    # The keys depend on the sources of the methods, too.
+    # The keys also depend on the sources of the methods.
     digest = sha256("\n".join(sorted(answers.keys)))
     described = sweep_dataset.provenance(
         title, settings.model_dump(), answers.versions, results_digest=digest, **attributes

@@ -1,5 +1,5 @@
-"""`dataset.microslip.at(...)`: friction between and beyond the points of a sweep, with a bound of
-its error."""
+"""The accessor `dataset.microslip`, which returns friction at any velocity and amplitude with an
+error bound."""
 
 from __future__ import annotations
 
@@ -39,19 +39,18 @@ from microslip.motions.by_name import motion_named
 from microslip.theory.catalogue import FORMS
 
 Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Friction, its error bound and codes of SOURCES, shape (n,) each."""
+"""Friction, its error bound and its source as a code of SOURCES; shape (n,) each."""
 
 
 def accessor(dataset: xr.Dataset) -> Friction | Drift:
-    """Return the accessor `dataset.microslip`: Drift for certified maps over forces, else
-    Friction."""
+    """Return the accessor of a dataset: Drift for a certified map over forces, else Friction."""
     return Drift(dataset) if certified_map.is_of_drift(dataset) else Friction(dataset)
 
 
 class Friction:
     """Friction at any velocity and amplitude of a motion, from the dataset of a sweep.
 
-    Raises ValueError for another dataset.
+    Raises ValueError if the dataset is not that of a sweep.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -67,7 +66,7 @@ class Friction:
                 "velocity or a spring; use microslip.at of a certified map, sel or interp"
             )
         self._dataset = dataset
-        # The name is stored in place of the motion, which holds lambdas that cannot be pickled.
+        # The name is stored instead of the motion, which has lambdas that cannot be pickled.
         self._motion, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._has_limits = beyond.has_limits(dataset)
@@ -84,46 +83,48 @@ class Friction:
     ) -> xr.Dataset:
         """Friction and a bound of its error at any point.
 
-        Between the nodes of a map the error is the sum of the interpolation error (see
-        `interpolation`; between Poisson's ratios see `nodes`) and the errors of the nodes.  In a
-        certified map it is the bound of the cell (see `cells`), and outside the tabulated range the
-        bound of a bracket (see `beyond`).  Next to a point that did not converge mu_macro is NaN or
-        its error is infinite.
+        Between the nodes of a map, the error bound is the sum of the interpolation error and the
+        errors of the nodes (see `interpolation` and, between Poisson's ratios, `nodes`).  In a
+        certified map it is the bound of the cell (see `cells`).  Outside the tabulated range it is
+        the larger distance to the two ends of a bracket (see `beyond`).  Next to a point that did
+        not converge, mu_macro is NaN or its error bound is infinite.
 
-        The dataset may be a selection or a join of datasets, in memory or in chunks of dask.  It
-        needs mu_macro, mu_macro_error, their coordinates and the attributes.  Without the variable
-        `converged`, nodes with an error above the attribute `tolerance` count as not converged.
+        The dataset can be a selection or a join of datasets, in memory or in chunks of dask.  It
+        must have mu_macro, mu_macro_error, their coordinates and the attributes.  If there is no
+        variable `converged`, nodes with an error above the attribute `tolerance` count as not
+        converged.
 
         Parameters
         ----------
         velocity, amplitude : number, sequence or DataArray
-            Dimensionless, at least 0; no amplitude for continuous-bore.  A sequence becomes a
-            dimension of the answer; DataArrays broadcast by their dimensions.  If one of them is in
-            chunks of dask, the answer is in chunks, too, and the values are checked when it is
-            computed.
+            Dimensionless velocity and amplitude, at least 0.  continuous-bore has no amplitude.
+            A sequence becomes a dimension of the result; DataArrays broadcast by their dimensions.
+            If an argument is in chunks of dask, the result is in chunks, too, and the values of
+            the argument are checked when the result is computed.
         poisson : number, optional
-            Poisson's ratio in the range of the dataset; may be left out if the dataset has only
-            one.
+            Poisson's ratio, within the range of the dataset.  It can be omitted if the dataset has
+            only one Poisson's ratio.
         tolerance : number, optional
-            Points with a larger error bound are solved.  The results are stored beside the dataset
-            if `open_map` opened it.  Where nothing can be written they are stored until Python
-            ends.
+            Points with a larger error bound are computed by the solver.  Their results are stored
+            beside the dataset if it was opened by `open_map`.  If that folder is read-only, they
+            are stored until Python ends.
 
         Returns
         -------
         xarray.Dataset
-            mu_macro, mu_macro_error and source, an index into SOURCES with its meanings in
-            flag_meanings.  The attribute `note` counts the points outside the tabulated range whose
-            error bound is larger than the error of the map, and recommends a `tolerance`.
+            Variables mu_macro, mu_macro_error and source.  `source` is an index into SOURCES, which
+            the attribute flag_meanings lists.  If points outside the tabulated range have a larger
+            error bound than the map, the attribute `note` gives their number and recommends a
+            `tolerance`.
 
         Raises
         ------
         InputError
-            For an argument that is not allowed and for a dataset without a variable that is needed;
-            it names the argument or the variable.
+            If an argument is invalid, or if the dataset lacks a variable.  The message names the
+            argument or the variable.
         ValueError
-            For a point outside the tabulated range without a tolerance, for motions, pressures and
-            drives without proved limits.
+            If a point is outside the tabulated range, no tolerance is given, and no limits are
+            proved for the motion, the pressure or the drive.
         """
         coordinates = self._coordinates(velocity, amplitude)
         nodes = self._nodes(poisson)
@@ -149,21 +150,22 @@ class Friction:
         Parameters
         ----------
         velocity, amplitude : int or sequence
-            Number of coordinates over the range of the map, velocities in equal ratios and
-            amplitudes in equal steps; or the coordinates.  The amplitude is ignored for
-            continuous-bore, the velocity for a certified map of the static limit.
+            Number of coordinates over the range of the map, or the coordinates themselves.  A
+            number gives velocities in equal ratios and amplitudes in equal steps.  The amplitude
+            is ignored for continuous-bore, and the velocity for a certified map of the static
+            limit.
         **settings
-            poisson and tolerance, as for `at`.
+            Arguments `poisson` and `tolerance` of `at`.
 
         Returns
         -------
         xarray.Dataset
-            Result of `at`, dims (amplitude, velocity).
+            Result of `at` with the dimensions (amplitude, velocity).
 
         Raises
         ------
         InputError
-            For a number of coordinates below 2, and as `at`.
+            If a number of coordinates is below 2, or if `at` raises it.
         """
         axes = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._periodic:
@@ -179,33 +181,34 @@ class Friction:
         poisson: float | None = None,
         within: tuple[float, float] | None = None,
     ) -> xr.Dataset:
-        """Amplitude or velocity at which friction has a wanted value, with its interval.
+        """Find the amplitude or the velocity at which friction has a given value.
 
         Parameters
         ----------
         wanted : number, sequence or DataArray
-            Wanted mu_macro, at least 0; a sequence becomes the dimension `wanted`.
+            Value of mu_macro, at least 0.  A sequence becomes the dimension `wanted`.
         velocity, amplitude : number, sequence or DataArray
-            The known coordinate; the other one is searched.  continuous-bore has no amplitude, and
-            its velocity is searched.
+            The known coordinate.  The other coordinate is searched.  continuous-bore has no
+            amplitude; leave out both to search its velocity.
         poisson : number, optional
             Poisson's ratio, as for `at`.
         within : two numbers, optional
-            Ends of the searched range; the range of the dataset by default.
+            Ends of the searched range.  Defaults to the range of the dataset.
 
         Returns
         -------
         xarray.Dataset
-            Over the dimensions of the arguments and `root`: the searched coordinate at which the
-            map has the wanted friction (NaN: nowhere); with the suffixes `_low` and `_high` the
-            interval in which it has it to within its error; and `bounded`, True if both ends of the
-            interval lie inside the range.  Over the dimensions of the arguments alone: `outcome`,
-            an index into OUTCOMES.
+            The dimension `root` counts the intervals in which friction equals the value to within
+            its error.  The ends of the intervals have the name of the searched coordinate with
+            the suffixes `_low` and `_high`.  The variable without a suffix is the coordinate at
+            which the map has exactly this value (NaN if there is none in the interval).  `bounded`
+            is True if both ends are inside the searched range.  `outcome` is an index into
+            OUTCOMES, without the dimension `root`.
 
         Raises
         ------
         InputError
-            For both or neither of velocity and amplitude, and as `at`.
+            If both or neither of velocity and amplitude are given, or if `at` raises it.
         """
         others = {"velocity": velocity, "amplitude": amplitude}
         others = {name: value for name, value in others.items() if value is not None}
@@ -233,7 +236,7 @@ class Friction:
     # The map
 
     def _coordinates(self, velocity: object, amplitude: object) -> dict[str, xr.DataArray]:
-        """Labelled coordinates, the amplitude first, as in the datasets."""
+        """Return labelled coordinates.  The amplitude is the first one, as in the datasets."""
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
@@ -250,7 +253,7 @@ class Friction:
         velocity: np.ndarray,
         amplitude: np.ndarray | None = None,
     ) -> Answer:
-        """Friction at points, shape (n,), from the map, the limits or the solver."""
+        """Return friction at n points from the map, the limits or the solver."""
         steady = amplitude is None
         if amplitude is None:
             amplitude = np.full(len(velocity), np.nan)
@@ -269,10 +272,10 @@ class Friction:
         return value, error, source
 
     def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
-        """The nodes of the map, read again only if the dataset has changed.
+        """Return the nodes of the map.  They are read again only if the dataset has changed.
 
-        Reading them takes ten times as long as interpolating.  A dataset may be changed in place,
-        so that digests of all its data are compared.
+        Reading the nodes takes ten times as long as interpolating.  A dataset can be changed in
+        place, so changes are detected by a digest of all its data.
         """
         digest = (_digest(self._dataset), poisson)
         if digest[0] is None or self._read is None or self._read[0] != digest:
@@ -286,7 +289,7 @@ class Friction:
         return self._read[1]
 
     def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
-        """The map at one Poisson's ratio, see Nodes.table."""
+        """Return the map at one Poisson's ratio, see Nodes.table."""
         if (nu, still) not in self._tables:
             self._tables[nu, still] = nodes.table(nu, still=still)
         return self._tables[nu, still]
@@ -301,10 +304,10 @@ class Friction:
         nu: float,
         tolerance: float | None,
     ) -> Answer:
-        """Friction from the map.
+        """Return friction from the map alone.
 
-        A point outside the map has the value NaN and an infinite error.  Without a tolerance it is
-        refused by ValueError.
+        If there is a tolerance, a point outside the map has the value NaN and an infinite error.
+        Otherwise such a point raises ValueError.
         """
         value, error = np.full(len(velocity), np.nan), np.full(len(velocity), np.inf)
         rows, outside = np.nan_to_num(amplitude), np.ones(len(velocity), bool)
@@ -334,8 +337,8 @@ class Friction:
                 raise ValueError(f"{name} = {value:g}: allowed is {low:g} to {high:g}; {advice}")
 
     def _note(self, error: np.ndarray, source: np.ndarray) -> dict[str, str]:
-        """{"note": text} if points outside the tabulated range have a larger error bound than the
-        map, else {}."""
+        """Return {"note": text} if points outside the tabulated range have larger error bounds than
+        the map, else {}."""
         about = self._dataset.attrs
         try:
             usual = float(about.get("error", about.get("tolerance", 0.0)))
@@ -367,8 +370,9 @@ class Friction:
         limits = beyond.LIMITS[self._motion]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
-        # A point outside the map starts from the nearest point on its edge. A point above the map
-        # starts from the velocity at which the edge has the same limit for large amplitudes.
+        # Friction outside the map is estimated from the nearest point on the edge of the map. For
+        # amplitudes above the map, this is the point at the edge with the same limit for large
+        # amplitudes.
         wide = amplitude > widest
         below = np.where(
             wide, limits.same_limit(velocity, np.fmax(amplitude, widest), widest), velocity
@@ -407,7 +411,7 @@ class Friction:
     def _solve(
         self, answer: Answer, point: tuple[np.ndarray, ...], nu: float, tolerance: float
     ) -> None:
-        """Replace answers with an error above the tolerance by solver results, in place."""
+        """Replace results with an error above the tolerance by those of the solver, in place."""
         value, error, source = answer
         path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
@@ -424,11 +428,11 @@ class Friction:
 
 
 READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
-"""Variables of a map of nodes.  The variables of a certified map begin with "cell_"."""
+"""Variables of a map of nodes that the digest includes, besides those that begin with "cell_"."""
 
 
 def _digest(dataset: xr.Dataset) -> bytes | None:
-    """Digest of the attributes and variables of a map; None if they are in chunks of dask."""
+    """Return a digest of the attributes and variables of a map, or None for chunks of dask."""
     digest = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
     for name, part in dataset.variables.items():
         if name in READ or str(name).startswith("cell_"):

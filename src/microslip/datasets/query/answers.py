@@ -1,4 +1,4 @@
-"""Variables and sources of an answer from a map."""
+"""Variables and sources of a result from a map."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from microslip.datasets.variables import attributes, flag_attributes, link_error
 
 NEEDS = "microslip.at needs"
 LOST = f"{NEEDS} it, and the dataset has lost it: keep it"
-"""Message for a dataset without a variable of a map."""
+"""Message if the dataset of a map lacks a variable."""
 SOURCES = (
     "map",
     "no vibration",
@@ -21,33 +21,33 @@ SOURCES = (
     "closed form",
     "solver",
 )
-"""Sources of an answer, by their code in the variable `source`."""
+"""Sources of friction.  The variable `source` contains their indices."""
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
 FRICTION = {
     "mu_macro": attributes(float, MU_MACRO.description),
     "mu_macro_error": attributes(float, "bound of its error"),
     "source": flag_attributes("where the answer comes from", SOURCES),
 }
-"""Attributes of the variables of an answer."""
+"""Attributes of the variables of a result."""
 OUTSIDE = (STATIC, SLOWER, FASTER, WIDER, NARROWER)
-"""Sources of answers outside the tabulated range."""
+"""Sources of friction outside the tabulated range."""
 
 
 def dataset_of(
     parts: tuple[xr.DataArray, ...], about: dict[str, dict], motion: str, poisson: object
 ) -> xr.Dataset:
-    """Dataset of the parts of an answer.
+    """Combine the variables of a result into a dataset.
 
     Parameters
     ----------
     parts : tuple of xarray.DataArray
         Values of the variables.
     about : dict of dict
-        Attributes of each variable by its name, in the order of `parts`.
+        Attributes of each variable, by its name and in the order of `parts`.
     motion : str
-        Attribute of the dataset.
+        Name of the motion, stored as an attribute of the dataset.
     poisson : tuple or xarray.DataArray
-        Poisson's ratio, a coordinate of the dataset unless it is a dimension of the parts.
+        Poisson's ratio.  It becomes a coordinate, unless it is already a dimension of the parts.
     """
     for part, attrs in zip(parts, about.values(), strict=True):
         part.attrs = dict(attrs)

@@ -1,17 +1,17 @@
-"""Friction outside the tabulated range: proved limits, and brackets between them and the map.
+"""Friction outside the tabulated range, from brackets between the map and proved limits.
 
-Proved without a map: friction is 1 without vibration, it tends to the static limit for vanishing
-velocity, never falls with the velocity (bounds.py), and the energy balance bounds its drop below 1.
-Computed everywhere: friction falls with the amplitude.
+These properties are proved: friction is 1 without vibration; it tends to the static limit for
+vanishing velocity; it never decreases with the velocity (bounds.py); and the energy balance bounds
+1 - mu_macro.  All computed points show that friction decreases with the amplitude.
 
-At the edge of a map the bracket is as narrow as the error estimate there.  Outward it opens as two
-powers of the coordinate allow: the distance of friction from its limit follows a power law whose
-local exponent lies between 0 and twice the asymptotic one.  Local exponents of computed points:
-0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, 0.6 to 2 towards no vibration.
+At the edge of a map the bracket is as narrow as the error estimate.  Away from the edge it widens.
+The difference between friction and its limit is assumed to follow a power law with a local
+exponent between 0 and twice the asymptotic exponent.  The computed points have local exponents of
+0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards no vibration.
 
-For large amplitudes friction tends to a limit (Eqs 6 and 29) from both sides: the sign of the
-distance depends on the velocity.  The largest distance at the upper edge of the map within a decade
-of velocities bounds the distance at all larger amplitudes.
+For large amplitudes friction tends to a limit (Eqs 6 and 29).  The sign of the difference from this
+limit depends on the velocity.  The bound of the difference at larger amplitudes is the largest
+absolute difference at the upper edge of the map within a decade of velocities.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
-"""Power of the velocity with which friction approaches its static limit."""
+"""Friction minus its static limit is proportional to the velocity to this power."""
 FAST_EXPONENT = 2.0
-"""Power of 1 / velocity with which friction approaches 1 in fast sliding (Eqs 6 and 29)."""
+"""1 - mu_macro in fast sliding is proportional to 1 / velocity to this power (Eqs 6 and 29)."""
 NARROW_EXPONENT = 1.0
-"""Power of the amplitude to which 1 - mu_macro is proportional for small amplitudes."""
+"""Power law of 1 - mu_macro for small amplitudes: the exponent of the amplitude."""
 WIDE_EXPONENT = 1.0
-"""Power of 1 / amplitude with which friction approaches its limit for large amplitudes."""
+"""For large amplitudes, friction minus its limit is proportional to 1 / amplitude to this power."""
 STEEPEST = 2.0
-"""Largest local exponent of a power law, relative to the asymptotic one."""
+"""Largest local exponent of a power law, divided by the asymptotic exponent."""
 POISSON_DROP = 0.1
-"""Static friction under transverse motion: its largest drop with Poisson's ratio nu, divided by
-(nu / (2 - nu))^2.  Computed by solve("transverse", 0, A, poisson=nu): at most 0.067, near A = 0.9,
-for nu from 0.1 to 0.5."""
+"""Bound of the decrease of transverse static friction with Poisson's ratio nu, divided by
+(nu / (2 - nu))^2.  solve("transverse", 0, A, poisson=nu) gives at most 0.067, near A = 0.9, for nu
+from 0.1 to 0.5."""
 
 
 class Estimate(NamedTuple):
@@ -49,7 +49,7 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     value, error : np.ndarray, shape (n,)
-        Dimensionless.
+        Friction and the error estimate, dimensionless.
     """
 
     value: np.ndarray
@@ -58,21 +58,21 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """Proved limits and bounds of a motion, functions of arrays of velocity and amplitude.
+    """Proved limits and bounds of a motion, as functions of arrays.
 
     Attributes
     ----------
     static_at_nu_0 : callable
-        Limit for vanishing velocity at Poisson's ratio 0, of the amplitude.
+        Function of the amplitude: limit for vanishing velocity at Poisson's ratio 0.
     poisson_drop : float
-        Largest drop of that limit with Poisson's ratio nu, divided by (nu / (2 - nu))^2.
+        Largest decrease of that limit with Poisson's ratio nu, divided by (nu / (2 - nu))^2.
     large : callable
-        Limit for large amplitudes.
+        Function of velocity and amplitude: limit for large amplitudes.
     same_limit : callable
-        Velocity at which another amplitude has the same limit for large amplitudes, from velocity,
-        amplitude and other amplitude.
+        Function of velocity, amplitude and another amplitude.  It returns the velocity at which the
+        other amplitude has the same limit for large amplitudes.
     drop : callable
-        Upper bound of 1 - mu_macro.
+        Function of velocity and amplitude: upper bound of 1 - mu_macro.
     """
 
     static_at_nu_0: Callable
@@ -82,7 +82,7 @@ class Limits:
     drop: Callable
 
     def static(self, amplitude: np.ndarray, nu: float) -> Estimate:
-        """Limit for vanishing velocity at Poisson's ratio `nu`, and its error bound."""
+        """Return the limit for vanishing velocity at Poisson's ratio `nu`, with its error bound."""
         high = np.asarray(self.static_at_nu_0(amplitude), float)
         low = np.maximum(high - self.poisson_drop * (nu / (2.0 - nu)) ** 2, 0.0)
         return Estimate((high + low) / 2.0, (high - low) / 2.0 + ROUNDING)
@@ -108,19 +108,19 @@ LIMITS = {
 
 
 def is_known(motion: str, pressure: str) -> bool:
-    """True if limits of a motion under a pressure are proved."""
+    """Return True if limits are proved for a motion under a pressure."""
     return pressure == "hertz" and (motion in LIMITS or motion == "continuous-bore")
 
 
 def has_limits(dataset: xr.Dataset) -> bool:
-    """True if limits are proved for a dataset: one contact, prescribed velocity, known motion."""
+    """Return True if limits are proved for the motion, the pressure and the drive of a dataset."""
     if not is_alone(dataset):
         return False
     return is_known(dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz"))
 
 
 def is_alone(dataset: xr.Dataset) -> bool:
-    """True for a dataset of one contact at a prescribed velocity."""
+    """Return True for a dataset of one contact at a prescribed velocity."""
     return not {"drive", "contacts"} & set(dataset.attrs)
 
 
@@ -132,9 +132,10 @@ def slower(
     nu: float,
     slowest: float,
 ) -> tuple:
-    """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
+    """Estimate friction at velocities from 0 to the lowest velocity of a map.
 
-    edge: at the slowest velocity and the same amplitudes; nu: Poisson's ratio.
+    edge: friction at the lowest velocity and the same amplitudes; nu: Poisson's ratio.  Returns
+    values and errors, shape (n,) each.
     """
     static = limits.static(amplitude, nu)
     least = np.maximum(static.value - static.error, 0.0)
@@ -148,9 +149,10 @@ def slower(
 def faster(
     limits: Limits, edge: Estimate, velocity: np.ndarray, amplitude: np.ndarray, fastest: float
 ) -> tuple:
-    """Value and error for velocities above the fastest of a map, shape (n,) each.
+    """Estimate friction at velocities above the highest velocity of a map.
 
-    edge: at the fastest velocity and the same amplitudes; NaN where the map has no value.
+    edge: friction at the highest velocity and the same amplitudes, NaN where the map has no value.
+    Returns values and errors, shape (n,) each.
     """
     low = 1.0 - limits.drop(velocity, amplitude)
     low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)  # never falls with the velocity
@@ -169,9 +171,10 @@ def wider(
     amplitude: np.ndarray,
     widest: float,
 ) -> tuple:
-    """Value and error for amplitudes above the largest of a map, shape (n,) each.
+    """Estimate friction at amplitudes above the largest amplitude of a map.
 
-    edge: at the largest amplitude, at the velocity with the same limit; distance: see `distances`.
+    edge: friction at the largest amplitude of the map, at the velocities with the same limit;
+    distance: see `distances`.  Returns values and errors, shape (n,) each.
     """
     end = limits.large(velocity, amplitude)
     share = (widest / amplitude) ** WIDE_EXPONENT
@@ -188,14 +191,16 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Largest distance of friction from its limit for large amplitudes, at the edge of a map.
+    """Return the largest differences between friction at the edge of a map and its limit.
+
+    The limit is that for large amplitudes, and the edge is that at the largest amplitude.
 
     Parameters
     ----------
     nodes, values, errors : numpy.ndarray, shape (m,)
         Velocities, friction and its errors along the largest amplitude of the map.
     velocity : numpy.ndarray, shape (n,)
-        Velocities; the nodes within a decade of each count.
+        Velocities of the request.  For each of them, all nodes within a decade are used.
     widest : float
         Largest amplitude of the map.
 
@@ -212,9 +217,10 @@ def distances(
 
 
 def narrower(limits: Limits, edge: Estimate, amplitude: np.ndarray, narrowest: float) -> tuple:
-    """Value and error for amplitudes from 0 to the smallest of a map, shape (n,) each.
+    """Estimate friction at amplitudes from 0 to the smallest amplitude of a map.
 
-    edge: at the smallest amplitude and the same velocities.
+    edge: friction at the smallest amplitude and the same velocities.  Returns values and errors,
+    shape (n,) each.
     """
     low = np.clip(edge.value - edge.error, 0.0, 1.0)
     share = (amplitude / narrowest) ** NARROW_EXPONENT
@@ -230,7 +236,7 @@ def within_the_balance(
     velocity: np.ndarray,
     amplitude: np.ndarray,
 ) -> tuple:
-    """Clip values and errors to the bounds from the energy balance; NaN remains NaN."""
+    """Clip values and errors to the bounds from the energy balance. NaN is not changed."""
     low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
     value = np.clip(value, low, 1.0)
     reach = np.maximum(1.0 - value, value - low) + ROUNDING
@@ -238,6 +244,6 @@ def within_the_balance(
 
 
 def _within(low: np.ndarray, high: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Clip a guess to its bracket; return it with its largest distance from the ends."""
+    """Clip an estimate to its bracket, and return it with the larger distance from the two ends."""
     value = np.clip(guess, low, high)
     return value, np.maximum(high - value, value - low) + ROUNDING

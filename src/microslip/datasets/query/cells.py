@@ -16,35 +16,36 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
-"""Number of velocities at which friction at the largest amplitude is evaluated."""
+"""Number of velocities at which friction is evaluated along the largest amplitude."""
 
 
 def is_certified(dataset: xr.Dataset) -> bool:
-    """True for the dataset of a certified map."""
+    """Return True for the dataset of a certified map."""
     return certified_map.COORDINATES in dataset.attrs
 
 
 def is_static(dataset: xr.Dataset) -> bool:
-    """True for the dataset of a certified map of the static limit."""
+    """Return True for the dataset of a certified map of the static limit."""
     return is_certified(dataset) and "velocity" not in dataset.attrs.get("directions", "").split()
 
 
 @dataclass(frozen=True, eq=False)
 class CellTable:
-    """Friction in the cells of a certified map; has the methods of interpolation.Table.
+    """Friction in the cells of a certified map, with the methods of interpolation.Table.
 
     Attributes
     ----------
     coordinates : MapCoordinates or DriftCoordinates
+        Scaled coordinates of the map.
     borders : numpy.ndarray, shape (k, directions, 2)
         Lower and upper ends of the cells, in scaled coordinates.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
-        Friction at the nodes of the cells, over velocity, amplitude and perhaps Poisson's ratio;
-        in a map of drift asinh of the velocity.
+        Friction at the nodes of each cell.  The axes are the cells, velocity, amplitude and, if it
+        is a direction, Poisson's ratio.  A map of drift has asinh(velocity) instead of friction.
     bounds : numpy.ndarray, shape (k,)
         Bound of the error in each cell.
     poisson : float, optional
-        Poisson's ratio at which a map over Poisson's ratio is evaluated.
+        Poisson's ratio at which the map is evaluated, if that is one of its directions.
     """
 
     coordinates: MapCoordinates | DriftCoordinates
@@ -60,7 +61,7 @@ class CellTable:
 
     @property
     def _velocity(self) -> tuple[float, ...]:
-        """The range of the velocity; () for a map of the static limit or of drift."""
+        """The range of the velocity, or () for a map of the static limit or of drift."""
         coordinates = self.coordinates
         return coordinates.velocity if isinstance(coordinates, MapCoordinates) else ()
 
@@ -71,7 +72,7 @@ class CellTable:
 
     @cached_property
     def columns(self) -> Axis:
-        """Velocities over the range of the map, in even ratios; 0 for the static limit."""
+        """Velocities over the range of the map in equal ratios.  A static limit has only 0."""
         if not self._velocity:
             return Axis(np.zeros(1))
         slow, fast = self._velocity
@@ -85,9 +86,10 @@ class CellTable:
         return self.at(np.full_like(velocity, self.rows.values[-1]), velocity)
 
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and error bounds at amplitudes and velocities inside the map, shape (n,) each.
+        """Return values and error bounds at amplitudes and velocities inside the map.
 
-        They are NaN and infinity in a cell with an unknown node.
+        The arrays have the shape (n,).  In a cell with an unknown node, the values are NaN and the
+        error bounds are infinite.
         """
         place = [column, row] if self._velocity else [row]
         if self.coordinates.poisson:
@@ -95,7 +97,7 @@ class CellTable:
         return self.at_scaled(self.coordinates.scaled(*place))
 
     def at_scaled(self, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and error bounds at scaled coordinates, shape (n, directions)."""
+        """Return values and error bounds at scaled coordinates of the shape (n, directions)."""
         value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
         for (begin, end), nodes, bound in zip(
             self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
@@ -108,12 +110,15 @@ class CellTable:
 
 
 def _polynomial(nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """Values (n,) of the polynomial through equally spaced nodes at shares (n, directions)."""
+    """Evaluate the polynomial through equally spaced nodes.
+
+    shares: relative positions in the cells, 0 to 1, shape (n, directions).  Returns shape (n,).
+    """
     value = nodes[..., None]  # the axis of the points is the last one
     for share in shares.T:
         degree = len(value) - 1
         weights = lagrange(np.arange(degree + 1.0)[None], degree * share)
-        # Term by term, so that the bits of a point do not depend on the other points.
+        # The sum is term by term, so that rounding at a point does not depend on the other points.
         value = sum(w * part for w, part in zip(weights.T, value, strict=True))
     return value
 
@@ -124,15 +129,16 @@ Map = Table | CellTable
 
 @dataclass(frozen=True, eq=False)
 class CellNodes:
-    """Points and cells of a certified map; has the method `table` of nodes.Nodes.
+    """Points and cells of a certified map, with the method `table` of nodes.Nodes.
 
     Attributes
     ----------
     poisson : numpy.ndarray, shape (1,) or (2,)
-        The only Poisson's ratio, or the smallest and the largest.
+        The only Poisson's ratio, or the smallest and the largest one.
     values, errors : numpy.ndarray, shape (n,)
-        mu_macro at the points and its errors; NaN and infinity if unknown.
+        mu_macro at the points and its errors.  Unknown values are NaN, with an infinite error.
     cells : CellTable
+        Friction in the cells.
     """
 
     poisson: np.ndarray
@@ -141,8 +147,10 @@ class CellNodes:
     cells: CellTable
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """The map at a Poisson's ratio, for velocities above 0 or, with `still`, for velocity 0;
-        None if there is no such map."""
+        """Return the map at a Poisson's ratio, or None if there is none.
+
+        The map is for velocities above 0 or, if `still` is True, for the velocity 0.
+        """
         if still != self.cells.is_static:
             return None
         return replace(self.cells, poisson=poisson)
@@ -151,7 +159,7 @@ class CellNodes:
 def cells_of(dataset: xr.Dataset) -> CellNodes:
     """Read the dataset of a certified map.
 
-    Raises InputError with the name of a variable that is missing.
+    Raises InputError with the name of the variable if one is missing.
     """
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]

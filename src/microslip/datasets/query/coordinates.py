@@ -1,4 +1,4 @@
-"""Coordinates of a request: labelled arrays of finite numbers >= 0."""
+"""Convert the coordinates of a request to labelled arrays of finite numbers that are at least 0."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from microslip.theory import hertz
 
 ALLOWED = "allowed is a finite number >= 0, or several"
 DIGITS = 6
-"""Number of significant digits of evenly spaced coordinates, as in a configuration."""
+"""Number of significant digits to which evenly spaced coordinates are rounded."""
 
 
 def coordinate_array(name: str, value: object) -> xr.DataArray:
-    """Convert an argument to a DataArray of numbers >= 0; a sequence becomes the dimension `name`.
+    """Convert an argument to a DataArray of numbers that are at least 0.
 
-    Values in chunks of dask are not checked.
+    A sequence becomes the dimension `name`.  Values in chunks of dask are not checked.
     """
     array = value if isinstance(value, xr.DataArray) else _array(name, value)
     if array.dtype.kind not in "iuf":
@@ -48,15 +48,17 @@ def evaluate(
 ) -> tuple[xr.DataArray, ...]:
     """Evaluate a function at labelled coordinates, which broadcast by their dimensions.
 
-    Where one of the coordinates is in chunks of dask, the results are in chunks, too, and are
-    computed and checked when their values are read.
+    If one of the coordinates is in chunks of dask, the results are in chunks, too.  They are
+    then computed and checked when their values are read.
 
     Parameters
     ----------
     function : callable
-        From the coordinates by name, float arrays of shape (n,), to arrays of shape (n,).
+        Function of the coordinates, which are float arrays of shape (n,) passed by name.  It
+        returns arrays of shape (n,).
     coordinates : dict of xarray.DataArray
-        Coordinates as `coordinate_array` returns them, the slowest dimension of the results first.
+        Coordinates as returned by `coordinate_array`.  The first one is the slowest dimension of
+        the results.
     types : tuple of type
         Types of the results.
     """
@@ -82,7 +84,7 @@ def evaluate(
 
 
 def _array(name: str, value: Any) -> np.ndarray:
-    """Convert an argument to an array, of floats if all its values are plain numbers.
+    """Convert an argument to an array, which has the type float if all values are plain numbers.
 
     NumPy would convert texts, times, masked values and quantities without a warning.
     """
@@ -104,20 +106,20 @@ def _is_plain(value: object) -> bool:
 
 
 def grid_axes(dataset: xr.Dataset, request: dict[str, Any]) -> dict[str, Any]:
-    """Coordinates of a regular grid over the range of a dataset.
+    """Return the coordinates of a regular grid over the range of a dataset.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         Dataset with the coordinates.
     request : dict
-        Number of coordinates, or the coordinates, by name.  Velocities get equal ratios, other axes
-        equal steps.
+        For each axis, by name, the number of coordinates or the coordinates themselves.  Velocities
+        get equal ratios, other axes equal steps.
 
     Raises
     ------
     InputError
-        For a number below 2.
+        If a number of coordinates is below 2.
     """
     return {
         name: _spaced(dataset, name, int(value)) if _is_count(name, value) else value

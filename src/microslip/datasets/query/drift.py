@@ -19,7 +19,7 @@ from microslip.theory.drift_threshold import threshold
 STATES = ("stays", "drifts", "undecided", "runs away")
 """States of a contact, by their code in the variable `state`.
 
-undecided: the force equals the threshold to within the error of the threshold.
+A state is undecided if the force equals the threshold to within the error of the threshold.
 """
 (STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
 DRIFT = {
@@ -28,15 +28,15 @@ DRIFT = {
     "threshold": attributes(float, "force up to which the contact stays where it is"),
     "state": flag_attributes("what becomes of the contact", STATES),
 }
-"""Attributes of the variables of an answer."""
+"""Attributes of the variables of a result."""
 THRESHOLD_ERROR = 1e-12
-"""Rounding error of the closed forms of the thresholds."""
+"""Rounding error of the closed forms for the threshold of the force."""
 
 
 class Drift:
     """Mean velocity under a force, from the certified map of a sweep over forces.
 
-    Raises ValueError for another dataset.
+    Raises ValueError if the dataset is not such a map.
     """
 
     def __init__(self, dataset: xr.Dataset):
@@ -48,33 +48,33 @@ class Drift:
         self._dataset = dataset
 
     def at(self, force: object, amplitude: object) -> xr.Dataset:
-        """Mean velocity under a force and a bound of its error.
+        """Mean velocity under a force, with an error bound.
 
-        The velocity is 0 below the threshold of the force and infinite from the force 1 on.
-        Between them the contact drifts, and the velocity comes from the map.
+        The velocity is 0 for forces below the threshold and infinite for forces of at least 1.
+        Between these forces the contact drifts, and its velocity is interpolated in the map.
 
         Parameters
         ----------
         force, amplitude : number, sequence or DataArray
-            Dimensionless, at least 0.  A sequence becomes a dimension of the answer; DataArrays
-            broadcast by their dimensions.  If one of them is in chunks of dask, the answer is in
-            chunks, too.
+            Dimensionless force and amplitude, at least 0.  A sequence becomes a dimension of the
+            result; DataArrays broadcast by their dimensions.  If an argument is in chunks of dask,
+            the result is in chunks, too.
 
         Returns
         -------
         xarray.Dataset
-            velocity, velocity_error, threshold (the force up to which the contact stays), and
-            state, an index into STATES with its meanings in flag_meanings.
+            Variables velocity, velocity_error, threshold and state.  `threshold` is the force up to
+            which the contact stays at rest.  `state` is an index into STATES, which the attribute
+            flag_meanings lists.
 
         Raises
         ------
         InputError
-            For an argument that is not allowed, for a dataset without a variable that is needed,
-            and for a contact that drifts outside the range of the map.  It names the argument or
-            the variable.
+            If an argument is invalid, if the dataset lacks a variable, or if a contact drifts
+            outside the range of the map.  The message names the argument or the variable.
         """
         table = cells_of(self._dataset).cells
-        # An outer product has the order of dimensions of the datasets.
+        # The amplitude is the first dimension, as in the datasets.
         coordinates = {
             "amplitude": coordinate_array("amplitude", amplitude),
             "force": coordinate_array("force", force),
@@ -85,28 +85,29 @@ class Drift:
         return dataset_of(parts, DRIFT, motion, poisson)
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
-        """Mean velocity and a bound of its error on a regular grid.
+        """Mean velocity on a regular grid, with an error bound.
 
         Parameters
         ----------
         force, amplitude : int or sequence
-            Number of coordinates, in equal steps over the range of the map; or the coordinates.
+            Number of coordinates in equal steps over the range of the map, or the coordinates
+            themselves.
 
         Returns
         -------
         xarray.Dataset
-            Result of `at`, dims (amplitude, force).
+            Result of `at` with the dimensions (amplitude, force).
 
         Raises
         ------
         InputError
-            For a number of coordinates below 2, and as `at`.
+            If a number of coordinates is below 2, or if `at` raises it.
         """
         return self.at(**grid_axes(self._dataset, {"force": force, "amplitude": amplitude}))
 
 
 def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Velocity, its error bound, threshold of the force and code of the state, shape (n,) each."""
+    """Return velocity, error bound, threshold of the force and code of the state, all (n,)."""
     coordinates = table.coordinates
     assert isinstance(coordinates, DriftCoordinates)  # checked by Drift
     least = np.asarray(threshold(coordinates.motion, amplitude), float)

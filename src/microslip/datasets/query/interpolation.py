@@ -1,10 +1,10 @@
 """Interpolation in a table by local cubics, with an error estimate from leaving nodes out.
 
-Along an axis the value is that of the cubic through the four nearest nodes.  The error of such a
-cubic is estimated at the nodes: each node is predicted from its neighbours alone.  The largest
-difference at the nodes around a cell, from twice the spacing, bounds the error of the cubic inside
-the cell.  The true error is sixteen times smaller where the function is smooth, and about as large
-at a kink.
+Along an axis, values are interpolated by the cubic through the four nearest nodes.  To estimate the
+error, each node is also predicted by the cubic through its neighbours, which has twice the spacing.
+The largest difference between prediction and value at the nodes around a cell bounds the error in
+the cell.  The true error is sixteen times smaller for a smooth function and about as large at a
+kink.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ NODES = 4
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """Coordinates of one axis of a table, ascending; logarithmic if their ratios are more even than
-    their distances."""
+    """Ascending coordinates of one axis of a table.
+
+    The axis is logarithmic if the ratios of the coordinates are more even than their distances.
+    """
 
     values: np.ndarray
 
@@ -37,19 +39,20 @@ class Axis:
         return self.scaled(self.values)
 
     def scaled(self, points: np.ndarray) -> np.ndarray:
-        """Points, or their logarithms on a logarithmic axis."""
+        """Return the points, or their logarithms if the axis is logarithmic."""
         return np.log(points) if self.logarithmic else np.asarray(points, float)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """True for points between the ends of the axis, the ends included."""
+        """Return True for points between the ends of the axis, including the ends."""
         return (points >= self.values[0]) & (points <= self.values[-1])
 
     def cubics(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Local cubics at points between the ends of the axis.
+        """Return the weights of the local cubics at points.
 
         Parameters
         ----------
         points : numpy.ndarray, shape (n,)
+            Points between the ends of the axis.
 
         Returns
         -------
@@ -58,7 +61,7 @@ class Axis:
         share : numpy.ndarray, shape (n,)
             Position of the point in its cell, 0 to 1.
         index, weights : numpy.ndarray, shape (n, k)
-            Indices and weights of the k nodes of the cubic, k at most 4.
+            Indices and weights of the k nodes of the cubic, with k at most 4.
         """
         x, q = self.nodes, self.scaled(points)
         count = len(x)
@@ -73,10 +76,10 @@ class Axis:
         return cell, share, index, lagrange(x[index], q)
 
     def misses(self, table: np.ndarray) -> np.ndarray:
-        """Absolute difference between each node and the cubic through its neighbours.
+        """Return the absolute difference between each node and the cubic through its neighbours.
 
-        The nodes run along the first axis of the table.  An end node gets the difference of the
-        node beside it; two nodes both get the difference between them.
+        The nodes are along the first axis of the table.  An end node gets the difference of its
+        neighbour.  If there are only two nodes, both get the difference between their values.
         """
         x = self.nodes
         count = len(x)
@@ -98,8 +101,10 @@ def _unevenness(values: np.ndarray) -> float:
 
 
 def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights (n, k) of values at nodes (n, k) or (1, k) for the polynomial through them, at points
-    (n,)."""
+    """Return the Lagrange weights, shape (n, k), for interpolation from k nodes to n points.
+
+    nodes: shape (n, k), or (1, k) if all points have the same nodes; points: shape (n,).
+    """
     weights = np.ones((len(points), nodes.shape[1]))
     for own in range(nodes.shape[1]):
         for other in range(nodes.shape[1]):
@@ -111,7 +116,7 @@ def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Values and their errors over two axes, shape (len(rows), len(columns)); NaN: unknown."""
+    """Values and errors on two axes, shape (len(rows), len(columns)).  Unknown values are NaN."""
 
     rows: Axis
     columns: Axis
@@ -125,15 +130,15 @@ class Table:
 
     @cached_property
     def _misses(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest difference at the nodes around each cell, along the rows and the columns."""
+        """Largest differences (see `misses`) at the nodes around each cell, along both axes."""
         along_rows = self.rows.misses(self.values)
         along_columns = self.columns.misses(self.values.T).T
         return largest_around(along_rows, 4), largest_around(along_columns, 4)
 
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and error bounds at points inside the table, shape (n,) each.
+        """Return values and error bounds at points inside the table, shape (n,) each.
 
-        They are NaN and infinity where one of the nodes is unknown.
+        If one of the nodes is unknown, the value is NaN and the error bound is infinite.
         """
         i, s, rows, row_weights = self.rows.cubics(row)
         j, t, columns, column_weights = self.columns.cubics(column)
@@ -147,19 +152,21 @@ class Table:
 
 
 def largest_around(values: np.ndarray, size: int = 3) -> np.ndarray:
-    """Largest entry of each window of a table that is padded by its edge entries.
+    """Return the largest entry in each window of a table.  The table is padded by its edge entries.
 
     Parameters
     ----------
     values : numpy.ndarray, shape (n, m)
         Entries at the nodes of a table.
     size : int
-        3: windows of 3 x 3 nodes around each node; 4: of 4 x 4 nodes around each cell.
+        Number of nodes along a side of a window: 3 for windows around each node, 4 for windows
+        around each cell.
 
     Returns
     -------
     numpy.ndarray
-        Shape (n, m) for size 3; (n - 1, m - 1), at least 1 each, for size 4.
+        Array of the shape (n, m) for size 3.  For size 4 the shape is (n - 1, m - 1), with at least
+        one entry along each axis.
     """
     padded = np.pad(values, [(1, max(1, size - 1 - n)) for n in values.shape], mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, (size, size))

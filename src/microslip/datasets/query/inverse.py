@@ -1,8 +1,8 @@
-"""Search of a map for the places with a requested friction.
+"""Search a map for the velocities or amplitudes at which friction has a requested value.
 
-A map has an error, so that the result is an interval: all places whose friction may be the
-requested one, and the place where the value of the map equals it.  Friction may be the same at
-several places; then there is an interval for each.
+Because a map has an error, the result is an interval: the range in which friction equals the
+requested value to within the error, and the place at which the map has exactly this value.  If
+friction has the value at several places, there is an interval for each place.
 """
 
 from __future__ import annotations
@@ -23,26 +23,27 @@ OUTCOMES = (
     "friction is larger everywhere",
     "friction is smaller everywhere",
 )
-"""Outcomes of a search, by their code in the variable `outcome`; possible: within the error, but
-the value of the map nowhere equals the requested friction."""
+"""Outcomes of a search.  The variable `outcome` contains their indices.  A value is possible if the
+map reaches it only to within the error."""
 (FOUND, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
-"""Numbers of the first places, in equal steps and in equal ratios.  Friction is assumed to cross
-the requested value at most once between two of them."""
+"""Numbers of places at which a search evaluates friction first, in equal steps and in equal ratios.
+Between two neighbouring places friction is assumed to cross the requested value at most once."""
 DECADES = 6
-"""Decades from the smallest to the largest of the GEOMETRIC places."""
+"""Number of decades from the smallest to the largest of the places in equal ratios."""
 AT_A_TIME = 1000
-"""Number of searches that are made together, which bounds the memory."""
+"""Number of searches that run together.  It limits the memory."""
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
 Friction = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Function of the searched and the other coordinate, shape (n,) each: friction and its error."""
+"""Function of the searched and the other coordinate, shape (n,) each, that returns friction and its
+error."""
 
 
 def ends_of(
     dataset: xr.Dataset, name: str, within: tuple[float, float] | None
 ) -> tuple[float, float]:
-    """Ends of the searched range: `within`, or the range of the coordinate in the dataset."""
+    """Return the ends of the searched range: `within`, or the range of the dataset."""
     if within is None:
         return float(dataset[name].min()), float(dataset[name].max())
     try:
@@ -62,19 +63,19 @@ def search(
     Parameters
     ----------
     at : callable
-        Friction and its error.
+        Function that returns friction and its error.
     wanted, other : numpy.ndarray, shape (n,)
-        Requested friction and the coordinate that is not searched.
+        Requested values of friction, and values of the coordinate that is not searched.
     ends : tuple of float
         Ends of the searched range.
 
     Returns
     -------
     intervals : numpy.ndarray, shape (k, 5)
-        Index of the search, place or NaN, lower end, upper end, and 1 where both ends lie inside
-        the range; ascending.
+        A row for each interval, ascending: index of the search, place or NaN, lower end, upper end,
+        and 1 if both ends are inside the range, else 0.
     outcome : numpy.ndarray, shape (n,)
-        Indices of OUTCOMES.
+        Indices into OUTCOMES.
     """
     low, high = ends
     least = max(low, high * 10.0**-DECADES)
@@ -93,13 +94,13 @@ def search(
 def _search(
     at: Friction, wanted: np.ndarray, other: np.ndarray, places: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Intervals and outcomes, as for `search`, from friction at the first places."""
+    """Return intervals and outcomes as `search` does, from friction at the first places."""
 
     def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
         return at(place, other)[0] - wanted
 
     def excess(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Distance of friction from the requested value, less the error."""
+        """Return the distance of friction from the requested value, minus the error."""
         value, error = at(place, other)
         return np.abs(value - wanted) - error
 
@@ -111,9 +112,9 @@ def _search(
     off = value - wanted[:, None]
     inside = ~(np.abs(off) > error)  # an unknown value may be the requested one
     crosses = np.sign(off[:, :-1]) * np.sign(off[:, 1:]) < 0.0
-    # A run of cells may hold the requested friction: two cells belong together where the node
-    # between them is inside. The nodes at the ends of a run are outside, except at the ends of the
-    # range.
+    # A run of cells can contain the requested friction. Two cells belong to the same run if the
+    # node between them is inside. The nodes at the ends of a run are outside, except at the ends
+    # of the range.
     touched = inside[:, :-1] | inside[:, 1:] | crosses
     row, first = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (1, 0))))
     last = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (0, 1))))[1] + 1
@@ -160,9 +161,9 @@ def _roots(
     arguments: tuple[np.ndarray, ...],
     chosen: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Roots of a function in brackets, and True where the search succeeded.
+    """Find the roots of a function in brackets; also returns True where the search succeeded.
 
-    arguments: further arguments of the function; chosen: those that belong to the brackets.
+    arguments: additional arguments of the function; chosen: the arguments for each bracket.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -176,18 +177,18 @@ def _roots(
 def answer(
     name: str, shape: xr.DataArray, intervals: np.ndarray, outcome: np.ndarray, motion: str
 ) -> xr.Dataset:
-    """Dataset of intervals of a coordinate over the dimensions of a request and `root`.
+    """Convert intervals to a dataset with the dimensions of the request and `root`.
 
     Parameters
     ----------
     name : str
-        Searched coordinate.
+        Name of the searched coordinate.
     shape : xarray.DataArray
         Dimensions and coordinates of the request.
     intervals, outcome : numpy.ndarray
-        As `search` returns them.
+        Results of `search`.
     motion : str
-        Attribute of the dataset.
+        Name of the motion, stored as an attribute of the dataset.
     """
     row = intervals[:, 0].astype(int)
     root = np.arange(len(row)) - np.searchsorted(row, row)

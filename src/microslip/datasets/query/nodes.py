@@ -1,9 +1,9 @@
-"""The nodes of a map, from the dataset of a sweep or a selection of it.
+"""The nodes of a map, from the dataset of a sweep or from a selection of it.
 
-Between two Poisson's ratios every node is interpolated as along the other axes, by a cubic through
-the nearest ratios, or a polynomial of lower degree if there are fewer than four.  The error is the
-sum of the errors of the nodes and the largest difference from leaving ratios out (see
-`interpolation`), or from one ratio to the other if there are two.
+Between Poisson's ratios, every node is interpolated by a cubic through the four nearest ratios, or
+by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the errors of
+the nodes and of the interpolation error.  The latter is estimated by leaving ratios out (see
+`interpolation`).  If there are only two ratios, it is the difference between their values.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ SAME = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Values and their errors at the nodes of a map; NaN: unknown.
+    """Values and their errors at the nodes of a map.  Unknown values are NaN.
 
     Attributes
     ----------
     poisson, amplitude, velocity : numpy.ndarray
-        The axes, ascending, shapes (k,), (n,) and (m,); dimensionless.
-    values, errors : numpy.ndarray
-        mu_macro and the bound of its error, shape (k, n, m).
+        Ascending dimensionless coordinates, shapes (k,), (n,) and (m,).
+    values, errors : numpy.ndarray, shape (k, n, m)
+        mu_macro and the bound of its error.
     """
 
     poisson: np.ndarray
@@ -45,8 +45,10 @@ class Nodes:
     errors: np.ndarray
 
     def table(self, poisson: float, *, still: bool = False) -> Table | None:
-        """The map at a Poisson's ratio, for velocities above 0 or, with `still`, for velocity 0;
-        None if there is no such map."""
+        """Return the map at a Poisson's ratio, or None if there is none.
+
+        The map is for velocities above 0 or, if `still` is True, for the velocity 0.
+        """
         chosen = self.velocity == 0.0 if still else self.velocity > 0.0
         if not chosen.any():
             return None
@@ -55,7 +57,7 @@ class Nodes:
         return Table(Axis(self.amplitude), columns, values[:, chosen], errors[:, chosen])
 
     def _at(self, poisson: float) -> tuple[np.ndarray, np.ndarray]:
-        """Values and errors at a Poisson's ratio, shape (n, m)."""
+        """Return values and errors at a Poisson's ratio, shape (n, m) each."""
         near = int(np.argmin(np.abs(self.poisson - poisson)))
         if abs(self.poisson[near] - poisson) <= SAME:
             return self.values[near], self.errors[near]
@@ -71,24 +73,24 @@ class Nodes:
 
 
 def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> Nodes:
-    """Read the nodes of the dataset of a sweep, or of a selection of it.
+    """Read the nodes of a map from the dataset of a sweep, or from a selection of it.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        mu_macro and mu_macro_error over velocity, poisson and, if the motion is periodic,
-        amplitude; an axis of one value may be a coordinate without a dimension.  Nodes that did not
-        converge are unknown; without the variable `converged` these are the nodes with an error
-        above the attribute `tolerance`.
+        Dataset with mu_macro and mu_macro_error.  Their dimensions are velocity, poisson and, if
+        the motion is periodic, amplitude.  An axis with only one value can be a coordinate without
+        a dimension.  Nodes that did not converge are unknown.  If there is no variable `converged`,
+        these are the nodes with an error above the attribute `tolerance`.
     periodic : bool
         True if the motion has an amplitude.
     poisson : float, optional
-        Poisson's ratio of a dataset without this coordinate.
+        Poisson's ratio of the dataset, if the dataset does not have this coordinate.
 
     Raises
     ------
     InputError
-        With the name of a variable that is missing, or of a dimension that is not allowed.
+        If a variable is missing or a dimension is not allowed.  The message has its name.
     """
     axes = ("poisson", "amplitude", "velocity") if periodic else ("poisson", "velocity")
     if "poisson" not in dataset.coords and poisson is not None:
@@ -126,8 +128,10 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
 
 
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
-    """Raise InputError for two nodes at the same place whose mu_macro differ by more than their
-    errors, as after a join."""
+    """Raise InputError if two nodes at the same place differ by more than their errors.
+
+    A join of datasets can contain such nodes.
+    """
     value, error = (
         chosen[name].where(chosen["is_known"]) for name in ("mu_macro", "mu_macro_error")
     )
@@ -140,7 +144,7 @@ def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
 
 
 def _refuse_impossible(nodes: Nodes) -> None:
-    """Raise InputError for coordinates and errors outside their ranges."""
+    """Raise InputError if a coordinate or an error is outside its allowed range."""
     for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
         axis = getattr(nodes, name)
         wrong = axis[~(np.isfinite(axis) & (axis >= 0.0) & (axis <= top))]
@@ -153,10 +157,9 @@ def _refuse_impossible(nodes: Nodes) -> None:
 
 
 def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
-    """Raise InputError for mu_macro outside `least` to 1 by more than its error.
+    """Raise InputError if mu_macro is outside the range `least` to 1 by more than its error.
 
-    The force is at most mu F_z, so that mu_macro is at least -1.  It is at least 0 for motions that
-    cannot propel the contact.
+    `least` is -1, or 0 for motions that cannot propel the contact.
     """
     off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
     if off.any():
@@ -165,7 +168,7 @@ def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
 
 
 def _converged(dataset: xr.Dataset) -> xr.DataArray:
-    """True for the nodes that converged."""
+    """Return True for nodes that converged."""
     if "converged" in dataset:
         return dataset["converged"] == 1  # a join fills gaps with NaN
     if "tolerance" not in dataset.attrs:
@@ -186,7 +189,7 @@ def poisson_within(ratios: np.ndarray, poisson: float | None) -> float:
     ratios : numpy.ndarray
         Poisson's ratios of the map, ascending.
     poisson : float, optional
-        The argument; None: the only ratio of the map.
+        Requested Poisson's ratio.  None selects the only ratio of the map.
     """
     low, high = float(ratios[0]), float(ratios[-1])
     many = high > low

@@ -1,4 +1,4 @@
-"""Opening of the datasets of sweeps.
+"""Open the datasets of sweeps.
 
 friction = microslip.open_map("transverse")
 friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
@@ -22,7 +22,7 @@ from microslip.foundation.files import refuse_no_folder
 from microslip.sweeps.stamps import is_damaged
 
 SOLVED = {"mu_macro", "velocity_error"}
-"""Variables of a sweep.  Its dataset has at least one of them."""
+"""Variables by which the dataset of a sweep is recognised.  It has at least one of them."""
 
 
 def open_map(
@@ -37,28 +37,29 @@ def open_map(
     Parameters
     ----------
     name : str or path
-        transverse, bore, continuous_bore or another sweep of the configuration, or the path of its
-        dataset.
+        Name of a sweep in the configuration, such as transverse, bore or continuous_bore, or the
+        path of a dataset.
     results : str or path
         Folder with the results of the workflow.
-    chunks : as for xarray.open_dataset
-        {} for arrays of dask.
+    chunks : optional
+        Argument `chunks` of xarray.open_dataset.  Use {} for arrays of dask.
     group : str, optional
-        Group of the file to open in place of the map: velocity_curves and amplitude_curves (limits
-        from theory on fine axes), history (Figure 1), field (Figure 3) or transients (Figure 5).  A
-        sweep may have some of them.
+        Group of the file to open instead of the map: velocity_curves or amplitude_curves (limits
+        from theory on fine axes), history (Figure 1), field (Figure 3) or transients (Figure 5).
+        Each file has only some of these groups.
 
     Returns
     -------
     xarray.Dataset
-        Dimensionless.  A group has the attributes of the map and a title of its own.
+        The map or the group, with dimensionless variables.  A group has the attributes of the map,
+        but its own title.
 
     Raises
     ------
     InputError
-        For an unknown name or group.
+        If the name or the group is unknown.
     CacheError
-        For a file that is missing, damaged or not the dataset of a sweep; the message is one line.
+        If the file is missing, damaged or not the dataset of a sweep.  The message is one line.
     """
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")

@@ -1,4 +1,4 @@
-"""Solver results for points at which a map is not accurate enough."""
+"""Call the solver for points at which a map is not accurate enough."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from microslip.sweeps.solve_stored import solve_stored
 
 
 def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
-    """Call solve_stored with a folder of results, or a temporary folder if that cannot be
-    written."""
+    """Call solve_stored with a folder of results.  If it is read-only, use a temporary folder."""
     try:
         return solve_stored(*point, results=folder, **settings)
     except CacheError as error:
@@ -26,10 +25,10 @@ def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
 
 
 def drive_of(dataset: xr.Dataset) -> dict[str, object]:
-    """Drive and contacts of a dataset, as arguments of microslip.solve; {} for one contact at a
-    prescribed velocity.
+    """Return the drive and the contacts of a dataset as arguments of microslip.solve.
 
-    Raises InputError if the dataset has no value or several values of an argument of its drive.
+    The result is {} for one contact at a prescribed velocity.  Raises InputError if the dataset
+    does not have exactly one value of each argument.
     """
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
     for name in names:
@@ -42,5 +41,5 @@ def drive_of(dataset: xr.Dataset) -> dict[str, object]:
 
 @cache
 def _spare_folder() -> TemporaryDirectory:
-    """A folder that exists until Python ends."""
+    """Create a temporary folder that exists until Python ends."""
     return TemporaryDirectory(prefix="microslip-")

@@ -1,7 +1,7 @@
 """The interpolated surface of a map on a grid that is fine enough to draw.
 
-Datasets hold values at the computed points only, and figures compute nothing. The values between
-the points are therefore interpolated here, with the cubics of `query.interpolation`.
+Datasets contain values at the computed points only. This module interpolates between the points for
+figures, with the cubics of `query.interpolation`.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ class Surface:
         self.values = np.ma.masked_invalid(fine)
 
     def supported(self, levels: ArrayLike) -> np.ma.MaskedArray:
-        """Values on the fine grid, masked in cells where the points do not support contours.
+        """Return the values on the fine grid, masked in cells without reliable contours.
 
-        A contour is supported where the interpolation error is below half the distance between two
+        A contour is reliable if the interpolation error is below half the distance between two
         levels. The error is estimated by leaving points out.
 
         Parameters
@@ -69,7 +69,7 @@ class Surface:
             corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]
             error += np.maximum.reduce(corners)
         cells = error <= np.diff(levels).min(initial=np.inf) / 2.0
-        # A line between two cells is drawn if one of them supports it.
+        # A line between two cells is drawn if it is reliable in one of them.
         rows = _cells(self._rows, self.amplitude)
         columns = _cells(self._columns, self.velocity)
         drawn = np.logical_or.reduce([cells[np.ix_(i, j)] for i in rows for j in columns])
@@ -77,7 +77,7 @@ class Surface:
 
 
 def _subdivided(axis: Axis) -> np.ndarray:
-    """The coordinates of an axis with evenly spaced ones between them."""
+    """Return the coordinates of an axis with evenly spaced coordinates between them."""
     parts = -(-FINE // (len(axis.nodes) - 1))
     share = np.arange(1, parts) / parts
     between = axis.nodes[:-1, None] + share * np.diff(axis.nodes)[:, None]
@@ -87,17 +87,17 @@ def _subdivided(axis: Axis) -> np.ndarray:
 
 
 def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """A table, interpolated along its first axis and clipped to the range of each cell."""
+    """Interpolate a table along its first axis and clip it to the range of each cell."""
     cell, share, nodes, weights = axis.cubics(coordinates)
     cubic = np.einsum("pn,pn...->p...", weights, table[nodes])
     low, high = table[cell], table[np.minimum(cell + 1, len(table) - 1)]
     share = share[:, None]
-    # At a known end the unknown other end has no weight.
+    # At an end with a known value, the unknown value at the other end has no weight.
     line = np.where(share > 0, share * high, 0.0) + np.where(share < 1, (1.0 - share) * low, 0.0)
     return np.where(np.isnan(cubic), line, np.clip(cubic, np.fmin(low, high), np.fmax(low, high)))
 
 
 def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
-    """Indices of the cells left and right of each coordinate, equal inside a cell."""
+    """Return the indices of the cells left and right of each coordinate; equal inside a cell."""
     sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
     return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]

@@ -1,1 +1,1 @@
-"""The explorer: an interactive HTML page of all points."""
+"""The explorer, an interactive HTML page that shows all points."""

@@ -47,8 +47,8 @@ function distanceAt(map, limits, velocity, poisson) {
   return most;
 }
 
-// Friction, its error bound, and the source of the answer: { value, error, source }. Throws a Refusal
-// for bad arguments, and outside the range of a motion without limits.
+// Returns friction, its error bound, and its source: { value, error, source }. Throws a Refusal if an
+// argument is invalid, or if it is outside the range of a motion without limits.
 function frictionAt(map, velocity, amplitude, poisson) {
   for (const [name, value] of Object.entries({ velocity, amplitude })) {
     if (!(Number.isFinite(value) && value >= 0)) refuse(name, value, "allowed is a finite number >= 0");
@@ -114,7 +114,7 @@ function withinTheBalance(limits, value, error, velocity, amplitude) {
   return [kept, Number.isNaN(kept) ? error : Math.min(error, reach)];
 }
 
-// Answers of a map of a motion without limits.
+// Friction from the map alone, for a motion without limits.
 function mapAlone(map, velocity, amplitude, poisson) {
   const what = map.pressure === "hertz" ? map.motion : `pressure ${map.pressure}`;
   const advice = `no limit of ${what} is known: with a tolerance the solver is asked`;

@@ -1,8 +1,8 @@
-"""Data of sweeps without stored periods: maps and lines, with a value and an error for each point.
+"""Pack maps and lines of sweeps without stored periods, with a value and an error for each point.
 
 A sweep over velocities and amplitudes is shown as a map for each Poisson's ratio. Other sweeps, and
-sweeps with a drive, are shown as lines over their longest axis, one for each combination of the
-other axes.
+sweeps with a drive, are shown as lines. The abscissa of the lines is the longest axis, and there is
+one line for each combination of the other axes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
 """Possible axes of a dataset besides Poisson's ratio."""
 DRIVE = "drive"
-"""Attribute of datasets with a drive."""
+"""Attribute that only datasets with a drive have."""
 SPARE_COLOURS = (style.SKY, style.GREY)
 NAMES = {
     name: form
@@ -34,18 +34,18 @@ NAMES = {
     for name, form in forms.items()
     if not name.startswith("mu_torque")
 }
-"""A closed form for each name of a friction limit."""
+"""Name of a closed form for each friction limit."""
 
 
 def is_map(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is shown as maps instead of lines."""
+    """Return whether a dataset is shown as maps instead of lines."""
     if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
         return False
     return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """The maps at all Poisson's ratios, as values for JSON.
+    """Pack the maps at all Poisson's ratios as values for JSON.
 
     Raises ValueError if a variable is missing.
     """
@@ -67,7 +67,7 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """The lines at all Poisson's ratios, as values for JSON.
+    """Pack the lines at all Poisson's ratios as values for JSON.
 
     Raises ValueError if a variable is missing.
     """
@@ -104,7 +104,7 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
 
 
 def _torque(shown: xr.Dataset, along: str) -> list[dict]:
-    """Values and closed form of the torque of a steady bore, which the chart does not show."""
+    """Return the torque of a steady bore, which the chart does not show, and its closed form."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]
@@ -119,7 +119,7 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
-    """Description of a map or of lines. The group of the paper's sweeps is None."""
+    """Return the description of a map or of lines. The group of the paper's sweeps is None."""
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,
@@ -133,17 +133,17 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
 
 
 def axis_label(dataset: xr.Dataset, dim: str) -> str:
-    """Name and formula of an axis, in plotly's HTML."""
+    """Return the name and the formula of an axis as HTML for plotly."""
     said = dataset[dim].attrs
     text = said.get("long_name", dim).split(",")[0]
     return f"{text}  {html(said.get('formula', ''))}".strip()
 
 
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
-    """Theoretical limits of a dataset at one Poisson's ratio.
+    """Return the theoretical limits of a dataset at one Poisson's ratio.
 
     Each limit has values at the points. A limit with a fine axis also has a curve, unless it
-    depends on both axes.
+    depends on both velocity and amplitude.
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})

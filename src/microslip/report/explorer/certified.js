@@ -5,7 +5,7 @@
 
 const SAME_POISSON = 1e-12; // ratios that differ by less are one
 
-// An error with a message of one line for bad arguments.
+// An error for invalid arguments. Its message is one line.
 class Refusal extends Error {}
 
 function refuse(name, value, allowed) {

@@ -1,4 +1,4 @@
-"""Data of certified maps: cells, and parameters of their coordinates."""
+"""Pack certified maps: cells, and parameters of the coordinates."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ def packed(dataset: xr.Dataset) -> dict:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Made by datasets.certified_map.
+        Dataset of datasets.certified_map.
 
     Returns
     -------
     dict
-        Values for JSON, with flat arrays. `values`: friction at the points, null if unknown.
-        `nodes`: number of nodes of a cell in each direction, velocity first. For each cell,
-        `cells`: indices of its points, `borders`: two for each direction, `bounds`: error bound.
+        Values for JSON, with flat arrays. `values` is the friction at the points, null if unknown.
+        `nodes` is the number of nodes of a cell in each direction, with the velocity first. Three
+        arrays describe the cells: `cells` has the indices of the points of each cell, `borders`
+        its two ends in each direction, and `bounds` its error bound.
 
     Raises
     ------
@@ -66,6 +67,6 @@ def packed(dataset: xr.Dataset) -> dict:
 
 
 def gauss_rule() -> dict:
-    """Nodes and weights of the Gauss-Legendre rule on 0 to 1."""
+    """Return the nodes and weights of the Gauss-Legendre rule on 0 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(RULE)
     return {"nodes": plain((nodes + 1) / 2), "weights": plain(weights / 2)}

@@ -235,7 +235,8 @@ function inDegrees(phase) {
   return (phase * 180) / Math.PI;
 }
 
-// Draws the forward force over a period, with its mean of the dataset, and over the other component.
+// Draws the forward force against time with the mean force of the dataset, and against the other
+// component of the force.
 // A dot marks the frame.
 function drawForces(history, loop, period, mu, error, frame) {
   const degrees = period.phase.map(inDegrees);

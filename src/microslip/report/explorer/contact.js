@@ -1,4 +1,5 @@
-// A real contact in SI units: from the texts of the form to the point on the map, and its answer.
+// A real contact in SI units: converts the texts of the form to a point on the map, and returns its
+// friction.
 //
 // The answers equal those of microslip.predict (si/bodies.py, dimensionless.py, validity.py). `si` has
 // the materials, units, rules and messages that si_form.py packs.
@@ -182,8 +183,9 @@ function uncheckedOf(si, { bodies }) {
   });
 }
 
-// The answer to a request; `maps`: certified maps. Throws a Refusal for an impossible contact. Without
-// an answer from a map, `refused` is the reason and `near` the answer at the nearest Poisson's ratio.
+// Returns the friction of a contact. `maps`: certified maps. Throws a Refusal if the contact is
+// impossible. If no map contains the contact, `refused` is the reason, and `near` is the friction at
+// the nearest Poisson's ratio.
 function answerOf(si, maps, question) {
   const contact = contactOf(si, question);
   const [velocity, amplitude] = groupsOf(si, question, contact);

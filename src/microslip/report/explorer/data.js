@@ -12,7 +12,7 @@ function bytesOf(text) {
 
 const decodedMaps = new Map();
 
-// The decoded periods of a map, decoded at the first call.
+// Returns the decoded periods of a map. They are decoded at the first call.
 function decoded(map) {
   if (!decodedMaps.has(map.id)) {
     const p = map.periods;

@@ -2,7 +2,7 @@
 
 This module lists the inputs of a page. `payload` packs datasets, periods and certified maps,
 `si_form` packs the data of the form for a real contact, and `page` writes the page. The JavaScript
-files beside these modules run in the browser; plotly.js draws. The page shows datasets and stored
+files in this folder run in the browser and draw with plotly.js. The page shows datasets and stored
 periods, and evaluates certified maps.
 
 The workflow imports this module whenever it is parsed. Therefore it has few imports.
@@ -18,14 +18,15 @@ from microslip.foundation.canonical import number
 
 SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
-"""Files of the page besides the numbers and plotly.js. Scripts run in this order."""
+"""Files that the page consists of, besides the data and plotly.js. Scripts run in this order."""
 PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
 MAPS = ("transverse", "bore")
-"""Sweeps with stored periods, and motions of the form for a real contact."""
+"""Sweeps with stored periods. The form for a real contact has the motions of the same names."""
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Rings, points on half a ring, and steps of a stored period: enough for 300 pixels."""
+"""Number of rings, of points on half a ring, and of steps of a stored period. The resolution is
+sufficient for a picture of 300 pixels."""
 PERIODS_PER_JOB = 150
-"""Number of periods that a job computes in a few seconds."""
+"""Number of periods in one job, which takes a few seconds."""
 MOST_PERIODS = 1250
 """Maximum number of periods on a page of at most 15 MB. A period takes about 6 kB."""
 MOST_POINTS = 5000
@@ -35,12 +36,12 @@ MOST_OTHERS = 20_000
 
 
 def sweeps_of(configuration: Configuration, page: str) -> list[str]:
-    """Names of the sweeps on a page."""
+    """Return the names of the sweeps on a page."""
     return list(configuration.grids if page == PAGE_OF_ALL else configuration.sweeps)
 
 
 def certified_of(configuration: Configuration) -> list[str]:
-    """Names of the certified maps for real contacts, at most one for each motion.
+    """Return the names of the certified maps for real contacts, at most one for each motion.
 
     A map over a wider range of Poisson's ratios is preferred, then a more accurate map.
     """
@@ -61,12 +62,12 @@ def _preference(map_: CertifiedMap) -> tuple[float, float]:
 
 
 def datasets_of(configuration: Configuration, page: str) -> list[str]:
-    """Names of all datasets of a page."""
+    """Return the names of all datasets of a page."""
     return [*sweeps_of(configuration, page), *certified_of(configuration)]
 
 
 def maps_of(configuration: Configuration) -> list[str]:
-    """Names of the sweeps with stored periods."""
+    """Return the names of the sweeps with stored periods."""
     return [
         name
         for name in MAPS
@@ -75,7 +76,7 @@ def maps_of(configuration: Configuration) -> list[str]:
 
 
 def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
-    """The reason, in one line, why a configuration has no page; None if it has one."""
+    """Return the reason, in one line, why a configuration has no page, or None if it has one."""
     names = maps_of(configuration)
     if not names:
         return (
@@ -100,17 +101,17 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
 
 
 def _count(sweep: Sweep) -> int:
-    """The number of points of a sweep."""
+    """Return the number of points of a sweep."""
     pulls = [values for _, values, _ in sweep.drives]
     axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *pulls)
     return prod(len(axis) for axis in axes if axis)
 
 
 def period_requests(configuration: Configuration, name: str) -> list[dict]:
-    """Requests for the periods of a map, amplitude by amplitude, at the smallest Poisson's ratio.
+    """Return the requests for the periods of a map, at the smallest Poisson's ratio.
 
-    If the map has more points than `MOST_PERIODS` allows, every second, third, ... value of both
-    axes has periods.
+    The velocity varies fastest. If the map has more points than `MOST_PERIODS`, only every second,
+    third, ... value of each axis has periods.
     """
     sweep = configuration.sweeps[name]
     most = MOST_PERIODS // len(maps_of(configuration))
@@ -134,9 +135,9 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
 
 
 def report(periods: dict) -> Iterator[str]:
-    """Lines of a log: the number of periods, and each unconverged one.
+    """Yield lines of a log: the number of periods, and each period that did not converge.
 
-    periods: lists of records by the names of maps.
+    periods: list of records for each map, by name.
     """
     for name, records in periods.items():
         unconverged = [record for record in records if not record["result"]["converged"]]

@@ -195,7 +195,7 @@ function approach({ friction, slowest, static_friction, mu }) {
 
 const OUTSIDE_MAP = /^between /;
 
-// A sentence about the star of the contact on the map: where it is, or that it is outside.
+// Returns a sentence that states where the star of the contact is on the map, or that it is outside.
 function outside({ motion, velocity, amplitude, poisson }) {
   const map = NUMBERS.maps.find((one) => one.motion === motion && one.pressure === "hertz");
   if (map === undefined) return "";

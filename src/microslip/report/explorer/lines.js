@@ -1,4 +1,4 @@
-// A sweep without a map: lines over one axis, and the limits from theory.
+// Draws a sweep without a map: lines against one axis, and the limits from theory.
 
 const COLOURS = [BLUE, VERMILLION, "#009E73", "#CC79A7", "#E69F00", "#56B4E9", GREY, INK];
 

@@ -1,4 +1,4 @@
-"""Write the page as one file: markup, style, plotly.js, scripts and numbers."""
+"""Write the page as one file with markup, style, plotly.js, scripts and data."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Seq
 
 
 def page(content: dict) -> str:
-    """The text of the page; content: value of `payload.build`."""
+    """Return the text of the page. content: result of `payload.build`."""
     template, style, *scripts = (
         (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS
     )
@@ -38,7 +38,7 @@ def page(content: dict) -> str:
         "numbers": numbers,
         "scripts": "\n".join(scripts),
     }
-    # The template is split once, so that a part may contain "@@".
+    # The template is split only once, so that a part can contain "@@".
     pieces = template.split("@@")
     pieces[1::2] = [parts[name] for name in pieces[1::2]]
     return "".join(pieces) + "\n"

@@ -1,8 +1,8 @@
-"""Data of the page as one value for JSON: maps, lines, limits and periods.
+"""Pack the data of the page (maps, lines, limits and periods) as one value for JSON.
 
-Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64:
-tractions to bound/127, phases to 2 pi/65535, radii and bounds to 1/65535, and forces to the largest
-force over 32767.
+Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64, with
+these steps: bound/127 for tractions, 2 pi/65535 for phases, 1/65535 for radii and bounds, and the
+largest force divided by 32767 for forces.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ OTHER_FORCES = {
     "transverse": ("force_lateral", "lateral force / (<i>μF<sub>z</sub></i>)"),
     "bore": ("torque", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>"),
 }
-"""The second force component of each map: its name in a period and its label for plotly."""
+"""The second force component of each map, as its name in a period and its label for plotly."""
 ERRORS = {
     "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
@@ -48,9 +48,9 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        Datasets by the names of their sweeps, see `explorer`.
+        Datasets by the names of the sweeps, see `explorer`.
     periods : dict of list
-        Records of periods by the names of the sweeps with stored periods.
+        Records of periods, by the names of the sweeps with stored periods.
     certified : sequence of xarray.Dataset
         Certified maps for the form for a real contact.
 
@@ -83,7 +83,10 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
 
 
 def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
-    """Maps at all Poisson's ratios. The map at the ratio nearest 0 has periods and all errors."""
+    """Pack the maps at all Poisson's ratios.
+
+    Only the map at the ratio nearest 0 has periods and all errors.
+    """
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
@@ -99,7 +102,7 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
-    """Periods of a map, and their positions by point; -1 means that a point has none."""
+    """Pack the periods of a map, and the index of the period of each point (-1 if it has none)."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
@@ -156,7 +159,7 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
 
 
 def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
-    """Provenance of a map and its periods: pairs of name and text."""
+    """Return the provenance of a map and its periods as pairs of a name and a text."""
     provenance = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
     if "configuration" in provenance:
         provenance["configuration"] = json.dumps(json.loads(provenance["configuration"]), indent=1)

@@ -1,6 +1,6 @@
-"""Data of the form for a real contact: fields, units, materials, rules and messages.
+"""Pack the data of the form for a real contact: fields, units, materials, rules and messages.
 
-They come from microslip.predict, so that the page has the same checks, warnings and messages.
+The data are those of microslip.predict. Thus the page has the same checks, warnings and messages.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from microslip.theory.hertz import D_half
 CHOICES = ("transverse", "bore")
 """Motions of the form."""
 OF_NUMBERS = "by E and ν"
-"""Choice that replaces the name of a material."""
+"""Choice in the list of materials for entering Young's modulus and Poisson's ratio."""
 
 
 @dataclass(frozen=True)
@@ -33,17 +33,17 @@ class Field:
     label : str
         Name on the page and in messages.
     unit : str
-        SI unit, an argument of si.quantities.read.
+        SI unit, as for si.quantities.read.
     units : tuple of str
-        Units to choose from. The first one is the default.
+        Units in the list of the field. The first one is the default.
     example : str
         Default number.
     low_open : bool
-        Whether the smallest allowed value is excluded.
+        True if values must be larger than `low`, False if they can be equal.
     low : float
-        Smallest allowed value.
+        Lower limit.
     high : float or None
-        Largest allowed value; None: no limit.
+        Largest allowed value, or None if there is no upper limit.
     """
 
     label: str
@@ -70,12 +70,12 @@ FIELDS = {
     "stroke": Field("amplitude (half stroke)", "m", ("um", "nm", "mm", "m"), "0.3", False),
     "angle": Field("amplitude (half angle)", "rad", ("mrad", "deg", "rad"), "1", False),
 }
-"""Fields by their names in the scripts, in the order of the form."""
+"""Fields by their names in the scripts, in the order in which the form shows them."""
 SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_nu")}
-"""Both bodies, and the fields that replace the name of a material."""
+"""For each of the two bodies, the fields that replace the name of the material."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
 CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
-"""Default choices of the form besides numbers."""
+"""Default choices of the lists of the form."""
 
 
 def packed() -> dict:
@@ -108,7 +108,7 @@ def packed() -> dict:
 
 
 def _unit(name: str, unit: str) -> dict:
-    """A unit: its factor to the SI unit, and the exponent of the factor if it is a power of ten."""
+    """Return a unit with its factor to the SI unit, and the exponent if that is a power of ten."""
     factor = read(name, f"1 {name}", unit).si
     power = round(math.log10(factor))
     exact = float(f"1e{power}") == factor

@@ -1,1 +1,1 @@
-"""Datasets to figures."""
+"""Draw figures from datasets."""

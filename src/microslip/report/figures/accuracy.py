@@ -1,4 +1,4 @@
-"""Figures of the accuracy study: performance profiles, and effort over the number of unknowns."""
+"""Figures of the accuracy study: performance profiles, and cost of a step against its unknowns."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ GROWTH = {
 
 
 def profile(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the share of points that each competitor solves within a cost.
+    """Draw the performance profiles, with a panel for each contest, at the tightest tolerance.
 
-    There is a panel for each contest, at the tightest tolerance.
+    A profile is the fraction of points that a competitor solves within a cost.
     """
     if not dataset["point"].size or not dataset["competitor"].size:
         raise ValueError(f"figure {name}: the dataset holds no points or no trials")
@@ -47,7 +47,7 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
-    """Draw a line for each competitor: share of points over the ratio to the least cost."""
+    """Draw a line for each competitor: fraction of points against ratio to the smallest cost."""
     ratios = contest["profile_ratio"].transpose("competitor", "point").values
     high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
     names = contest["competitor"].values.astype(str)
@@ -85,7 +85,7 @@ def scaling(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _growth(axes: Axes, dataset: xr.Dataset, quantity: str) -> None:
-    """Draw a quantity of every model over the number of unknowns."""
+    """Draw a quantity of every model against the number of unknowns."""
     axes.set(xscale="log", yscale="log")
     for index, model in enumerate(dataset["scaling_model"].values.astype(str)):
         of_model = dataset.isel(scaling_model=index).sortby("scaling_unknowns")

@@ -31,20 +31,20 @@ OUTCOMES = {
 good to bad, so that they differ in grey as well."""
 BLANK = "blank: the method does not apply"
 SIZES = ((27, 0.15), (33, 0.15), (33, 0.12), (40, 0.12), (40, 0.105))
-"""Number of squares and gaps in a row of blocks, and height of a square in inches, best first."""
+"""Layouts to try, best first: number of squares and gaps in a row, height of a square in inches."""
 WIDTH, HEIGHT = 6.0, 9.7
-"""Width of all squares in a row, and the height of the page, in inches."""
+"""Total width of the squares in a row, and height of the page, both in inches."""
 NARROWEST = 5
-"""Width of a heading in squares."""
+"""Smallest width of a block, as a number of squares, so that its heading fits."""
 HEAD, FOOT = 0.75, 0.95
 """Height in inches of the headings of a row of blocks, and of the legend."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """An axis of the atlas: title, note, labels of its cases, and outcomes.
+    """A block of the atlas, with its title, its note, the labels of its cases, and the outcomes.
 
-    outcome: codes, shape (methods, cases).
+    outcome: codes of the outcomes, shape (methods, cases).
     """
 
     title: str
@@ -59,7 +59,7 @@ class Block:
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the atlas: rows of blocks. A row has the methods that apply to one of its cases."""
+    """Draw the atlas as rows of blocks. A row shows the methods that apply to any of its cases."""
     methods, blocks = _read(dataset)
     for squares, row in SIZES:
         bands = _bands(blocks, squares)
@@ -87,7 +87,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _bands(blocks: list[Block], squares: int) -> list[list[Block]]:
-    """Distribute the blocks in order over rows of at most `squares` squares."""
+    """Divide the blocks, in order, into rows of at most `squares` squares."""
     bands: list[list[Block]] = [[]]
     for block in blocks:
         if bands[-1] and sum(one.width for one in [*bands[-1], block]) > squares + 1:
@@ -97,7 +97,7 @@ def _bands(blocks: list[Block], squares: int) -> list[list[Block]]:
 
 
 def _read(dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
-    """The methods, with the default one first, and a block for every axis with cases."""
+    """Return the methods, with the default one first, and a block for every axis with cases."""
     outcome = dataset["outcome"].transpose("method", "case").values.astype(int)
     methods = dataset["method"].values.astype(str)
     first = np.argsort(methods != "shipped", kind="stable")
@@ -112,14 +112,14 @@ def _read(dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
 
 
 def _methods_of(band: list[Block]) -> np.ndarray:
-    """Indices of the default method and of methods that apply to a case of the row."""
+    """Return the indices of the default method and of all methods that apply to a case of a row."""
     used = np.any([(block.outcome != 0).any(axis=1) for block in band], axis=0)
     used[0] = True
     return np.flatnonzero(used)
 
 
 def _squares(axes: Axes, outcome: np.ndarray) -> None:
-    """Draw a square with a symbol for each method and case; outcome: shape (methods, cases)."""
+    """Draw a square with a symbol for each method and case. outcome: shape (methods, cases)."""
     fills = ListedColormap([fill for _, fill, *_ in OUTCOMES.values()])
     ink: look.Ink = {"vmin": 0.5, "vmax": len(OUTCOMES) + 0.5, "edgecolors": "white", "lw": 0.8}
     axes.pcolormesh(np.ma.masked_equal(outcome, 0), cmap=fills, gid="outcome", **ink)
@@ -142,7 +142,7 @@ def _labels(axes: Axes, block: Block, names: list[str], square: float) -> None:
     axes.set_yticks(np.arange(len(names)) + 0.5, names)
     axes.tick_params(length=0, pad=1.5, top=False, labeltop=True, labelbottom=False)
     axes.tick_params(labelsize=look.SMALLEST)
-    # The default method is framed.
+    # The default method has a frame.
     frame: look.Ink = {"fill": False, "ec": look.BLACK, "zorder": 4, "clip_on": False}
     axes.add_patch(Rectangle((0, 0), cases, 1, **frame))
     axes.get_yticklabels()[0].set_fontweight("bold")

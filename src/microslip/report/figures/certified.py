@@ -1,4 +1,4 @@
-"""Figure of a certified map: friction, its cells and points, and the error bounds of the cells.
+"""Figure of a certified map: friction, cells and points of the map, and error bounds of the cells.
 
 A certified map of drift has the velocity under a force instead of friction.
 """
@@ -27,15 +27,15 @@ BOUND = "bound of the error,\nthousandths  (dimensionless)"
 DIMENSIONLESS = "(dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
-"""Number of coordinates along an axis at which a map, or a line, is evaluated."""
+"""Numbers of coordinates along an axis at which a map, and a line, are evaluated."""
 SIDE = np.linspace(0.0, 1.0, 17)
-"""Positions along a side of a cell. The side is curved on the map."""
+"""Relative positions of points along a side of a cell. A side is curved in the figure."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map with its cells and points, and the error bound of each cell.
 
-    A map over several Poisson's ratios is drawn at the smallest one. A map of the static limit is
+    A map with several Poisson's ratios is drawn at the smallest one. A map of the static limit is
     drawn as a line.
     """
     if is_static(dataset) and not certified_map.is_of_drift(dataset):
@@ -65,7 +65,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _drift(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
-    """Draw the velocity over force and amplitude, grey where the contact stays at rest."""
+    """Draw the velocity as a function of force and amplitude, grey where the contact is at rest."""
     coordinates = certified_map.coordinates_in(dataset)
     assert isinstance(coordinates, DriftCoordinates)  # maps of drift have these coordinates
     force = np.linspace(0.0, coordinates.force, NODES)
@@ -98,9 +98,9 @@ def _show_cells(
 
 
 def _lines(dataset: xr.Dataset) -> Figure:
-    """Draw the static limit over the amplitude, and its error bound.
+    """Draw the static limit and its error bound as functions of the amplitude.
 
-    The lines belong to the smallest and the largest Poisson's ratio.
+    There are lines for the smallest and the largest Poisson's ratio.
     """
     figure = look.new_figure(look.DOUBLE, 2.6)
     left, right = figure.subplots(1, 2, sharex=True)
@@ -127,7 +127,7 @@ def _points_of(dataset: xr.Dataset) -> str:
 
 
 def _is_deep(dataset: xr.Dataset) -> bool:
-    """Whether the map has several Poisson's ratios."""
+    """Return whether the map has several Poisson's ratios."""
     return dataset["poisson"].ndim > 0
 
 
@@ -138,7 +138,7 @@ def _points(dataset: xr.Dataset, poisson: float) -> xr.Dataset:
 
 
 def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
-    """Outlines, shape (n, 2) each, and error bounds of the cells at the smallest ratio."""
+    """Return outlines, shape (n, 2), and error bounds of the cells at the smallest ratio."""
     coordinates = certified_map.coordinates_in(dataset)
     ends = [
         [dataset[name].values for name in certified_map.BORDERS[direction]]

@@ -1,4 +1,4 @@
-"""Figures of the study `claims`: static limits, shares of the friction bound, and stick zones."""
+"""Figures of the study `claims`: static limits, fractions of the friction bound, stick zones."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ AREAS = (
 
 
 def static(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw friction over amplitude, and shares of the friction bound over the radius."""
+    """Draw friction against the amplitude, and fractions of the bound against the radius."""
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
     for column, (motion, title, quantity, curves) in enumerate(MOTIONS):
@@ -60,7 +60,7 @@ def static(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> None:
-    """Draw limit and formulas as lines, computed points and the paper's run as markers."""
+    """Draw the limit and the formulas as lines, and points and the paper's run as markers."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, name, color, ls in curves:
         label = FORMS[motion][name].equation or FORMS[motion][name].label
@@ -81,7 +81,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> No
 
 
 def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
-    """Draw the shares of the bound for oscillation (solid) and forward friction (dashed)."""
+    """Draw the fractions of the bound for oscillation (solid) and forward friction (dashed)."""
     radius, dim = dataset["share_radius"].values, f"{motion}_share_amplitude"
     amplitudes = dataset[dim].values
     shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
@@ -97,7 +97,7 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) ->
 
 
 def patches(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the contact at three moments of a bore, and the stick area over a period."""
+    """Draw the contact at three moments of an oscillating bore, and the stick area in a period."""
     figure = look.new_figure(look.DOUBLE, 5.2)
     grid = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.72))
     contacts = [grid[which] for which in "abc"]
@@ -112,7 +112,7 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
-    """Draw points in stick coloured by traction over bound, and points in slip white."""
+    """Draw points that stick, coloured by traction divided by bound. Points that slip are white."""
     lateral, forward, share = columns(at, "patch_lateral", "patch_forward", "patch_share")
     line = np.linspace(-1.0, 1.0, PIXELS)
     x, y = np.meshgrid(line, line)
@@ -134,7 +134,7 @@ def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
 
 
 def _areas(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw the stick area over the contact area."""
+    """Draw the stick area as a fraction of the contact area."""
     phase = dataset["patch_phase"].values / np.pi
     for variable, label, color, ls in AREAS:
         axes.plot(phase, dataset[variable].values, color=color, ls=ls, label=label, gid=variable)

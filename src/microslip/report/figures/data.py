@@ -1,4 +1,4 @@
-"""Read datasets for figures: files, checks, Poisson's ratios, curves along one dimension."""
+"""Read and check datasets for figures, and select Poisson's ratios and curves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 
 def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read a dataset and the groups of its file into one dataset for `draw`.
+    """Read a file with its groups into one dataset for `draw`.
 
     Raises CacheError if the file is missing or damaged.
     """
@@ -42,7 +42,7 @@ def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]
 
 
 def at_one_poisson(dataset: xr.Dataset) -> tuple[xr.Dataset, float]:
-    """Select the Poisson's ratio nearest 0, as in the paper; returns the dataset and the ratio."""
+    """Select the Poisson's ratio nearest 0 (as in the paper). Returns the dataset and the ratio."""
     if "poisson" not in dataset.variables:
         return dataset, 0.0
     if "poisson" in dataset.dims:
@@ -59,7 +59,7 @@ def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
 
 
 def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float]:
-    """Reduce a dataset so that `mu_macro` has exactly the dimensions `dims`, ascending.
+    """Reduce a dataset so that `mu_macro` has the dimensions `dims` only, in ascending order.
 
     Returns the dataset and its Poisson's ratio. Raises ValueError if a dimension is missing, or if
     another dimension has more than one entry.
@@ -76,12 +76,12 @@ def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float
 
 
 def limit(dataset: xr.Dataset, name: str) -> xr.DataArray:
-    """A theoretical limit, on its own fine axis if the dataset has one."""
+    """Return a theoretical limit, on a fine axis if the dataset has one."""
     return dataset[f"{name}_curve"] if f"{name}_curve" in dataset else dataset[name]
 
 
 def curve(variable: xr.DataArray, **at: float) -> Curve:
-    """Abscissa and ordinate of a variable along its only dimension after the selection `at`.
+    """Return abscissa and ordinate of a variable along the dimension that `at` does not select.
 
     Dimensions in `at` that the variable does not have are ignored.
     """
@@ -92,7 +92,7 @@ def curve(variable: xr.DataArray, **at: float) -> Curve:
 
 
 def columns(dataset: xr.Dataset, *names: str) -> tuple[np.ndarray, ...]:
-    """The values of several variables as arrays."""
+    """Return the values of several variables as arrays."""
     return tuple(dataset[name].values for name in names)
 
 

@@ -1,7 +1,8 @@
 """Draw figures from datasets and save them.
 
-Figures compute nothing: every curve, including those from theory, is a variable of a dataset. Each
-kind of figure has a module. The module `style` defines colours and fonts, `data` checks datasets.
+Figures show stored numbers only: every curve, including those from theory, is a variable of a
+dataset. Each kind of figure has a module. The module `style` defines colours and fonts, and `data`
+checks datasets.
 
     figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
@@ -48,15 +49,15 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "propulsion": ("propulsion.draw", "propulsion"),
     "fit": ("fit.draw", "fit"),
 }
-"""Module and function that draw each figure, and its datasets."""
+"""For each figure, the module and function that draw it, and the names of its datasets."""
 
 ON_DEMAND = {"fit": ("fit",)}
-"""Figures that commands draw from their own results, and their datasets."""
+"""Figures that commands draw from their own results, and the names of their datasets."""
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
-"""Figures of the workflow and their datasets.
+"""Figures of the workflow, and the names of their datasets.
 
-Figures whose names depend on the configuration are not listed: those of groups in `extended`, see
-`figure_of`, and those of certified maps.
+Figures whose names depend on the configuration are not included. These are the figures of groups in
+`extended`, see `figure_of`, and of certified maps.
 """
 
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
@@ -81,18 +82,21 @@ __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
 
 def figure_of(group: str) -> str:
-    """Name of the figure of a group of sweeps in `extended`."""
+    """Return the name of the figure of a group of sweeps in `extended`."""
     return f"extended_{group}"
 
 
 def modules_of(name: str) -> tuple[str, ...]:
-    """Paths inside the package of the modules that draw a figure, without their imports."""
+    """Return the paths of the modules that draw a figure, relative to the package.
+
+    Modules that these modules import are not included.
+    """
     folder = "report/figures"
     return f"{folder}/drawing.py", f"{folder}/{_function_of(name)[0]}.py"
 
 
 def _function_of(name: str) -> tuple[str, str]:
-    """The module and the function that draw a figure."""
+    """Return the names of the module and the function that draw a figure."""
     other = "certified.draw" if name.startswith(CERTIFIED) else "groups.draw"
     module, _, function = _DRAWN.get(name, (other,))[0].partition(".")
     return module, function
@@ -107,7 +111,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         A key of `FIGURES` or `ON_DEMAND`, the value of `figure_of` for a group, or the name of a
         certified map.
     datasets : dict of xarray.Dataset
-        The datasets of the figure by their keys, or all datasets of the group. Others are ignored.
+        The datasets of the figure by name, or all datasets of the group. Others are ignored.
 
     Returns
     -------
@@ -117,7 +121,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Raises
     ------
     ValueError
-        If the name is unknown, a dataset has another motion, or a dataset or variable is missing.
+        If the name is unknown, a dataset has the wrong motion, or a dataset or variable is missing.
     """
     keys = _keys_of(name, datasets)
     missing = [key for key in keys if key not in datasets]
@@ -149,7 +153,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 def _missing_variable(
     name: str, datasets: Mapping[str, xr.Dataset], error: KeyError
 ) -> KeyError | ValueError:
-    """An error that names the dataset without the variable of an xarray KeyError.
+    """Convert a KeyError of xarray to an error that names the dataset without the variable.
 
     Other errors are returned unchanged.
     """
@@ -162,7 +166,7 @@ def _missing_variable(
 
 
 def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
-    """Keys of the datasets of a figure."""
+    """Return the names of the datasets of a figure."""
     if name in _DRAWN:
         return _DRAWN[name][1:]
     if name.startswith(CERTIFIED):
@@ -178,7 +182,7 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
-    """Provenance of datasets as JSON: a list of their attributes in `PROVENANCE`."""
+    """Return the provenance of datasets, their attributes in `PROVENANCE`, as a list in JSON."""
     attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
     return json.dumps(attributes, sort_keys=True)
 

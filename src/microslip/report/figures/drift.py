@@ -30,7 +30,7 @@ UNCONVERGED: look.Ink = {"color": look.BLACK, "marker": "x", "ls": "none"}
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw the velocity over force and amplitude for transverse oscillation and for bore."""
+    """Draw the velocity by force and amplitude, for transverse oscillation and oscillating bore."""
     figure = look.new_figure(look.DOUBLE, 3.3)
     grid = figure.subplots(1, len(datasets))
     any_unconverged = False
@@ -69,7 +69,7 @@ def velocity_bar(filled: ContourSet, grid: Axes | list[Axes]) -> None:
 
 
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
-    """Draw one map; returns its bands and whether it has unconverged points."""
+    """Draw one map. Returns its bands and whether it has unconverged points."""
     motion = dataset.attrs["motion"]
     part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
     part = part.transpose("amplitude", "force", ...)

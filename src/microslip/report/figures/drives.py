@@ -1,4 +1,4 @@
-"""Figures of drives: friction over velocity under each drive, a mass on a spring, pairs."""
+"""Figures of drives: friction against velocity for each drive, a mass on a spring, and pairs."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ GOOD = 0.01
 AS_A_VELOCITY = 1e5
 """Smallest dimensionless stiffness that is labelled as a constant velocity."""
 MARGIN = 1.1
-"""Ratio of the ends of the axis to the first and the last velocity."""
+"""Factor by which the axis of the velocity extends beyond the first and the last velocity."""
 MU = ("mu_macro", "mu_macro_error", "converged")
 
 
 def drives(
     name: str, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
 ) -> Figure:
-    """Draw friction over the mean velocity, and over the mass at one velocity."""
+    """Draw friction against the mean velocity, and against the mass at one velocity."""
     require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
@@ -39,7 +39,7 @@ def drives(
 
 
 def pairs(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw friction over the mean velocity of one contact and of two contacts in antiphase."""
+    """Draw friction against the mean velocity, for one contact and two contacts in antiphase."""
     one, pair, force = map(_one, datasets)
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -66,7 +66,7 @@ def pairs(name: str, *datasets: xr.Dataset) -> Figure:
 def _over_velocity(
     axes: Axes, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset
 ) -> None:
-    """Draw friction over the mean velocity under all drives."""
+    """Draw friction against the mean velocity for all drives."""
     springs = _one(spring)
     amplitude = float(springs["amplitude"])
     velocity, mu = columns(_constant_velocity(transverse, amplitude), "velocity", "mu_macro")
@@ -81,7 +81,7 @@ def _over_velocity(
 
 
 def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
-    """Draw friction over the mass on a spring, and friction at a constant velocity."""
+    """Draw friction against the mass on a spring, and friction at a constant velocity."""
     bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
     mu = float(_at(_constant_velocity(transverse, amplitude), "velocity", velocity)["mu_macro"])
@@ -108,7 +108,7 @@ def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", 
 
 
 def _force(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw constant forces over the mean velocities of contacts that move."""
+    """Draw constant forces against the mean velocities of contacts that move."""
     moving = dataset.isel(force=(dataset["velocity"].values > 0.0))
     velocity, force, converged = columns(moving, "velocity", "force", "converged")
     label, exact = "constant force", np.zeros(force.size)
@@ -131,7 +131,7 @@ def _constant_velocity(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
 
 
 def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
+    """Select a value of a dimension, except for rounding. Raises ValueError if it is missing."""
     same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
     if not same.size:
         raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")

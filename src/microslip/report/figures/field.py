@@ -25,7 +25,7 @@ SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw traction arrows on the friction bound. The lateral axis is horizontal."""
+    """Draw traction arrows over a colour map of the bound, with a horizontal lateral axis."""
     dataset, _ = at_one_poisson(dataset)
     x, y = columns(dataset, "field_lateral_position", "field_forward_position")
     tractions = columns(dataset, "field_traction_lateral", "field_traction_forward")
@@ -56,7 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> ScalarMappable:
-    """Shade the friction bound. Between the outermost cells and the rim it is constant."""
+    """Draw the friction bound, which is constant between the outermost cells and the rim."""
     angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
     rim_x, rim_y = np.cos(angle), np.sin(angle)
     nearest = griddata((x, y), bound, (rim_x, rim_y), method="nearest")

@@ -22,7 +22,7 @@ CONDITIONS = {
     "row_load_N": ("load", "N"),
     "frequency_Hz": ("frequency", "Hz"),
 }
-"""Conditions that can differ between rows: name and SI unit."""
+"""Name and SI unit of the conditions that can differ between rows."""
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PARAMETERS = (
     (r"\mu", "mu{}", ""),
@@ -31,16 +31,16 @@ PARAMETERS = (
 )
 """Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
 BAND = 2.0
-"""Half width in standard errors of the band with about 95 % of the residuals."""
+"""Half the width of the band with about 95 % of the residuals, in standard errors."""
 WIDE = 10.0
-"""Ratio of the ends of an axis above which it is logarithmic."""
+"""An axis is logarithmic if the ratio of its ends is above this number."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw measured and fitted friction above, residuals below.
 
     The abscissa is the condition with the most values. Rows that differ in another condition have
-    another colour and marker. The line is the model curve, with a band for the error of the model.
+    different colours and markers. The line is the model curve, with a band for the model error.
     A row without a model curve has a short dash at the friction of the model.
     """
     abscissa = abscissa_of({each: dataset[each].values for each in CONDITIONS})
@@ -89,7 +89,7 @@ def _model(
     *,
     ink: tuple[str, str, Any],
 ) -> None:
-    """Draw the model curve of rows that differ in the abscissa only, else a dash for each row."""
+    """Draw a model curve if the rows differ in the abscissa only, else a dash for each row."""
     color, _, ls = ink
     others = [each for each in CONDITIONS if each != abscissa]
     here = np.ones(dataset[f"curve_{abscissa}"].shape, bool)
@@ -108,9 +108,10 @@ def _model(
 
 
 def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
-    """Titles and row indices of the series. They differ in a condition other than the abscissa.
+    """Return the titles and the row indices of the series.
 
-    If there are more series than line styles, all rows are one series.
+    Rows of different series differ in a condition other than the abscissa. If there are more series
+    than line styles, all rows are one series.
     """
     others = [
         each for each in CONDITIONS if each != abscissa and len(np.unique(dataset[each].values)) > 1
@@ -127,7 +128,7 @@ def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
 
 
 def _unit(condition: str, dataset: xr.Dataset) -> str:
-    """SI unit of a condition. The amplitude of a bore is an angle."""
+    """Return the SI unit of a condition. The amplitude of a bore is an angle."""
     if condition == "amplitude_si" and dataset.attrs.get("motion") == "bore":
         return "rad"
     return CONDITIONS[condition][1]
@@ -139,14 +140,17 @@ def _value(condition: str, value: float, dataset: xr.Dataset) -> str:
 
 
 def _prefix(values: np.ndarray | float, unit: str) -> tuple[float, str]:
-    """A power of ten for values in a unit, and the unit with its prefix. Without a unit it is 1."""
+    """Return the power of ten of an SI prefix for values, and the unit with this prefix.
+
+    Without a unit, the power is 1.
+    """
     largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
     power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
     return 10.0**power, EngFormatter.ENG_PREFIXES[power] + unit
 
 
 def _parameters(dataset: xr.Dataset) -> str:
-    """The fitted parameters as text, each with the larger half of its interval."""
+    """Return the fitted parameters as text, each with the larger half of its interval."""
     parts = []
     for symbol, name, unit in PARAMETERS:
         names = [name.format(part) for part in ("", "_low", "_high")]

@@ -1,4 +1,4 @@
-"""Plain-text formulas of motions, such as "v0 / (omega u_lim)", as mathtext and HTML."""
+"""Convert formulas in plain text, such as "v0 / (omega u_lim)", to mathtext and HTML."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
 def mathtext(formula: str) -> str:
-    """A formula as mathtext. If it contains words, only its symbols are mathtext.
+    """Convert a formula to mathtext. If it contains words, only its symbols are mathtext.
 
     A symbol is a letter or the name of a Greek letter, with an optional number or index: x, v0,
     u_lim, phi_lk. Other sequences of letters are words.
@@ -36,13 +36,13 @@ def mathtext(formula: str) -> str:
 
 
 def axis_label(dataset: xr.Dataset, dim: str, default: str = "") -> str:
-    """Name and formula of an axis, or the name and `default` if the axis has no formula."""
+    """Return the name and the formula of an axis. `default` replaces a missing formula."""
     name = "forward velocity" if dim == "velocity" else dim
     return f"{name}  {mathtext(dataset[dim].attrs.get('formula', default))}".strip()
 
 
 def html(formula: str) -> str:
-    """A formula as HTML, with italic letters and subscripts."""
+    """Convert a formula to HTML with italic letters and subscripts."""
 
     def symbol(match: re.Match[str]) -> str:
         letters, number, index = match.groups()
@@ -55,7 +55,7 @@ def html(formula: str) -> str:
 
 
 def _symbol(match: re.Match[str]) -> str:
-    """The LaTeX symbol of a match of _WORD, "" for a word."""
+    """Return the LaTeX symbol of a match of _WORD, or "" for a word."""
     letters, number, index = match.groups()
     if letters not in GREEK and len(letters) > 1:
         return ""
@@ -65,6 +65,6 @@ def _symbol(match: re.Match[str]) -> str:
 
 
 def _in_words(match: re.Match[str]) -> str:
-    # A single letter may be a word, such as an article.
+    # A single letter can be a word, such as an article.
     plain = len(match[0]) == 1 or not _symbol(match)
     return match[0] if plain else f"${_symbol(match)}$"

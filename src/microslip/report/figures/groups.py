@@ -1,4 +1,4 @@
-"""Figure of a group of sweeps in `extended`: a panel with a map, or a line, for each sweep."""
+"""Figure of a group of sweeps in `extended`, with a map or a line for each sweep."""
 
 from __future__ import annotations
 
@@ -27,24 +27,25 @@ from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Number of columns by the number of maps, else 3."""
+"""Number of columns for each number of maps. For all other numbers it is 3."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height in inches of a row of maps by the number of columns, and height of both margins."""
+"""Height in inches of a row of maps for each number of columns, and of the margins together."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Levels of contours, fewer than on a large map."""
+"""Levels of the contours. There are fewer levels than on a large map."""
 BEYOND = 0.01
-"""Excess below 0 or above 1 that is attributed to the errors of the points."""
+"""Largest excess below 0 or above 1 that is attributed to the errors of the points."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
-"""Closed forms that are drawn at Poisson's ratio 0, by the horizontal axis."""
+"""Closed forms that are drawn at Poisson's ratio 0, for each horizontal axis."""
 JOINING = 0.5
-"""Width in points of lines between markers."""
+"""Width in points of the lines that join markers."""
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw maps if every dataset has two amplitudes and two velocities above 0, lines if none has.
+    """Draw a map or a line for every Poisson's ratio of each dataset.
 
-    Every Poisson's ratio of a dataset has a map or a line. If there is room, `poisson.draw` shows
-    the effect of the ratio instead.
+    The figure has maps if every dataset has at least two amplitudes and two velocities above 0. It
+    has lines if no dataset has them. If there is enough space, `poisson.draw` draws the effect of
+    Poisson's ratio instead.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
@@ -62,7 +63,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 
 def _spans_a_map(dataset: xr.Dataset) -> bool:
-    """Whether the dataset has two amplitudes and two velocities above 0."""
+    """Return whether a dataset has at least two amplitudes and two velocities above 0."""
     positive = int((dataset["velocity"] > 0).sum())
     return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
 
@@ -96,9 +97,9 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
-    """Levels of bands and of contours.
+    """Return the levels of the bands and the levels of the contours.
 
-    The bands span 0 to 1, extended to the smallest and the largest value.
+    The bands cover 0 to 1, extended to the smallest and the largest value.
     """
     low = min(float(dataset["mu_macro"].min()) for dataset in datasets)
     high = max(float(dataset["mu_macro"].max()) for dataset in datasets)
@@ -114,7 +115,7 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray]:
 def _label_maps(
     figure: Figure, grid: Sequence[Axes], dim: str, datasets: Sequence[xr.Dataset]
 ) -> None:
-    """Label an axis once for all panels if they share it, else on each panel."""
+    """Label an axis once if all panels have the same label, else on each panel."""
     texts = [mathtext(dataset[dim].attrs.get("formula", "")) for dataset in datasets]
     if len(set(texts)) == 1:
         write = figure.supxlabel if dim == "velocity" else figure.supylabel
@@ -130,7 +131,7 @@ def _label_maps(
 
 
 def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """Draw a line for each dataset: static friction over amplitude, or friction over velocity."""
+    """Draw static friction against the amplitude, or friction against the velocity, as lines."""
     (dim,) = {"amplitude" if d.sizes.get("amplitude", 0) > 1 else "velocity" for d in datasets}
     figure = look.new_figure(5.2, 3.3)
     axes = figure.subplots()
@@ -162,7 +163,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
-    """Draw a closed form or the computed static limit; returns whether the dataset has one."""
+    """Draw a closed form or the computed static limit. Returns whether the dataset has one."""
     forms = [variable for variable in THEORY[dim] if variable in dataset]
     if forms and float(dataset["poisson"]) == 0.0:
         line = limit(dataset, forms[0])
@@ -177,7 +178,7 @@ def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
 
 
 def _marks(axes: Axes, points: xr.Dataset, dim: str, color: str, marker: str) -> None:
-    """Draw computed points with errors, joined by a thin line; unconverged ones are hollow."""
+    """Draw computed points with errors, joined by a thin line. Unconverged points are hollow."""
     x, y, error = map(finite_or_nan, columns(points, dim, "mu_macro", "mu_macro_error"))
     axes.plot(x, y, color=color, lw=JOINING, alpha=0.6, zorder=1.5)
     converged = points["converged"].values != 0

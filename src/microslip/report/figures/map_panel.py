@@ -22,7 +22,7 @@ from microslip.report.figures.data import columns
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
 FEW = len(LINE_LEVELS)
-"""Number of points along an axis below which the points are drawn."""
+"""The points are drawn if there are fewer than this along an axis."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
@@ -36,10 +36,10 @@ def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
 
 
 def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
-    """Write numbers on contours once the panel has its final size.
+    """Write numbers on contours after the layout has given the panel its final size.
 
     A number is placed where the other contours are farthest away. A contour without enough space
-    has no number.
+    for a number has none.
 
     Parameters
     ----------
@@ -76,10 +76,10 @@ def fill(
     lines: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, list[Artist], int]:
-    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as by `microslip.at`.
+    """Fill a panel with `mu_macro` by velocity and amplitude, interpolated as in `microslip.at`.
 
-    Contours end where the interpolation is too uncertain, see `Surface.supported`. Then, and on
-    coarse maps, the computed points are drawn as well.
+    Contours end where the interpolation is too uncertain, see `Surface.supported`. In this case,
+    and on coarse maps, the computed points are drawn as well.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def fill(
     surface = Surface(velocity, amplitude, mu)
     grid = surface.velocity, surface.amplitude
     colours, norm = signed.scale(fills)
-    # Values outside the levels due to rounding would be white.
+    # Values that are outside the levels due to rounding would be white.
     inside = np.clip(surface.values, fills[0], fills[-1])
     filled = bands(axes, *grid, inside, levels=fills, cmap=colours, norm=norm)
     supported = surface.supported(lines)

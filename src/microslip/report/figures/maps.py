@@ -1,4 +1,4 @@
-"""Figures 2 and 6: mu_macro over velocity and amplitude, with cuts along two edges of the map."""
+"""Figures 2 and 6: maps of mu_macro, with cuts along two edges of the maps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from microslip.report.figures.map_panel import fill
 from microslip.theory.catalogue import FORMS, STATIC
 
 MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
-"""Motion of each figure."""
+"""Motion that each figure shows."""
 LARGE = "mu_large_amplitude"
 CURVES: dict[str, dict[str, tuple[str, Any]]] = {
     "transverse": {
@@ -36,7 +36,7 @@ CURVES: dict[str, dict[str, tuple[str, Any]]] = {
 }
 """Colour and line style of the closed forms of each motion."""
 NOTHING = 0.02
-"""The horizontal axis of a cut ends where all curves are below this friction."""
+"""Friction below which curves are not shown. The horizontal axis of a cut ends accordingly."""
 POISSONS = (
     (look.BLACK, "o"),
     (look.PURPLE, "s"),
@@ -47,19 +47,20 @@ POISSONS = (
 )
 """Colour and marker of the points at each Poisson's ratio, ascending."""
 ACROSS = 3
-"""Maps in a row."""
+"""Number of maps in a row."""
 ROW = {2: 2.9, 3: 2.4}
-"""Height in inches of a row of maps, by the number of maps in it."""
+"""Height in inches of a row of maps, by the number of maps in the row."""
 
 Cut = list[tuple[xr.Dataset, float]]
-"""Datasets at one Poisson's ratio each, and these ratios."""
+"""Pairs of a dataset at one Poisson's ratio and this ratio."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the map `name` with the cuts at the smallest velocity and at the largest amplitude.
+    """Draw the figure `name`: maps, and cuts at the smallest velocity and the largest amplitude.
 
-    There is one map for each Poisson's ratio; the cuts show all ratios. If the dataset has more
-    ratios than `POISSONS` has entries, an evenly spaced selection is drawn and the title says so.
+    There is one map for each Poisson's ratio, and each cut shows all ratios. If the dataset has
+    more ratios than `POISSONS` has entries, an evenly spaced selection is drawn, and the title
+    states this.
     """
     motion, every = MOTIONS[name], at_each_poisson(dataset)
     require(name, motion, dataset, ("amplitude", "velocity"))
@@ -93,7 +94,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
-    """A new figure, its panels for `count` maps, and its panels for the two cuts."""
+    """Return a new figure, the panels for `count` maps, and the panels for the two cuts."""
     if count == 1:
         figure = look.new_figure(look.DOUBLE, 4.2)
         left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
@@ -110,7 +111,7 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
 
 
 def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
-    """Draw mu_macro over amplitude at the smallest velocity, with the static limits."""
+    """Draw mu_macro against the amplitude at the smallest velocity, with the static limits."""
     velocity = float(parts[0][0]["velocity"][0])
     for name in CURVES[motion]:
         if name != LARGE:
@@ -123,7 +124,7 @@ def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
 
 
 def _where_not_zero(axes: Axes) -> tuple[float, float]:
-    """The horizontal range in which a line is above `NOTHING`, extended by half its length."""
+    """Return the horizontal range in which a line is above `NOTHING`, extended by a half."""
     x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
     last = x[y > NOTHING].max(initial=x.min())
     following = x[x > last].min(initial=x.max())
@@ -131,7 +132,7 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
 
 
 def _large_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
-    """Draw mu_macro over velocity at the largest amplitude, with its limit."""
+    """Draw mu_macro against the velocity at the largest amplitude, with the limit from theory."""
     amplitude = float(parts[0][0]["amplitude"][-1])
     _curve(axes, parts, motion, LARGE, amplitude=amplitude)
     _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in parts], "velocity")
@@ -148,13 +149,13 @@ def _curve(axes: Axes, parts: Cut, motion: str, name: str, **at: float) -> None:
     form, (color, ls) = FORMS[motion][name], CURVES[motion][name]
     label = form.label
     if name == STATIC and not form.any_poisson and any(poisson > 0 for _, poisson in parts):
-        label = r"limit at $\nu = 0$"  # it is exact for this ratio only
+        label = r"limit at $\nu = 0$"  # the closed form is exact for this ratio only
     x, y = curve(limit(parts[0][0], name), **at)
     axes.plot(x, y, color=color, ls=ls, label=label, gid=name)
 
 
 def _points(axes: Axes, cut: Cut, dim: str) -> None:
-    """Draw the computed points of a cut and set its vertical axis."""
+    """Draw the computed points of a cut and set the vertical axis."""
     for (line, poisson), (color, marker) in zip(cut, POISSONS, strict=False):
         ratio = rf", $\nu = {look.number(poisson)}$" if len(cut) > 1 else ""
         points = columns(line, dim, "mu_macro", "mu_macro_error", "converged")

@@ -1,4 +1,4 @@
-"""Map of the cheapest model that is accurate enough, over velocity and amplitude."""
+"""Map that shows the cheapest accurate model by velocity and amplitude."""
 
 from __future__ import annotations
 
@@ -75,12 +75,12 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
 
 
 def _centres(inside: np.ndarray) -> list[np.ndarray]:
-    """Indices of the cell of every connected region that is farthest from the border."""
+    """For every connected region, return the indices of the cell farthest from its border."""
     regions, count = ndimage.label(inside)
     centres = []
     for region in range(1, count + 1):
         depth = ndimage.distance_transform_cdt(np.pad(regions == region, 1))[1:-1, 1:-1]
-        # Among cells of equal depth, choose the one nearest their centroid.
+        # Among cells at equal distances from the border, choose the cell nearest their centroid.
         deepest = np.argwhere(depth == depth.max())
         away = np.hypot(*(deepest - deepest.mean(axis=0)).T)
         centres.append(deepest[np.argmin(away)])
@@ -88,6 +88,6 @@ def _centres(inside: np.ndarray) -> list[np.ndarray]:
 
 
 def _pale(model: str) -> tuple[float, float, float]:
-    """The colour of a model, lightened for black letters on it."""
+    """Return the colour of a model, lightened so that black letters are readable on it."""
     red, green, blue = (1.0 - 0.5 * (1.0 - part) for part in to_rgb(look.model(model)[0]))
     return red, green, blue

@@ -1,4 +1,4 @@
-"""Parts of panels: letters, legends, colour bars, ticks, points."""
+"""Draw parts of panels: letters, legends, colour bars, ticks and points."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ VISIBLE_ERROR = 0.01
 
 
 def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
-    """Write the letter of a panel and a note above it, in lines of at most `room` inches."""
+    """Write letter and note above a panel, in lines with a width of at most `room` inches."""
     text = look.wrapped(look.heading(which, note), room, look.HEADING)
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
 def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None:
-    """Write the letter of a panel, a note and its legend above it."""
+    """Write letter, note and legend above a panel."""
     legend = axes.legend(
         title=look.heading(which, note),
         title_fontsize=look.HEADING,
@@ -85,10 +85,11 @@ def logarithmic(axis: Axis) -> None:
 
 
 def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Edges of cells around points, half-way between neighbours.
+    """Return the edges, shape (n + 1,), of cells around n points.
 
-    points: ascending, shape (n,); logarithmic: half-way by ratio instead of difference. Returns an
-    array of shape (n + 1,). The first and the last point are in the middle of their cells.
+    The edges are half-way between neighbouring points. The first and the last point are in the
+    middle of their cells. points: ascending; logarithmic: True for half-way by ratio, False for
+    half-way by difference.
     """
     if logarithmic:
         return np.exp(edges(np.log(points), False))
@@ -97,16 +98,16 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
 
 
 def unit_range(axes: Axes, low: float = 0.0) -> None:
-    """Set the vertical range of a panel to `low` to 1, with a margin."""
+    """Set the vertical range of a panel from `low` to 1, with a margin."""
     margin = 0.04 * (1.0 - low)
     axes.set_ylim(low - margin, 1.0 + margin)
     axes.set_yticks([i / 5 for i in range(round(5 * low), 6)])
 
 
 def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink: Any) -> None:
-    """Draw computed points, hollow if unconverged, with a band for their errors.
+    """Draw computed points with a band for their errors. Unconverged points are hollow.
 
-    columns: values, error estimates, and nonzero numbers for converged points.
+    columns: values, error estimates, and flags that are nonzero for converged points.
     """
     values, errors, converged = columns[0], finite_or_nan(columns[1]), columns[2] != 0
     ink = {"color": look.BLACK, **look.COMPUTED, **ink}
@@ -121,10 +122,10 @@ def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink:
 
 
 def _once(axes: Axes, label: str) -> str:
-    """A label that matplotlib omits from the legend if the panel has it already."""
+    """Return a label that matplotlib omits from the legend if the panel already has the label."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 
 
 def after_layout(figure: Any, finish: Callable[[], None]) -> None:
-    """Register a function that is called after the layout. It must not move panels."""
+    """Register a function that is called after the layout. The function must not move panels."""
     figure.finishing = [*getattr(figure, "finishing", ()), finish]

@@ -28,19 +28,19 @@ LOOKS = (
 MOST = 3
 """Maximum number of datasets in a figure."""
 MOST_LEVELS = 12
-"""Number of levels on each side of 0 from which the labels of the two inner ones would overlap."""
+"""Number of levels on each side of 0 from which the labels of the two innermost would overlap."""
 DIVERGING = "PuOr"
-"""Colour map of differences, pale in the middle."""
+"""Colour map of differences, which is pale in the middle."""
 
 
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:
-    """Whether all datasets have differences between Poisson's ratios and fit into one figure."""
+    """Return whether all datasets have changes with Poisson's ratio and fit into one figure."""
     ratios = [d.sizes.get("poisson", 1) if "mu_macro_change" in d else 1 for d in datasets]
     return len(datasets) <= MOST and min(ratios) > 1 and max(ratios) <= len(LOOKS)
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw a row of panels for each dataset: contours at every ratio, effect of the largest one.
+    """Draw two panels for each dataset: contours at every ratio, and the change to the largest one.
 
     Raises ValueError if the datasets do not fit, see `has_room`.
     """
@@ -61,7 +61,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 
 def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
-    """Draw contours of friction at each Poisson's ratio, with numbers at the smallest one."""
+    """Draw contours at each Poisson's ratio. Contours at the smallest ratio have numbers."""
     for index, (color, ls) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
         surface = Surface(*columns(one, "velocity", "amplitude", "mu_macro"))

@@ -1,4 +1,4 @@
-"""Propulsion: force and efficiency of self-propelled motions, from stall to no load."""
+"""Figure of self-propelled motions: force and efficiency, from stall to no load."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import columns, finite_or_nan
 
 ROWS = {"force": r"force  $F/(\mu F_z)$", "efficiency": "efficiency  (dimensionless)"}
-"""Quantities of the rows, and their labels."""
+"""Variable and label of each row of panels."""
 WIDTH, HEIGHT = 2.36, 5.2
 VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw a column of two panels for each panel name of the dataset: force and efficiency."""
+    """Draw a column of panels, force and efficiency, for each value of the variable `panel`."""
     names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)
@@ -37,7 +37,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
-    """Draw the lines of a panel. A line with an unconverged point has hollow markers."""
+    """Draw the lines of a panel. A line has hollow markers if one of its points is unconverged."""
     axes.axhline(0.0, color=look.PALE, lw=0.7, zorder=0.5)
     for k, (color, marker, ls) in zip(range(dataset.sizes["line"]), look.LINES, strict=False):
         one = dataset.isel(line=k)
@@ -51,7 +51,7 @@ def _lines(axes: Axes, dataset: xr.Dataset, variable: str) -> None:
 
 
 def _legend(axes: Axes) -> None:
-    """Add the legend of a column below it."""
+    """Add the legend of a column below its lower panel."""
     axes.legend(
         handles=[line for line in axes.get_lines() if line.get_gid() == "efficiency"],
         loc="upper left",

@@ -1,4 +1,4 @@
-"""Colour scale of friction: the colour map of Figure 2 from 0 to 1, another hue below 0."""
+"""Colour scale of friction, with the colour map of Figure 2 from 0 to 1 and another hue below 0."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ equal distances in CIELAB, and become lighter away from 0. From 0 to -0.5 they d
 colours of `style.COLOURMAP` for all common kinds of colour vision."""
 LOWEST = -1.0
 DARK = 0.5
-"""Luminance of a band below which lines on it are white, else black."""
+"""Lines are white on bands with a lower luminance, else black."""
 
 
 def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
-    """Colour map and norm of bands between ascending levels.
+    """Return the colour map and the norm for bands between ascending levels.
 
-    The colours of 0 to 1 do not depend on the levels, unless the largest level is above 1.
+    The colours for 0 to 1 do not depend on the levels, unless the largest level is above 1.
     """
     top = max(float(levels[-1]), 1.0)
     above = matplotlib.colormaps[look.COLOURMAP]
@@ -37,7 +37,7 @@ def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
 
 
 def inks(levels: np.ndarray, fills: np.ndarray) -> list[str]:
-    """Colours of lines at `levels` with enough contrast to the bands between `fills`."""
+    """Return colours of lines at `levels` with enough contrast to the bands between `fills`."""
     colours, norm = scale(fills)
     weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
     luminances = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]

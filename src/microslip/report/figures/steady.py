@@ -1,4 +1,4 @@
-"""Figures 4 and 5: steady bore over the forward velocity, and transients."""
+"""Figures 4 and 5: steady bore at different forward velocities, and transients."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ QUANTITIES = (
     ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
     ("torque", "Eq 22", "torque", "mu_torque", "transient_torque", look.VERMILLION, look.DASHED),
 )
-"""Name, equation, name of the closed form, steady value, history, colour and line style."""
+"""Quantities: name, equation, and the names of the closed form, of the steady value and of the
+history; colour and line style."""
 MARKERS = "os"
 LABEL = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 STARTS = {
@@ -23,11 +24,11 @@ STARTS = {
     "full-rotation": "full rotational slip",
     "full-slip": "full forward slip",
 }
-"""Labels of the initial states in the paper. Other states are labelled by their names."""
+"""Labels of the initial states in the paper. The labels of other states are their names."""
 
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw Eqs 21 and 22 with the computed steady values."""
+    """Draw Eqs 21 and 22, and the computed steady values."""
     require(name, "continuous_bore", dataset, ("velocity",))
     dataset, _ = sweep(dataset, ("velocity",))
     velocity = dataset["velocity"].values
@@ -52,7 +53,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def transients(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw force and torque over the forward travel, with a panel for each initial state."""
+    """Draw force and torque against the forward travel, with a panel for each initial state."""
     dataset, _ = at_one_poisson(dataset)
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)

@@ -37,7 +37,7 @@ DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
 
 COMPUTED: Ink = {"ls": "none", "marker": "o", "ms": 3.2, "mew": 0.7, "zorder": 5}
-"""Markers of computed values, equal in every figure."""
+"""Markers of computed values in all figures."""
 
 ERROR_BARS: Ink = {"mew": 0.7, "elinewidth": 0.7, "capsize": 1.8}
 
@@ -51,7 +51,7 @@ LINES = (
     (SKY, "X", DASHDOT),
     (GREY, "*", DOTTED),
 )
-"""Colour, marker and line style of the first, second, ... line of a panel."""
+"""Colours, markers and line styles of the lines of a panel, in their order."""
 
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),
@@ -105,30 +105,30 @@ RC = {
     "figure.constrained_layout.w_pad": 0.05,
 }
 
-# The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit; other
-# dimensionless symbols are labelled so.
+# The label of an axis has words, a symbol and a unit. A symbol that is a ratio needs no unit. Other
+# dimensionless symbols have the label "(dimensionless)".
 FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
 FRICTION_IN_TWO_LINES = FRICTION.replace("  (", "\n(")
 
 
 def axis(quantity: Quantity) -> str:
-    """The label of an axis: words, the symbol, and the ratio that defines the symbol."""
+    """Return the label of an axis: words, the symbol, and the ratio that defines the symbol."""
     ratio = f" = {mathtext(quantity.unit)[1:-1]}" if quantity.unit else ""
     return f"{quantity.text}  ${quantity.latex}{ratio}$"
 
 
 def style() -> AbstractContextManager[None]:
-    """A context with the settings of the figures instead of the user's matplotlib settings."""
+    """Return a context with the settings of the figures, which replace the user's settings."""
     return matplotlib.style.context(RC, after_reset=True)
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure with a size in inches and a layout that keeps its panels apart."""
+    """Return an empty figure with a size in inches and a layout in which panels do not overlap."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def number(value: float) -> str:
-    """A number with three digits as mathtext, with large and small ones as powers of ten."""
+    """Format a number with three digits as mathtext. A large or small one has a power of ten."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
@@ -138,7 +138,7 @@ def number(value: float) -> str:
 
 
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:
-    """Conditions of a panel as mathtext, such as "v = 0.1, A = 2".
+    """Format the conditions of a panel as mathtext, such as "v = 0.1, A = 2".
 
     pairs: LaTeX symbols and their values.
     """
@@ -146,12 +146,12 @@ def conditions(pairs: Iterable[tuple[str, float]]) -> str:
 
 
 def model(name: str) -> tuple[str, str, str]:
-    """Colour, marker and abbreviation of a contact model. An unknown model is grey."""
+    """Return colour, marker and abbreviation of a contact model. An unknown model is grey."""
     return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
 
 
 def in_order(names: set[str]) -> list[str]:
-    """Names of contact models, coarsest first. Unknown models come last."""
+    """Sort the names of contact models, coarsest first. Unknown models come last."""
     return [name for name in MODELS if name in names] + sorted(names - MODELS.keys())
 
 
@@ -169,12 +169,12 @@ def literal(text: str) -> str:
 
 
 def width(text: str, size: float) -> float:
-    """Width in inches of a text, which may contain mathtext, at a font size in points."""
+    """Return the width in inches of a text at a font size in points. The text can have mathtext."""
     return TextPath((0, 0), text, size=size).get_extents().width / 72.0
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """Break a text into lines of at most `room` inches at a font size in points.
+    """Break a text into lines with a width of at most `room` inches, at a font size in points.
 
     Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """
@@ -191,17 +191,17 @@ def wrapped(text: str, room: float, size: float) -> str:
 
 
 def power_of_ten(value: float) -> str:
-    """A tolerance as mathtext: 10^{-3} rather than 0.001."""
+    """Format a tolerance as mathtext, with 10^{-3} instead of 0.001."""
     power = np.log10(value) if value > 0 else np.nan
     return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
 
 
 def letters(count: int) -> list[str]:
-    """The letters of `count` panels: a, b, ..., z, aa, ab, ..."""
+    """Return the letters of `count` panels: a, b, ..., z, aa, ab, ..."""
     alphabet = "abcdefghijklmnopqrstuvwxyz"
     return [(alphabet[i // 26 - 1] if i >= 26 else "") + alphabet[i % 26] for i in range(count)]
 
 
 def heading(which: str, note: str = "") -> str:
-    """The heading of a panel: its letter, bold and in brackets, and an optional note."""
+    """Return the heading of a panel: the letter, bold and in brackets, and an optional note."""
     return rf"$\bf{{({which})}}$" + (rf"$\;$ {note}" if note else "")

@@ -1,9 +1,10 @@
-"""Work-precision diagrams: error of each trial over its CPU time or its effort.
+"""Work-precision diagrams: error of each trial against CPU time or effort.
 
-There is a panel for each point; all panels have the same axes. Each model with the default method
-has a colour and a marker. Runs of other methods are small grey dots; the figure `accuracy_profile`
-compares them. Trials outside the axes are drawn in strips at the ends: errors below the error of
-the reference at the bottom, trials without a result at the top, costs of zero at the left.
+There is a panel for each point, and all panels have the same axes. Each model with the default
+method has a colour and a marker. Runs of other methods are small grey dots, which the figure
+`accuracy_profile` compares. Trials outside the axes are drawn in strips at the ends. The strip at
+the bottom is for errors below the error of the reference, that at the top for trials without a
+result, and that at the left for costs of zero.
 """
 
 from __future__ import annotations
@@ -30,13 +31,13 @@ COSTS = {
     "accuracy_vs_cost": ("seconds", "CPU time of a run  $t$ (s)"),
     "accuracy_vs_work": ("effort", "effort: iterations $\\times$ unknowns\n(dimensionless)"),
 }
-"""Abscissa of each figure: variable and label."""
+"""Variable and label of the abscissa of each figure."""
 COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
-"""Number of panels in a row; width of a panel, height of a row and of a legend line in inches."""
+"""Number of panels in a row; width of a panel, height of a row and of a legend line, in inches."""
 BELOW_REFERENCE = 3.0
-"""Errors smaller than the error of the reference divided by this are drawn at the bottom."""
+"""Errors below the error of the reference divided by this number are drawn at the bottom."""
 MOST = 1e6
-"""Largest ratio of the ends of the axis of errors."""
+"""Largest ratio of the upper end of the axis of errors to its lower end."""
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
@@ -50,15 +51,15 @@ CROSS |= {"zorder": 9}
 ARROW: look.Ink = {"color": look.BLACK, "ls": "none", "ms": 3.6, "zorder": 9}
 ARROW |= {"clip_on": False, "marker": CARETDOWN}
 AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7))
-"""Directions from a point to its label, tried in this order."""
+"""Directions from a point to its label, in the order in which they are tried."""
 
 
 @dataclass(frozen=True)
 class Scale:
     """A logarithmic axis from `low` to `high`, with optional labelled strips at its ends.
 
-    Values below `low` are drawn in the strip labelled `below`, values that are not finite in the
-    strip labelled `above`. An empty label omits a strip.
+    Values below `low` are drawn in the strip labelled `below`. Values that are not finite are drawn
+    in the strip labelled `above`. A strip with an empty label is omitted.
     """
 
     low: float
@@ -68,11 +69,11 @@ class Scale:
 
     @property
     def strip(self) -> float:
-        """Ratio of the upper to the lower end of a strip."""
+        """Ratio of the upper end of a strip to its lower end."""
         return (self.high / self.low) ** 0.1
 
     def shown(self, values: np.ndarray) -> np.ndarray:
-        """Coordinates at which values are drawn."""
+        """Return the coordinates at which values are drawn."""
         inside = np.where(values < self.low, self.low / self.strip**0.5, values)
         return np.where(np.isfinite(values), inside, self.high * self.strip**0.5)
 
@@ -102,7 +103,7 @@ class Scale:
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the figure `name`: errors over seconds, or over effort."""
+    """Draw the figure `name`: errors against seconds, or against effort."""
     cost, label = COSTS[name]
     points = [dataset.isel(point=index) for index in range(dataset["point"].size)]
     if not points or not dataset["error"].size:
@@ -137,7 +138,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
-    """A scale for all costs above zero."""
+    """Return a scale for all costs above zero."""
     positive = costs[np.isfinite(costs) & (costs > 0)]
     low, high = (positive.min(), positive.max()) if positive.size else (1.0, 10.0)
     margin = max((high / low) ** 0.05, 1.2)
@@ -146,7 +147,7 @@ def _scale_of_costs(costs: np.ndarray) -> Scale:
 
 
 def _scale_of_errors(dataset: xr.Dataset) -> Scale:
-    """A scale from just below the smallest significant error to the largest error."""
+    """Return a scale from just below the smallest significant error to the largest error."""
     errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
     positive = np.isfinite(errors) & (errors > 0)
     lows = []
@@ -161,7 +162,7 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
 
 
 def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
-    """Write the letter of a panel, and title and parameters of its point."""
+    """Write the letter of a panel, and the title and the parameters of its point."""
     motion = str(point["point_motion"].item())
     quantities = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
     symbols = [one.latex if one else plain for one, plain in zip(quantities, "vA", strict=True)]
@@ -181,7 +182,7 @@ def _reference(axes: Axes, error: float) -> None:
 
 
 def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
-    """Draw every trial of a point: a curve for each model, and markers for other methods."""
+    """Draw every trial of a point, with a curve for each model and markers for other methods."""
     raw_x, raw_y, front = columns(rows, cost, "error", f"front_{cost}")
     x, y, converged = costs.shown(raw_x), errors.shown(raw_y), rows["converged"].values != 0
     model, method = (rows[f"trial_{n}"].values.astype(str) for n in ("model", "method"))
@@ -212,7 +213,7 @@ def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale)
 
 
 def _ink(model: str, method: str) -> look.Ink:
-    """Colour, marker and line of the trials of a model by a method."""
+    """Return colour, marker and line of the trials of a model with a method."""
     if method == "paper":
         return PAPER
     if model == "auto":
@@ -224,7 +225,7 @@ def _ink(model: str, method: str) -> look.Ink:
 def _label(axes: Axes, texts: list[str], has_label: np.ndarray, marks: np.ndarray) -> None:
     """Write labels beside markers. A label that would overlap a marker or a line is omitted.
 
-    texts: labels, one for each true value in `labelled`; marks: shape (n, 2), data coordinates.
+    texts: labels, one for each true value in `has_label`; marks: data coordinates, shape (n, 2).
     """
     pixels, scale = axes.transData.transform(marks), look.DPI / 72.0
     line = pixels[has_label]

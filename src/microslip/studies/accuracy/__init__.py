@@ -1,1 +1,1 @@
-"""Study of the cost of accuracy, method by method."""
+"""Study of the accuracy and the cost of each model and method."""

@@ -1,12 +1,12 @@
-"""Accuracy against cost: requests for trials at points, maps of models and the cost of a step.
+"""Requests of the study of accuracy and cost.
 
-At each point every model is run at all levels of its ladder with the shipped method. Every other
+At each point every model is run with the shipped method at all levels of its ladder. Every other
 method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
-a tolerance and a reference. The maps of two motions need trials of all models on a grid of points.
-The cost of a step is measured over a series of sizes.
+given tolerances and a reference. The maps of two motions have trials of all models on a grid of
+points. The cost of a step is measured for a series of sizes.
 
 Requests are grouped into pieces, one for each job. A piece takes much longer than the start of
-a job. A new method in the configuration adds pieces and changes no other piece.
+a job. A new method in the configuration adds pieces, but does not change the others.
 """
 
 from collections.abc import Iterator
@@ -22,26 +22,26 @@ CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_MOTIONS = ("transverse", "bore")
 MAP_LEVELS, MAP_REPEATS = 5, 3
 MAP_SQUARES = 16
-"""Largest number of squares along a side in a map. They already cost more than rings that are far
-more accurate."""
+"""Largest number of squares along a side in a map. Even such a mesh costs more than rings, which
+are far more accurate."""
 TRUTH_SHARE = 0.1
-"""Tolerance of the references of a map over the tightest tolerance of the map."""
+"""Tolerance of the references of a map, divided by the tightest tolerance of the map."""
 
 SCALING_SIZES = {
     "radial": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
     "polar": [(n, n) for n in (8, 16, 32, 64)],
     "cartesian": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
 }
-"""(cells, angles) by model; the setting `levels` limits their number."""
+"""Sizes of each model as (cells, angles). The setting `levels` limits the number of sizes."""
 SCALING_STEPS = 16
 LARGE = 64
-"""Smallest number of squares along a side whose run takes as long as all coarser runs together."""
+"""Number of squares along a side from which a run takes as long as all coarser runs together."""
 SIZES_PER_JOB = 4
-"""Number of the smallest sizes that one job measures together; larger sizes have their own job."""
+"""Number of sizes, from the smallest, that one job measures. Each larger size has its own job."""
 
 
 def points(study: Accuracy) -> dict[str, Point]:
-    """Points of the trials by name."""
+    """Return the points of the trials, by name."""
     return {
         name: Point(point.motion, point.velocity, point.amplitude, point.poisson)
         for name, point in study.points.items()
@@ -63,12 +63,12 @@ def trials(study: Accuracy, point: Point) -> Iterator[tuple[int, dict]]:
 
 
 def truth(point: Point) -> dict | None:
-    """The request for the reference of a point; None where Eq 21 is exact."""
+    """Return the request for the reference of a point, or None if Eq 21 is exact there."""
     return requests.reference(point) if point.amplitude is not None else None
 
 
 def map_points(study: Accuracy, motion: str) -> list[Point]:
-    """Points of a map; the velocity varies fastest."""
+    """Return the points of a map. The velocity varies fastest."""
     return [
         Point(motion, velocity, amplitude)
         for amplitude in study.map.amplitude[motion]
@@ -77,7 +77,7 @@ def map_points(study: Accuracy, motion: str) -> list[Point]:
 
 
 def map_trials(study: Accuracy, point: Point) -> list[dict]:
-    """Requests for the trials at one point of a map, all models with the shipped method."""
+    """Return the trials at one point of a map, for all models with the shipped method."""
     repeats = min(study.repeats, MAP_REPEATS)
     return [
         requests.trial(point, model, SHIPPED, level, tolerance, repeats)
@@ -88,18 +88,18 @@ def map_trials(study: Accuracy, point: Point) -> list[dict]:
 
 
 def map_truth(study: Accuracy, point: Point) -> dict:
-    """The request for the reference of a point of a map."""
+    """Return the request for the reference of a point of a map."""
     return requests.reference(point, TRUTH_SHARE * min(study.map.tolerance))
 
 
 def scaling(study: Accuracy, model: str) -> list[dict]:
-    """Requests for the sizes of a model, at least two."""
+    """Return the requests for the sizes of a model, at least two."""
     sizes = SCALING_SIZES[model][: max(study.levels, 2)]
     return [requests.scaling(model, cells, angles, SCALING_STEPS) for cells, angles in sizes]
 
 
 def pieces(study: Accuracy) -> tuple[list, list]:
-    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
+    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
     places = list(points(study).values())
     long = [[request] for request in map(truth, places) if request is not None]
     for model in SCALING_SIZES:
@@ -138,7 +138,7 @@ def _map_row(study: Accuracy, points: list[Point]) -> list[dict]:
 
 
 def size_label(request: dict) -> str:
-    """Size of a grid as text, such as "64 x 64" for angular points or squares, "64" for rings."""
+    """Return the size of a mesh as text: "64" for rings, else, for example, "64 x 64"."""
     across = {"radial": None, "cartesian": request["cells"]}
     second = across.get(request["model"], request["angles"])
     return f"{request['cells']}" if second is None else f"{request['cells']} x {second}"

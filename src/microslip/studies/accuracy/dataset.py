@@ -1,4 +1,5 @@
-"""The dataset accuracy_cost: trials with errors and costs, maps of models, costs of a step."""
+"""Build the dataset accuracy_cost, with errors and costs of trials, maps of models, and the cost of
+a step."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ GROUPS["profile"] = (
     "Cost of a model or method over that of the best one",
     ("competitor", "map_tolerance", "point"),
 )
-"""Groups of the dataset besides the table of trials: title and dims by name."""
+"""Title and dimensions of each group of the dataset, by name. The table of trials is the root."""
 
 POINT_COLUMNS: dict[str, tuple] = {
     "point": (lambda name, *_: name, "name of the point", str),
@@ -53,7 +54,8 @@ POINT_COLUMNS: dict[str, tuple] = {
     "reference_error": (lambda *row: row[3][1], "error estimate of the reference"),
     "reference_source": (lambda *row: row[3][2], "source of the reference", str),
 }
-"""Columns of the points: function of name, title, Point and reference; long_name, type."""
+"""Columns of the table of points: (function, long_name, type). The function has the arguments name,
+title, Point and reference."""
 TRIAL_COLUMNS: dict[str, tuple] = {
     name: (itemgetter(name), *about)
     for name, about in {
@@ -77,7 +79,7 @@ TRIAL_COLUMNS: dict[str, tuple] = {
         "front_effort": ("no trial of the point takes less effort and is as accurate", bool),
     }.items()
 }
-"""Columns of the trials: function of a row, long_name, type, units."""
+"""Columns of the table of trials: (function of a row, long_name, type, units)."""
 MACHINE_COLUMNS: dict[str, tuple] = {
     "machine_cpu": (itemgetter("cpu"), "model of the processor", str),
     "machine_host": (itemgetter("host"), "name of the computer", str),
@@ -86,9 +88,9 @@ MACHINE_COLUMNS: dict[str, tuple] = {
 
 
 def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
-    """Assemble the Dataset.
+    """Build the dataset of the study.
 
-    answer(request) -> record, such as batches.answer with a store.
+    answer: function that returns the record of a request, such as batches.answer with a store.
     """
     answers = Answers(answer)
     points = study.points(settings)
@@ -124,7 +126,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: number of trials at each point, and error estimate of its reference."""
+    """Yield lines of text: number of trials at each point, and error estimate of its reference."""
     for point in dataset["point"].values:
         own = dataset["trial_point"].values == point
         bad = int(own.sum() - dataset["converged"].values[own].sum())
@@ -139,7 +141,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _reference(point: Point, answers: Answers) -> tuple[float, float, str]:
-    """(mu, error, source) of the reference of a point."""
+    """Return (mu_macro, error, source) of the reference of a point."""
     request = study.truth(point)
     if request is None:
         return float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
@@ -157,7 +159,7 @@ def _trials(
     reference: tuple[float, float, str],
     answers: Answers,
 ) -> list[dict]:
-    """Rows of the trials of one point, with the keys TRIAL_COLUMNS."""
+    """Return the rows of the trials at one point, with the keys of TRIAL_COLUMNS."""
     mu_reference, floor, _ = reference
     rows = []
     for level, request in study.trials(settings, point):
@@ -187,7 +189,7 @@ def _trials(
                 "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,
             }
         )
-    # Errors below that of the reference count as equal.
+    # Errors below the error of the reference count as equal.
     error = [max(row["error"], floor) if row["converged"] else np.nan for row in rows]
     for cost in ("seconds", "effort"):
         front = on_front([row[cost] for row in rows], error)
@@ -200,7 +202,7 @@ def _trials(
 
 
 def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
-    """Cheapest model at each point of a map, for each tolerance."""
+    """Return the cheapest model at each point of a map, for each tolerance."""
     dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
     tolerances = settings.map.tolerance[::-1]
     candidates = [_candidates(settings, p, answers) for p in study.map_points(settings, motion)]
@@ -221,13 +223,13 @@ CHEAPEST = (
     ("_cells", np.int32, "1", "cells of the cheapest model"),
     ("_seconds", float, "s", "median CPU time of the cheapest model"),
 )
-"""Variables of a map: end of the name, type, units and long_name."""
+"""Variables of a map: (suffix of the name, type, units, long_name)."""
 
 
 def _candidates(
     settings: Accuracy, point: Point, answers: Answers
 ) -> tuple[list[tuple[str, int, float]], np.ndarray]:
-    """Model, cells and seconds of all trials at a point of a map, and their confirmed errors."""
+    """Return model, cells, seconds and confirmed error of all trials at a point of a map."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
     trials, error = [], []
     for request in study.map_trials(settings, point):
@@ -245,11 +247,11 @@ SCALING: dict[str, tuple] = {
     "seconds": ("median CPU time of a step", float, "s"),
     "memory": ("memory of the arrays of the contact", float, "byte"),
 }
-"""Results over the sizes of a model: long_name, type, units."""
+"""Results for each size of a model: (long_name, type, units) by name."""
 
 
 def _scaling(settings: Accuracy, answers: Answers) -> dict:
-    """Cost of a step over the sizes of each model, and fitted exponents."""
+    """Return the cost of a step for each size of each model, and the fitted exponents."""
     dims = ("scaling_model", "scaling_size")
     requests = [study.scaling(settings, model) for model in study.SCALING_SIZES]
     shape = (len(requests), max(map(len, requests)))

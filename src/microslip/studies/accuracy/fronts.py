@@ -4,14 +4,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 AS_CHEAP = 1.5
-"""Ratio of two measured times below which they count as equal."""
+"""Two measured times count as equal if their ratio is below this number."""
 
 
 def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
     """Mark the trials on the Pareto front of cost and error, a bool array of shape (n,).
 
     A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
-    cost, error: arrays of shape (n,); trials without finite values are not on the front.
+    cost, error: arrays of shape (n,). Trials with values that are not finite are not on the front.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     front = np.isfinite(cost) & np.isfinite(error)
@@ -28,9 +28,10 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
-    """Index of the cheapest trial within the tolerance, or None without such a trial.
+    """Return the index of the cheapest trial within the tolerance, or None if there is none.
 
-    Times are uncertain, so costs within a factor AS_CHEAP count as equal, and the first trial wins.
+    Times are uncertain, so costs within a factor AS_CHEAP of the lowest one count as equal. The
+    first of such trials is returned.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     good = np.flatnonzero(np.isfinite(cost) & (error <= tolerance))
@@ -40,11 +41,11 @@ def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
 
 
 def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
-    """Confirmed error of each level: the largest error of this and all finer levels of its model.
+    """Return the confirmed errors: the largest error of a level and all finer levels of its model.
 
-    The error of a coarse run can be small by chance, where it changes sign. The finest level of a
-    model has no finer one to confirm it, so its error is infinite, except for the model `exact`,
-    which converges to the reference. models: model of each level, from coarse to fine.
+    The error of a coarse run can be small by chance, where the error changes sign. The finest level
+    of a model cannot be confirmed, so its error is infinite. An exception is the model `exact`,
+    which converges to the reference. models: the model of each level, from coarse to fine.
     """
     out = np.asarray(error, float).copy()
     for model in dict.fromkeys(models):
@@ -56,9 +57,9 @@ def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
 
 
 def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
-    """Exponent p of values ~ sizes^p, fitted to the logarithms of the larger half of the sizes.
+    """Fit the exponent p of values ~ sizes^p to the logarithms of the larger half of the sizes.
 
-    sizes, values: arrays (n,). NaN if fewer than two sizes have a positive value.
+    sizes, values: arrays of shape (n,). Returns NaN if fewer than two sizes have a positive value.
     """
     sizes, values = np.asarray(sizes, float), np.asarray(values, float)
     good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)

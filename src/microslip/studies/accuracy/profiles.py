@@ -1,8 +1,8 @@
-"""Performance profiles: cost of a model or method over that of the best one in its contest.
+"""Performance profiles: cost of a model or method, divided by that of the best in its contest.
 
 E. D. Dolan and J. J. More, Math. Program. 91 (2002) 201-213, doi:10.1007/s101070100263. A case is a
-point and a tolerance. The cost of a competitor is that of its cheapest run within the tolerance.
-Its ratio is this cost over the smallest cost of all competitors in the contest.
+point and a tolerance. The cost of a competitor is the cost of its cheapest run within the
+tolerance. The ratio of a competitor is this cost divided by the smallest cost in the contest.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ MODELS = "models"
 
 
 def contest_of(method: str) -> str:
-    """The contest of a method, by the part of a run that the method replaces.
+    """Return the contest of a method, which depends on the part of a run that the method replaces.
 
     Parameters
     ----------
     method : str
-        Name of a method, with or without numbers.
+        Name of a method, with or without the values of its parameters.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def contest_of(method: str) -> str:
 
 
 def variables(rows: list[dict], points: list[str], tolerances: Sequence[float]) -> dict:
-    """Variables of the dataset, with one row for each competitor of each contest.
+    """Return the variables of the dataset, with one row for each competitor in each contest.
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ def variables(rows: list[dict], points: list[str], tolerances: Sequence[float]) 
     points : list of str
         Names of all points.
     tolerances : sequence of float
-        Dimensionless.
+        Dimensionless tolerances.
 
     Returns
     -------
     dict
-        competitor_contest, competitor and profile_ratio, as xarray.Dataset takes them.
+        Variables competitor_contest, competitor and profile_ratio, as arguments of xarray.Dataset.
     """
     contests: list[str] = []
     names: list[str] = []
@@ -83,7 +83,7 @@ def variables(rows: list[dict], points: list[str], tolerances: Sequence[float]) 
 
 
 def _contests(rows: list[dict]) -> Iterator[tuple[str, list[tuple[str, dict]]]]:
-    """Name of each contest, and its trials as pairs of the competitor and the row."""
+    """Yield the name of each contest, and its trials as pairs (competitor, row)."""
     contests = {method: contest_of(method) for method in sorted({r["trial_method"] for r in rows})}
     for contest in dict.fromkeys([MODELS, *contests.values()]):
         own = [row for row in rows if contests[row["trial_method"]] == contest]
@@ -106,11 +106,11 @@ def _least_costs(
     points: list[str],
     tolerances: np.ndarray,
 ) -> np.ndarray:
-    """Smallest cost of runs within each tolerance, shape (competitors, tolerances, points).
+    """Return the smallest costs within each tolerance, shape (competitors, tolerances, points).
 
-    It is infinite without such a run. A run counts if its own error and the errors of all finer
-    runs of its competitor and model are within the tolerance, because the error of a coarse run
-    can be small by chance.
+    A cost is infinite if there is no such run. The error of a coarse run can be small by chance.
+    Therefore a run counts only if all finer runs of its competitor and model are also within the
+    tolerance.
     """
     least = np.full((len(competitors), len(tolerances), len(points)), np.inf)
     largest: dict[tuple, float] = {}

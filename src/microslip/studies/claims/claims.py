@@ -1,8 +1,8 @@
-"""Claims: requests for the runs that judge the statements of the paper.
+"""Requests for the runs by which the statements of the paper are judged.
 
-`parts` calls the functions of this module, so that the same requests are computed and judged. Most
+The module `parts` judges the results and gets the requests from the functions of this module. Most
 requests are points at the tolerance of the study. The others are single runs: the paper's own runs,
-transients, fields of tractions and periods.
+transients, fields of tractions, and periods.
 """
 
 from microslip.config.records import STATIC_AMPLITUDES
@@ -12,31 +12,33 @@ from microslip.studies import requests
 from microslip.studies.ladders import exact_model
 
 PAPER_VELOCITY = 0.005
-"""Smallest velocity in the paper's maps of both motions."""
+"""Smallest velocity in the paper's maps of the two motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Squares along a side in the paper, and steps in a period of our run of its method."""
+"""Number of squares along a side in the paper, and of steps in a period of our run."""
 PAPER_TOLERANCE = 1e-3
-"""Error of the stresses in the paper."""
+"""Tolerance of the stresses in the paper."""
 
 STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT_VELOCITY = 0.8
 STARTS = ("stress-free", "full-rotation", "full-slip")
 TRAVEL = 10.0
-"""Forward travel of a transient in u_lim: twice that of the paper's Figure 5."""
+"""Forward travel of a transient in units of u_lim, twice that in Figure 5 of the paper."""
 CELLS = {"fine": 32, "coarse": 16}
-"""Rings of transients and steady tractions; the difference of both gives the error."""
+"""Number of rings of transients and of steady tractions. The error is the difference between the
+fine and the coarse run."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Velocities of steady tractions. Up to 0.8 the contact contains the centre of rotation."""
+"""Velocities of the runs for steady tractions. Up to 0.8 the centre of rotation is inside the
+contact."""
 
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
 RUNS_PER_JOB = 2
-"""Number of runs of the paper in one job."""
+"""Number of the paper's own runs in one job."""
 
 
 def velocities(study: Claims) -> list[float]:
-    """Velocities of the study and the paper's smallest velocity, in ascending order."""
+    """Return the velocities of the study and the paper's smallest velocity, ascending."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
@@ -48,24 +50,30 @@ def point(
     model: str = "auto",
     cells: int | None = None,
 ) -> dict:
-    """Request for a point; velocity 0: the static limit; cells: imposed number of squares."""
+    """Return the request for a point. The velocity 0 requests the static limit.
+
+    cells: imposed number of squares along a side, by default chosen by the tolerance.
+    """
     place = requests.Point(motion, velocity, amplitude)
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
 
 def resolved_limit(study: Claims, motion: str, amplitude: float) -> dict:
-    """Request for the static limit on rings, which uses no closed form."""
+    """Return the request for the static limit on rings, computed without a closed form."""
     return point(study, motion, 0.0, amplitude, exact_model(motion, 0.0))
 
 
 def limit_on_squares(study: Claims, motion: str, amplitude: float) -> dict:
-    """Request for the static limit on the paper's squares."""
+    """Return the request for the static limit on the paper's squares."""
     return point(study, motion, 0.0, amplitude, "cartesian", PAPER_SQUARES)
 
 
 def paper_run(motion: str, amplitude: float) -> dict:
-    """Request for the paper's own run at its smallest velocity: 32 x 32 squares, 8,000 steps."""
+    """Return the request for the paper's own run at its smallest velocity.
+
+    The run has 32 x 32 squares and 8,000 steps.
+    """
     place = requests.Point(motion, PAPER_VELOCITY, amplitude)
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
     how = {"kind": "run", "model": "cartesian", "method": "paper"}
@@ -73,7 +81,10 @@ def paper_run(motion: str, amplitude: float) -> dict:
 
 
 def transient(start: str, cells: str) -> dict:
-    """Request for the forces of the continuous bore from a start of STARTS; cells: key of CELLS."""
+    """Return the request for a transient of the continuous bore.
+
+    start: initial state, one of STARTS; cells: number of rings, as a key of CELLS.
+    """
     return {
         "kind": "history",
         "motion": "continuous-bore",
@@ -85,13 +96,19 @@ def transient(start: str, cells: str) -> dict:
 
 
 def field(velocity: float, cells: str) -> dict:
-    """Request for steady tractions of the continuous bore; cells: key of CELLS."""
+    """Return the request for steady tractions of the continuous bore.
+
+    cells: number of rings, as a key of CELLS.
+    """
     place = {"motion": "continuous-bore", "velocity": number(velocity)}
     return {"kind": "field", "cells": CELLS[cells]} | place
 
 
 def period(study: Claims, velocity: float, amplitude: float, coarse: bool = False) -> dict:
-    """Request for a period of the oscillating bore; coarse: with half as many rings."""
+    """Return the request for a period of the oscillating bore.
+
+    coarse: if True, the run has half as many rings.
+    """
     cells = 2 * (study.cells // 4) if coarse else study.cells
     place = requests.Point("bore", velocity, amplitude)
     sizes = {"cells": cells, "angles": cells, "steps": PERIOD_STEPS}
@@ -99,24 +116,30 @@ def period(study: Claims, velocity: float, amplitude: float, coarse: bool = Fals
 
 
 def limited(study: Claims, motion: str) -> list[float]:
-    """Amplitudes of a motion at which static friction is visible in the paper's maps."""
+    """Return the amplitudes of a motion at which static friction is visible in the paper's maps."""
     return [a for a in study.amplitude[motion] if a <= STATIC_AMPLITUDES[motion]]
 
 
 def sliding(study: Claims) -> list[float]:
-    """List of the largest transverse amplitude; empty if the contact sticks in some strokes."""
+    """Return a list with the largest transverse amplitude if the whole contact slides there.
+
+    Otherwise the list is empty.
+    """
     largest = study.amplitude["transverse"][-1]
     return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
 
 
 def periods(study: Claims) -> list[tuple[float, float]]:
-    """(velocity, amplitude) of the periods near static friction."""
+    """Return pairs (velocity, amplitude) of the periods near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
     return [(v, a) for v in slow[-2:] for a in limited(study, "bore")]
 
 
 def rows(study: Claims) -> list[list[dict]]:
-    """Points of each motion and amplitude, from the static limit to the largest velocity."""
+    """Return a row of points for each motion and amplitude.
+
+    The velocities of a row increase from the static limit to the largest velocity.
+    """
     return [
         [point(study, motion, v, amplitude) for v in (0.0, *velocities(study))]
         for motion, amplitudes in study.amplitude.items()
@@ -125,12 +148,12 @@ def rows(study: Claims) -> list[list[dict]]:
 
 
 def steady(study: Claims) -> list[dict]:
-    """Points of the continuous bore, computed on a mesh although Eq 21 is exact."""
+    """Return points of the continuous bore, computed on a mesh although Eq 21 is exact."""
     return [point(study, "continuous-bore", v, model="polar") for v in STEADY_VELOCITIES]
 
 
 def pieces(study: Claims) -> tuple[list, list]:
-    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
+    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
     long = [of_paper[i : i + RUNS_PER_JOB] for i in range(0, len(of_paper), RUNS_PER_JOB)]

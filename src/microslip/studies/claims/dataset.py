@@ -1,4 +1,4 @@
-"""The dataset claims: verdicts with their checks and runs, static limits, and stick patches."""
+"""Build the dataset claims, with verdicts, checks, runs, static limits, and stick patches."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ for _motion in static_limits.FORMULAS:
             (f"{_motion}_share_amplitude", "share_radius"),
         ),
     }
-"""Groups of the dataset besides the statements: titles and dims by the name of a group."""
+"""Title and dimensions of each group of the dataset, by name. The statements are the root."""
 BOUNDARY = 181
 """Number of points on half the edge of a patch."""
 
 
 def build(settings: Claims, answer: Callable) -> xr.Dataset:
-    """Assemble the Dataset.
+    """Build the dataset of the study.
 
-    answer(request) -> record, such as batches.answer with a store.
+    answer: function that returns the record of a request, such as batches.answer with a store.
     """
     runs = Runs(answer)
     checks = {part.name: list(part.checks(settings, runs)) for part in PARTS}
@@ -60,7 +60,7 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: the verdict on every statement."""
+    """Yield lines of text with the verdict on every statement."""
     for claim, verdict in zip(dataset["claim"].values, dataset["verdict"].values, strict=True):
         yield f"claim {claim}: {verdicts.WORDS[int(verdict)]}"
 
@@ -69,7 +69,10 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _claims(checks: dict[str, list[Check]]) -> dict:
-    """Statements and verdicts; checks: list of Check by name of the part."""
+    """Return the variables of the statements and verdicts.
+
+    checks: a list of Check for each part, by name.
+    """
     numbers = list(STATEMENTS)
     judged = [
         verdicts.of_claim(
@@ -115,7 +118,10 @@ CHECK_COLUMNS: dict[str, tuple] = {
     "check_margin": (lambda _, check: check.margin, "positive where the part holds"),
     "check_error": (lambda _, check: check.error, "error of the margin"),
 }
-"""Columns of parts and checks: function of a part and its checks, or one check; long_name, type."""
+"""Columns of the table of checks: (function of a part and a check, long_name, type).
+
+In PART_COLUMNS the arguments of the function are a part and all its checks.
+"""
 
 
 def _parts(checks: dict[str, list[Check]]) -> dict:
@@ -129,7 +135,11 @@ def _parts(checks: dict[str, list[Check]]) -> dict:
 
 
 def _shown_by(row: list[Check]) -> str:
-    """Name of the run of the clearest check against a part, else of the closest check for it."""
+    """Return the name of the run that shows the verdict on a part.
+
+    This is the run of the check that fails most clearly. If no check fails, it is the run of the
+    check that holds most narrowly.
+    """
     check = verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
     return check.runs[0] if check else ""
 
@@ -163,7 +173,7 @@ def _model(run: Run) -> str:
 
 
 def _force(run: Run) -> float:
-    """mu_macro of a run, or the force at the end of a transient."""
+    """Return mu_macro of a run, or the force at the end of a transient."""
     forces = run.result.get("force_forward")
     return float(forces[-1]) if forces else value_of(run.result, "mu_macro")
 
@@ -193,11 +203,11 @@ RUN_COLUMNS: dict[str, tuple] = {
         str,
     ),
 }
-"""Columns of the runs: function of the run, long_name, type."""
+"""Columns of the table of runs: (function of the run, long_name, type)."""
 
 
 def _patches(settings: Claims, runs: Runs) -> dict:
-    """Stick patches and their edges in the slowest period at the amplitude nearest 1."""
+    """Return the stick patches and their edges in the slowest period at the amplitude nearest 1."""
     slowest = min(v for v, _ in claims.periods(settings))
     places = [(v, a) for v, a in claims.periods(settings) if v == slowest]
     for velocity, amplitude in sorted(places, key=lambda place: abs(np.log(place[1]))):
@@ -234,11 +244,12 @@ SIDES = {"right": "positive", "left": "negative"}
 
 
 def _edges(amplitude: float, moments: np.ndarray) -> dict:
-    """Edges of the stick zone for v -> 0 at the moments of stick_area.patches, by theory.
+    """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
-    Next to a turning point a leaf on one side sticks, where |cos angle| >= tau/g: its points slip
-    at the other turning point only. In mid-stroke the stick zone is a circle, whose radius depends
-    on the rotation since the last turning point.
+    The moments are those of stick_area.patches. Next to a turning point, the stick zone is a leaf
+    on one side of the contact, where |cos angle| >= tau/g; its points slip at the other turning
+    point only. In mid-stroke the stick zone is a circle, whose radius depends on the rotation since
+    the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)
     radius = c * np.linspace(0.0, 1.0, BOUNDARY)

@@ -1,8 +1,8 @@
 """Checks that judge the parts of the paper's statements.
 
-The checks of a part are a function (study, runs) -> checks. Most parts compare values of runs with
-a formula: `_judge` makes such functions from a source of values, the formula and the margin. The
-error of a margin is the error estimate of the values.
+Each part has a function (study, runs) -> checks. Most parts compare values of runs with a formula;
+`_judge` makes such functions from a source of values, the formula and the margin. The error of a
+margin is the error estimate of the values.
 """
 
 from __future__ import annotations
@@ -39,38 +39,38 @@ from microslip.theory import paper
 
 Checks = Callable[[Claims, Runs], Iterable[Check]]
 Margin = Callable[[float, float], float]
-"""Margin of a computed value against its reference, positive where the part holds."""
+"""Function of a computed value and its reference. The margin is positive if the part holds."""
 Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
-"""Source of values: yields the place, the value, its error estimate and its runs."""
+"""Source of values. It yields the place, the value, the error estimate and the runs."""
 Amplitudes = Callable[[float], bool]
-"""Condition on an amplitude."""
+"""Function that returns True for the amplitudes that a part applies to."""
 
 
 def check(
     value: float, against: float, margin: float, error: float, runs: Sequence[Run], **place: float
 ) -> Check:
-    """A Check with plain numbers and the keys of its runs."""
+    """Return a Check with plain numbers and the keys of its runs."""
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
 
 def above(value: float, against: float) -> float:
-    """Margin by which the computed value lies above its reference."""
+    """Return the margin by which the computed value is above its reference."""
     return value - against
 
 
 def below(value: float, against: float) -> float:
-    """Margin by which the computed value lies below its reference."""
+    """Return the margin by which the computed value is below its reference."""
     return against - value
 
 
 def within(limit: float) -> Margin:
-    """Margin of a distance of at most `limit`."""
+    """Return the margin function for a distance that must be at most `limit`."""
     return lambda value, against: limit - abs(value - against)
 
 
 def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
-    """Checks of values against formula(*numbers of the place)."""
+    """Return a function that checks values against a formula of the numbers of their place."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
         for place, value, error, behind in values(study, runs):
@@ -84,7 +84,10 @@ def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Check
 
 
 def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Values:
-    """Friction at the points of requests; names: arguments of the points that form the place."""
+    """Return the source of friction at the points of requests.
+
+    names: names of the arguments of a point that describe its place.
+    """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
         for request in requests(study):
@@ -95,7 +98,7 @@ def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Valu
 
 
 def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
-    """Friction at all points of a motion, by amplitude and velocity."""
+    """Return the source of friction at all amplitudes and velocities of a motion."""
     return _friction(
         lambda study: (
             claims.point(study, motion, velocity, amplitude)
@@ -108,7 +111,10 @@ def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
 
 
 def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Values:
-    """Friction at a velocity, by default the smallest, at amplitudes with static friction."""
+    """Return the source of friction at one velocity, at amplitudes with static friction.
+
+    velocity: by default the smallest velocity of the study.
+    """
     return _friction(
         lambda study: (
             claims.point(study, motion, velocity or claims.velocities(study)[0], amplitude)
@@ -119,7 +125,7 @@ def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Val
 
 
 def _limit(motion: str, chosen: Amplitudes) -> Values:
-    """Static limit by amplitude."""
+    """Return the source of the static limit at each amplitude."""
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
         for amplitude in filter(chosen, claims.limited(study, motion)):
@@ -129,7 +135,7 @@ def _limit(motion: str, chosen: Amplitudes) -> Values:
 
 
 def _closed_limit(low: float = 0.0) -> Values:
-    """Static limit of the bore in closed form, at amplitudes of at least `low`."""
+    """Return the source of the closed-form static limit of the bore, at amplitudes >= `low`."""
     return _friction(
         lambda study: (
             claims.point(study, "bore", 0.0, a) for a in study.amplitude["bore"] if a >= low
@@ -139,7 +145,7 @@ def _closed_limit(low: float = 0.0) -> Values:
 
 
 def _limit_on_rings() -> Values:
-    """Static limit of the bore on rings, by amplitude."""
+    """Return the source of the static limit of the bore on rings, at each amplitude."""
     return _friction(
         lambda study: (
             claims.resolved_limit(study, "bore", a) for a in claims.limited(study, "bore")
@@ -149,9 +155,10 @@ def _limit_on_rings() -> Values:
 
 
 def _end(quantity: str) -> Values:
-    """End value of each transient.
+    """Return the source of the value of a quantity at the end of each transient.
 
-    Its error is the change from half as many rings plus the change over the last tenth of the way.
+    The error is the sum of two changes: that from half as many rings, and that over the last tenth
+    of the forward travel.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -166,7 +173,10 @@ def _end(quantity: str) -> Values:
 
 
 def _field(index: int) -> Values:
-    """A number of `_tractions`; its error is the change from half as many rings."""
+    """Return the source of one number of `_tractions`.
+
+    The error is the change from half as many rings.
+    """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
         for velocity in claims.FIELD_VELOCITIES:
@@ -178,7 +188,11 @@ def _field(index: int) -> Values:
 
 
 def _tractions(run: Run) -> tuple[float, float]:
-    """Smallest traction over its bound, and largest angle to Eq 15 in degrees."""
+    """Return two numbers of a field of tractions.
+
+    The first number is the smallest traction divided by the friction bound. The second number is
+    the largest angle between the tractions and Eq 15, in degrees.
+    """
     names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
     lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
     along = np.asarray(run.result["forward_position"], float)
@@ -213,7 +227,10 @@ def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
-    """Checks of the paper's run, whose error is its distance from a run at the tolerance."""
+    """Yield checks of the paper's runs.
+
+    The error of such a run is its distance from a run at the tolerance.
+    """
     for amplitude in claims.sliding(study):
         place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}
         own = runs(claims.paper_run("transverse", amplitude))
@@ -236,7 +253,7 @@ def _steady_nears(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rises(rows: Callable[[Claims], Iterable[list[dict]]], *names: str) -> Checks:
-    """Checks of neighbours in rows of requests, from slow to fast."""
+    """Return checks that compare neighbours in rows of requests, from slow to fast."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
         for row in rows(study):
@@ -263,10 +280,10 @@ def _rises_on_map(motion: str) -> Checks:
 def _periods(
     judge: Callable[[np.ndarray, np.ndarray, float], tuple[float, float, float]],
 ) -> Checks:
-    """Checks of periods; the error of a margin is the change from half as many rings.
+    """Return checks of periods. The error of a margin is the change from half as many rings.
 
-    judge(right, left, cell) -> value, reference and margin; right, left: area fraction that sticks
-    on either side, shape (steps,); cell: area fraction of the smallest cell.
+    judge: function (right, left, cell) that returns value, reference and margin; right, left: area
+    fractions that stick in each half, shape (steps,); cell: area fraction of the smallest cell.
     """
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -284,7 +301,7 @@ def _periods(
 
 
 def _sticking(run: Run) -> tuple[np.ndarray, np.ndarray, float]:
-    """Arguments of a `judge` of `_periods`."""
+    """Return the arguments of the function `judge` of `_periods`."""
     right, left = (np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left"))
     return right, left, min(run.result["area"]) / np.pi
 
@@ -301,7 +318,7 @@ def _alternates(right: np.ndarray, left: np.ndarray, _: float) -> tuple[float, f
     for k in (least, least + half):
         total = right[k] + left[k]
         leads.append((left[k] - right[k]) / total if total > 0 else 0.0)
-    # the smaller of the two leads, of one side and then of the other
+    # Each side must lead once. The smaller of the two leads counts.
     lead = max(min(leads[0], -leads[1]), min(-leads[0], leads[1]))
     return lead, ALTERNATES, lead - ALTERNATES
 
@@ -365,7 +382,7 @@ CHECKS: dict[str, Checks] = {
     "rises_bore": _rises_on_map("bore"),
     "rises_continuous_bore": _rises(lambda study: [claims.steady(study)], "velocity"),
 }
-"""Checks by name of the part."""
+"""Functions that return the checks of a part, by the name of the part."""
 
 
 @dataclass(frozen=True)
@@ -381,7 +398,7 @@ class Part:
     text : str
         The criterion.
     checks : callable
-        (study, runs) -> checks.
+        Function (study, runs) that returns the checks.
     counts : bool
         True if the verdict on the statement depends on the part.
     """

@@ -1,4 +1,4 @@
-"""Runs behind the verdicts: results by request, and the command that repeats each of them."""
+"""Runs by which the verdicts are decided, and the command that repeats each run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Run:
 
 
 class Runs(Answers):
-    """Answers that are Runs. `by_request` holds them in the order of their first request."""
+    """Answers that are Runs. `by_request` contains them in the order of their first requests."""
 
     def __init__(self, answer: Callable):
         super().__init__(answer)
@@ -34,21 +34,22 @@ class Runs(Answers):
 
 
 def friction(run: Run) -> tuple[float, float]:
-    """(mu_macro, error estimate) of a point; the error is infinite if it is not converged."""
+    """Return (mu_macro, error estimate) of a point. The error is infinite if the point did not
+    converge."""
     error = value_of(run.result, "mu_macro_error")
     good = value_of(run.result, "converged", bool) and np.isfinite(error)
     return value_of(run.result, "mu_macro"), error if good else np.inf
 
 
 def resolution(run: Run) -> tuple[int, ...]:
-    """(cells, angles, steps) of a run; 0 for a number that the run does not have."""
+    """Return (cells, angles, steps) of a run. Numbers that the run does not have are 0."""
     used = run.request | {name: n for name, n in run.result.items() if name in ("cells", "angles")}
     steps = run.result.get("steps_per_period") or run.request.get("steps")
     return tuple(int(n or 0) for n in (used.get("cells"), used.get("angles"), steps))
 
 
 def command(request: dict) -> str:
-    """Shell command that computes a request again."""
+    """Return a shell command that repeats the computation of a request."""
     kind, motion = request["kind"], request["motion"]
     if kind == "point":
         words = ["microslip point", motion, f"--velocity {request['velocity']}"]
@@ -81,11 +82,11 @@ _CALLS = {
         "microslip.adaptive.single_run run_trial(...)['mu_macro']",
     ),
 }
-"""Names of the arguments in a request, and the call that takes them, by kind of request."""
+"""Names of arguments in a request, and the call with these arguments, by kind of request."""
 
 
 def _literal(value: str | float) -> str:
-    """Python literal of a value of a request; numbers are stored as text and get no quotes."""
+    """Return a value of a request as a Python literal. Texts of numbers get no quotes."""
     try:
         float(value)
     except ValueError:
@@ -94,7 +95,7 @@ def _literal(value: str | float) -> str:
 
 
 def made_by(request: dict) -> str:
-    """Short description of how a run was computed."""
+    """Return a short description of how a run was computed."""
     kinds = {
         "point": "certified point",
         "history": f"transient from {request.get('start')}",

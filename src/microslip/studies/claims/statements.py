@@ -5,29 +5,29 @@ in `parts`.
 """
 
 GOOD = 0.02
-"""Largest distance of mu_macro from a formula that counts as good: visible on a map with contours
-of a tenth."""
+"""Largest error of a formula for mu_macro that counts as good. It is just visible on a map with
+contours at steps of 0.1."""
 SLIGHT = 0.05
-"""Largest distance that counts as slight."""
+"""Largest difference of mu_macro that counts as slight."""
 AGREES = 0.01
-"""Largest distance that counts as agreement of a curve and a dashed line drawn over it."""
+"""Largest difference of mu_macro at which a curve and a dashed line over it count as equal."""
 RELATIVE = 0.1
-"""Largest distance over the true value that counts as good where friction is small."""
+"""Largest relative error of a formula that counts as good where friction is small."""
 LARGE_BORE = 5.0
 """Smallest bore amplitude that counts as large: the largest amplitude of the paper's map."""
 TURNING_BORE = 2.0
 """Bore amplitude above which the paper considers Eq 33 good."""
 ON_BOUND = 0.999
-"""Traction over the friction bound above which a point counts as slipping."""
+"""A point counts as slipping if its traction divided by the friction bound is above this number."""
 ALIGNED = 4.0
 """Largest angle in degrees between traction and slip: the tolerance of the paper."""
 ALTERNATES = 0.5
-"""Smallest lead of one side over the other, as a fraction of the sticking area, that counts as
-alternation of patches."""
+"""Smallest difference between the stick areas of the two halves that counts as alternation of the
+patches, as a fraction of the whole stick area."""
 VANISHES = 1e-9
-"""Largest friction over mu F_z that counts as zero."""
+"""Largest mean force, divided by mu F_z, that counts as zero."""
 FAR = 3.0
-"""Smallest bore amplitude at which the stick zone is small and the asymptote applies."""
+"""Smallest bore amplitude at which the stick zone is small enough for the asymptote."""
 
 STATEMENTS = {
     1: "Under transverse oscillation the rigid slider (Eq 6) gives a friction slightly too low at "
@@ -108,10 +108,10 @@ CRITERIA = {
         "rises_continuous_bore": "continuous bore: friction rises from one velocity to the next",
     },
 }
-"""Criterion of each part, by statement and by name."""
+"""Criterion of each part, by the number of the statement and the name of the part."""
 BESIDE = {
     *("rigid_below_squares", "slider_above_march", "zone_above", "force_steady", "steady_nears"),
     *("steady_near_below", "bore_zone_seen", "bore_zone_above_march", "bore_zone_printed"),
     *("limit_positive_rings",),
 }
-"""Parts that the verdict on their statement does not depend on."""
+"""Parts that do not affect the verdict on their statement."""

@@ -1,8 +1,8 @@
 """The static limit of the two oscillating motions, and the paper's formulas for it.
 
-A formula of the paper counts the whole friction bound inside the stick zone, although the
-oscillation uses a part of it (see microslip.solver.static_limit). The paper's own runs could not
-show the difference, because of their velocity and resolution.
+The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
+uses a part of it (see microslip.solver.static_limit). The paper's own runs do not show the
+difference, because their velocity is too large and their resolution too coarse.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FORMULAS = {
         "zone_printed": ("mu_static_stick_zone_printed", "Eq 33 as printed"),
     },
 }
-"""The paper's formulas by motion: name -> (name in theory.catalogue, long_name)."""
+"""The paper's formulas of each motion: name -> (name in theory.catalogue, long_name)."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 RADII = 201
@@ -40,10 +40,10 @@ RADII = 201
 def limit(
     study: Claims, runs: Runs, motion: str, amplitude: float
 ) -> tuple[float, float, tuple[Run, Run]]:
-    """Static limit at an amplitude: value of the closed form, its error, and the runs behind it.
+    """Return the static limit at an amplitude: closed form, error, and runs used for the error.
 
-    The error does not trust the closed form: it is the distance from the limit on rings plus the
-    error estimates of both.
+    The error is an independent check of the closed form. It is the distance between the closed form
+    and the limit on rings, plus the error estimates of the two values.
     """
     closed = runs(claims.point(study, motion, 0.0, amplitude))
     rings = runs(claims.resolved_limit(study, motion, amplitude))
@@ -53,21 +53,21 @@ def limit(
 
 
 def asymptote(amplitude: ArrayLike) -> np.ndarray:
-    """Static limit of the oscillating bore at large amplitudes, where the stick zone is small.
+    """Return the static limit of the oscillating bore for large amplitudes (small stick zones).
 
     The radius of the stick zone is c = (4/e) exp(-D(1/2) amplitude), and the rotation uses the
     fraction (2/pi) arcsin(r/c) of the friction bound. The integral of the remaining bound is
-    3/4 (1 - J0(pi)) c^2, with a Bessel function. Eq 33 tends to 3/2 c^2. The result is
-    dimensionless and positive; amplitude: any shape.
+    3/4 (1 - J0(pi)) c^2, where J0 is a Bessel function. Eq 33 tends to 3/2 c^2. The result is
+    dimensionless and positive. amplitude: array of any shape.
     """
     radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return 0.75 * (1.0 - j0(np.pi)) * radius**2
 
 
 def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Fraction of the friction bound that the oscillation alone uses at its turning points.
+    """Return the fraction of the friction bound that the oscillation uses at its turning points.
 
-    It is 1 outside the stick radius. radius, amplitude: broadcast.
+    The fraction is 1 outside the stick radius. The arguments broadcast.
     """
     if motion == "bore":
         return np.asarray(hertz.lubkin_share(radius, theory.bore_stick_radius(amplitude)))
@@ -77,7 +77,10 @@ def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Fraction of the bound that remains for the forward direction, averaged over the angle."""
+    """Return the fraction of the friction bound that remains for the forward direction.
+
+    It is averaged over the angle.
+    """
     used = used_share(motion, radius, amplitude)
     if motion == "bore":
         return 2.0 / np.pi * np.arccos(used)
@@ -85,7 +88,7 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 
 def variables(study: Claims, runs: Runs) -> dict:
-    """Variables of the dataset about the static limit of both motions."""
+    """Return the variables of the dataset for the static limits of the two motions."""
     made: dict[str, tuple] = {}
     for motion in study.amplitude:
         made |= _curves(motion) | _shares(motion) | _split(study, runs, motion)
@@ -101,7 +104,7 @@ def variables(study: Claims, runs: Runs) -> dict:
 
 
 def _curves(motion: str) -> dict:
-    """Static limit and formulas on a fine axis of amplitudes, and their largest differences."""
+    """Return the static limit, the formulas on a fine axis, and their largest differences."""
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     dim = f"{motion}_curve_amplitude"
     exact = FORMS[motion][STATIC].function(amplitude)
@@ -123,7 +126,7 @@ def _curves(motion: str) -> dict:
 
 
 def _shares(motion: str) -> dict:
-    """Used and remaining fractions of the friction bound over radius and amplitude."""
+    """Return the used and the remaining fraction of the friction bound by radius and amplitude."""
     radius, amplitudes = np.linspace(0.0, 1.0, RADII), np.array(SHARE_AMPLITUDES[motion])
     dims = (f"{motion}_share_amplitude", "share_radius")
     at = (motion, radius, amplitudes[:, None])
@@ -153,11 +156,14 @@ SPLIT = {
     "from_resolution_error": "error of this part",
     "squares_shift": "difference of the limit on squares from the limit",
 }
-"""Variables over the amplitudes of each motion: long_name by name."""
+"""Variables with the amplitudes of a motion as their axis: long_name by name."""
 
 
 def _split(study: Claims, runs: Runs, motion: str) -> dict:
-    """Difference of the paper's run from the limit, split by velocity and resolution."""
+    """Return the difference between the paper's run and the static limit.
+
+    It is split into the parts that are due to the velocity and to the resolution.
+    """
     amplitudes = claims.limited(study, motion)
     rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]
     dim = f"{motion}_amplitude"
@@ -177,7 +183,7 @@ def _split(study: Claims, runs: Runs, motion: str) -> dict:
 
 
 def _row(study: Claims, runs: Runs, motion: str, amplitude: float) -> dict[str, float]:
-    """Values of SPLIT at an amplitude."""
+    """Return the values of SPLIT at an amplitude."""
     exact, exact_error, _ = limit(study, runs, motion, amplitude)
     slowest = claims.point(study, motion, claims.velocities(study)[0], amplitude)
     march, march_error = friction(runs(slowest))

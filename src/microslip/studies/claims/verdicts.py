@@ -1,8 +1,9 @@
 """Verdicts on statements, from the margins and errors of checks.
 
-A statement of the paper has parts, and a part is judged by checks. A check is a margin with an
-error: the margin is positive where the part holds, and it decides only if it is larger than the
-error. A part holds if no check decides against it. A statement holds if all its parts hold.
+A statement of the paper has parts, and a part is judged by checks. Each check has a margin with an
+error. A check holds if its margin is positive and larger than the error, and fails if the margin is
+negative and its absolute value is larger than the error; otherwise the check is open. A part holds
+if some checks hold and none fails. A statement holds if all its parts hold.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ WORDS = ("not decided", "holds", "holds in part", "does not hold")
 
 @dataclass(frozen=True)
 class Check:
-    """A comparison of two numbers that speaks for or against a part.
+    """A comparison of two numbers that supports or refutes a part.
 
     Attributes
     ----------
     value, against : float
-        Computed value, and its reference.
+        Computed value and its reference.
     margin, error : float
-        Margin, positive where the part holds, and its error. The error is infinite if a run did
-        not converge.
+        Margin and its error. The margin is positive if the part holds. The error is infinite if a
+        run did not converge.
     runs : tuple of str
-        Names of the results, that of the computed value first.
+        Names of the runs. The first one has the computed value.
     place : tuple
-        (name, number) pairs such as ("amplitude", 1.0).
+        Pairs of a name and a number, such as ("amplitude", 1.0).
     """
 
     value: float
@@ -45,14 +46,14 @@ class Check:
 
     @property
     def outcome(self) -> int:
-        """Index of OUTCOMES: open unless the margin is larger than its error."""
+        """Index into OUTCOMES. A check is open if its margin is within its error."""
         if not (math.isfinite(self.margin) and abs(self.margin) > self.error):
             return OPEN
         return HOLDS if self.margin > 0 else FAILS
 
 
 def of_part(checks: list) -> int:
-    """The verdict on a part, an index of VERDICTS; checks: list of Check."""
+    """Return the verdict on a part, an index into VERDICTS. checks: list of Check."""
     outcomes = {check.outcome for check in checks}
     if HOLDS not in outcomes:
         return NOT if FAILS in outcomes else NOT_DECIDED
@@ -60,10 +61,10 @@ def of_part(checks: list) -> int:
 
 
 def of_claim(parts: list) -> int:
-    """The verdict on a statement, from the verdicts on its parts.
+    """Return the verdict on a statement from the verdicts on its parts.
 
-    An undecided part leaves the statement undecided, unless other parts both hold and fail: then
-    the statement holds in part, whatever the verdict on the undecided part.
+    A statement holds in part if one of its parts holds in part, or if some parts hold and some do
+    not. In all other cases an undecided part leaves the statement undecided.
     """
     distinct = set(parts)
     if PARTLY in distinct or {WHOLLY, NOT} <= distinct:
@@ -74,22 +75,22 @@ def of_claim(parts: list) -> int:
 
 
 def decisive(checks: list, outcome: int) -> Check | None:
-    """The check with an outcome that has the largest margin, None if no check has the outcome."""
+    """Return the check with the largest margin of those with an outcome, or None without one."""
     decided = [check for check in checks if check.outcome == outcome]
     return max(decided, key=lambda check: abs(check.margin), default=None)
 
 
 def tightest(checks: list) -> Check | None:
-    """The check with the smallest margin among those that hold, None if none holds."""
+    """Return the check with the smallest margin of those that hold, or None if none holds."""
     decided = [check for check in checks if check.outcome == HOLDS]
     return min(decided, key=lambda check: check.margin, default=None)
 
 
 def where(checks: list) -> str:
-    """Text with the places where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
+    """Return a text that lists where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
 
-    Checks are grouped by the first number of their places. Where a group both holds and fails, the
-    text lists the second numbers of the failures.
+    Checks are grouped by the first number of their places. If some checks of a group hold and some
+    fail, the text lists the second numbers of those that fail.
     """
     if not checks or not checks[0].place:
         return ""
@@ -121,7 +122,7 @@ def where(checks: list) -> str:
 
 
 def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
-    """Texts of runs of consecutive chosen values, such as "0.5" and "1 to 3"."""
+    """Return texts for series of consecutive chosen values, such as "0.5" and "1 to 3"."""
     stretch, texts = [], []
     for value in [*order, None]:
         if value is not None and chosen(value):
@@ -133,7 +134,7 @@ def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
 
 
 def _within(group: list[Check]) -> str:
-    """Text with the second numbers of the places where checks of a group fail."""
+    """Return a text with the second numbers of the places at which checks of a group fail."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:
         return "for some"

@@ -1,4 +1,5 @@
-"""The dataset propulsion: a line for every motion, from stall force to no-load velocity."""
+"""Build the dataset propulsion, with a line for every motion from stall force to no-load
+velocity."""
 
 from collections.abc import Callable, Iterator
 
@@ -11,7 +12,7 @@ from microslip.studies.propulsion import propulsion as study
 from microslip.studies.tables import Answers, finished, table, value_of
 
 GROUPS: dict = {}
-"""Groups of the dataset: it has one table only, over lines and their points."""
+"""Groups of the dataset. There are no groups, because all variables are in one table."""
 
 LINE_COLUMNS: dict[str, tuple] = {
     "stall_force": ("load that stops the motion, over mu times the mean normal load", float),
@@ -21,7 +22,8 @@ LINE_COLUMNS: dict[str, tuple] = {
     "converged": ("every force and power is within the tolerance", bool),
     "reason": ("reason why not, or why the motion propels nothing", str),
 }
-"""Results of a line: long_name, type. Numbers are negative where the motion propels backward."""
+"""Results of a line: (long_name, type) by name. Numbers are negative if the motion propels
+backward."""
 COORDINATES: dict[str, tuple] = {
     "line": (lambda name, _: name, "name of the motion", str),
     "title": (lambda name, motion: motion.title or name, "title of the line", str),
@@ -42,13 +44,14 @@ POINT_COLUMNS = {
     "efficiency": "power_out over power_in",
     "efficiency_error": "error estimate of efficiency",
 }
-"""Results at every point of a line: long_name. NaN where the motion propels nothing."""
+"""Results at every point of a line: long_name by name. They are NaN if the motion does not propel
+the body."""
 
 
 def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
-    """Assemble the Dataset.
+    """Build the dataset of the study.
 
-    answer(request) -> record, such as batches.answer with a store.
+    answer: function that returns the record of a request, such as batches.answer with a store.
     """
     answers = Answers(answer)
     results = [answers(study.line(settings, motion)) for motion in settings.motions.values()]
@@ -69,7 +72,7 @@ def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: stall force, no-load velocity and efficiency of every motion."""
+    """Yield lines of text: stall force, no-load velocity and efficiency of every motion."""
     for index, name in enumerate(dataset["line"].values):
         one = dataset.isel(line=index)
         if not bool(one["converged"]) or str(one["reason"].values):

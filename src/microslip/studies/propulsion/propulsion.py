@@ -1,4 +1,4 @@
-"""Propulsion: force-velocity lines of self-propelled motions, from stall to no load."""
+"""Requests for the force-velocity lines of self-propelled motions, from stall to no load."""
 
 from microslip.config.settings import Propulsion, SelfPropelledMotion
 from microslip.foundation.canonical import number
@@ -7,7 +7,7 @@ LINES_PER_JOB = 2
 
 
 def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
-    """The request for the line of a motion."""
+    """Return the request for the force-velocity line of a motion."""
     return {
         "kind": "propulsion",
         "motion": motion.motion,
@@ -19,7 +19,7 @@ def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
 
 
 def pieces(study: Propulsion) -> tuple[list, list]:
-    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
+    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
     requests = [line(study, motion) for motion in study.motions.values()]
     distinct = [request for i, request in enumerate(requests) if request not in requests[:i]]
     return [], [distinct[i : i + LINES_PER_JOB] for i in range(0, len(distinct), LINES_PER_JOB)]

@@ -1,4 +1,4 @@
-"""The dataset stability: outcome of every method in every case."""
+"""Build the dataset stability, with the outcome of every method in every case."""
 
 from collections.abc import Callable, Iterator
 
@@ -16,7 +16,7 @@ OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
 GROUPS = {"axes": ("Quantities that are varied in the blocks of cases", ("axis",))}
-"""Groups of the dataset besides the table over methods and cases."""
+"""Groups of the dataset. The table of methods and cases is the root."""
 
 RESULT_COLUMNS: dict[str, tuple] = {
     "mu_macro": ("mu_macro", MU_MACRO.description, float),
@@ -24,7 +24,7 @@ RESULT_COLUMNS: dict[str, tuple] = {
     "work": ("work", "step solves times unknowns, summed over all runs", float),
     "reason": ("reason", "reason of the method for giving up, else empty", str),
 }
-"""Variables over methods and cases: name in a result, long_name, type."""
+"""Variables for each method and case: (name in a result, long_name, type)."""
 CASE_COLUMNS: dict[str, tuple] = {
     "case_axis": (lambda axis, *_: axis.name, "block of the case", str),
     "case_value": (lambda _, value, __: value, "value of the varied quantity"),
@@ -37,27 +37,29 @@ AXIS_COLUMNS: dict[str, tuple] = {
 }
 
 UNSOLVED = "a step was left unsolved"
-"""Start of the reason of a run that ran out of iterations near the solution of a step."""
+"""First words of the reason if a run reached the maximum number of iterations near the solution of
+a step."""
 
 
 def outcome(
     result: dict | None, reference: float, reference_error: float, imposed: bool = False
 ) -> int:
-    """Outcome of a probe, an index of OUTCOMES.
+    """Return the outcome of a probe, an index into OUTCOMES.
 
-    Not applicable: the method was not run. Converged: the run converged, and its value is within
-    the two error estimates of the reference; wrong: it converged, and its value is not. Slow: the
-    run used up its budget and reports this. Diverged: the run diverged or returned no number.
+    A probe is not applicable if the method was not run. It is converged if the run converged and
+    differs from the reference by at most the sum of the two error estimates. It is wrong if the run
+    converged, but differs by more. It is slow if the run used up its budget and reports this. It is
+    diverged if the run diverged or returned no number.
 
     Parameters
     ----------
     result : dict or None
-        Result of the probe; None or `applies` False if the method was not run.
+        Result of the probe. If the method was not run, it is None or its entry `applies` is False.
     reference, reference_error : float
         Reference and its error estimate, dimensionless.
     imposed : bool
-        True if the resolution was imposed. It can then be too coarse for the tolerance, so a
-        periodic run counts as converged.
+        True if the resolution was imposed. An imposed resolution can be too coarse for the
+        tolerance, so every run with a periodic state counts as converged.
     """
     if result is None or not result.get("applies", True):
         return NOT_APPLICABLE
@@ -75,9 +77,9 @@ def outcome(
 
 
 def build(settings: Stability, answer: Callable) -> xr.Dataset:
-    """Assemble the Dataset.
+    """Build the dataset of the study.
 
-    answer(request) -> record, such as batches.answer with a store.
+    answer: function that returns the record of a request, such as batches.answer with a store.
     """
     answers = Answers(answer)
     cases = study.cases(settings)
@@ -115,7 +117,7 @@ def build(settings: Stability, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Lines of text: the number of cases with each outcome, method by method."""
+    """Yield lines of text with the number of cases with each outcome, for each method."""
     for method, row in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
         counts = ((OUTCOMES[i], int((row == i).sum())) for i in range(1, len(OUTCOMES)))
         yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)

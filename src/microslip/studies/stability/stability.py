@@ -1,8 +1,8 @@
-"""Stability: the cases that all methods are tested on, along one axis at a time.
+"""Cases of the stability study, in which all methods are tested.
 
-An axis varies one quantity of a base point into a range where methods fail. A case is a value of
-this quantity with its point, its resolution, or a number of the method. All probes have the same
-tolerance.
+An axis varies one quantity of a base point into a range in which methods fail. The quantity belongs
+to the point, to the resolution, or to the method. A case is one value of this quantity. All probes
+have the same tolerance.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from microslip.studies import requests
 
 @dataclass(frozen=True)
 class Axis:
-    """A varied quantity, with its cases.
+    """A quantity that is varied, with its cases.
 
     Attributes
     ----------
@@ -26,11 +26,11 @@ class Axis:
     note : str
         Values of the fixed quantities.
     cases : tuple
-        Pairs of the value and a dict for the request: motion, velocity, amplitude, poisson, cells
-        or steps.
+        Pairs of the value and a dict with entries of the request: motion, velocity, amplitude,
+        poisson, cells or steps.
     parameters : tuple
-        Pairs of a method and its number that takes the value. With such pairs the axis applies to
-        these methods only, and to the shipped method for comparison.
+        Pairs of a method and the name of its parameter that is varied. If there are such pairs,
+        the axis applies only to these methods and, for comparison, to the shipped method.
     """
 
     name: str
@@ -43,7 +43,10 @@ class Axis:
 def _varied(
     key: str | None, values: tuple[float, ...], **fixed: object
 ) -> tuple[tuple[float, dict], ...]:
-    """Cases in which `key` takes the values; None: a number of the method takes the values."""
+    """Return the cases in which the entry `key` has the values.
+
+    If `key` is None, a parameter of the method has the values.
+    """
     return tuple((value, fixed if key is None else fixed | {key: value}) for value in values)
 
 
@@ -91,7 +94,7 @@ AXES = (
         *("centre", "rings: slender cells at the centre", "bore, v 0.1, A 1"),
         _varied("cells", (4, 8, 12, 16, 24), **_BORE),
     ),
-    # Up to 1 the centre of rotation is inside the contact, and the slip has no direction there.
+    # Up to velocity 1 the centre of rotation, where slip has no direction, is inside the contact.
     Axis(
         "rotation-centre",
         "velocity: where the centre of rotation lies",
@@ -120,23 +123,23 @@ AXES = (
 )
 """All blocks of the atlas, in their order in the figure."""
 TRUTH_SHARE = 0.1
-"""Tolerance of the references over that of the probes."""
+"""Tolerance of the references, divided by the tolerance of the probes."""
 BLOCKS_PER_JOB = 5
 """Number of blocks in one job."""
 
 
 def axes(study: Stability) -> list[Axis]:
-    """The axes in the settings, in the order of AXES."""
+    """Return the axes in the settings, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
 def cases(study: Stability) -> list[tuple]:
-    """List of (axis, value, overrides) of all axes, in the order of the dataset."""
+    """Return the cases of all axes as (axis, value, overrides), in the order of the dataset."""
     return [(axis, *case) for axis in axes(study) for case in axis.cases]
 
 
 def probe(study: Stability, method: str, axis: Axis, value: float, overrides: dict) -> dict | None:
-    """The request for a case with a method; None if the axis does not apply to the method."""
+    """Return the request for running a method in a case, or None if the axis does not apply."""
     if axis.parameters:
         base, _ = split(method)
         if base in dict(axis.parameters):
@@ -148,12 +151,15 @@ def probe(study: Stability, method: str, axis: Axis, value: float, overrides: di
 
 
 def reference(study: Stability, overrides: dict) -> dict:
-    """The request for the reference of a case: the shipped method without an imposed resolution."""
+    """Return the request for the reference of a case.
+
+    The reference uses the shipped method without an imposed resolution.
+    """
     return requests.reference(_point(overrides), TRUTH_SHARE * study.tolerance)
 
 
 def pieces(study: Stability) -> tuple[list, list]:
-    """Requests grouped by job: two lists of lists of requests, the slow jobs and the fast ones."""
+    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
     blocks = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
     requested: set[str] = set()
     long: list[list[dict]] = []
@@ -175,7 +181,7 @@ def _point(overrides: dict) -> requests.Point:
 
 
 def _with_number(method: str, parameter: str, value: float) -> str:
-    """Name of a method with one number replaced, such as "admm:penalty=0.1,relaxation=1.5"."""
+    """Return the name of a method with one parameter changed, such as "admm:penalty=0.1"."""
     name, numbers = split(method)
     numbers[parameter] = value
     return f"{name}:" + ",".join(f"{key}={number(n)}" for key, n in numbers.items())
