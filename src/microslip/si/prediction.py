@@ -47,7 +47,7 @@ UNITS = {
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
     "_s": "s",
 }
-"""Units by the end of the name of a column.  The first matching end counts."""
+"""Unit of a column, by the ending of its name.  The first matching end counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
