@@ -73,11 +73,14 @@ class Motion:
     amplitude_label: ClassVar[str] = "A"
     periodic: ClassVar[bool] = True
     loads: ClassVar[bool] = False
-    readings: ClassVar[tuple[Motion, ...]] = ()
     closed_form: ClassVar[Callable | None] = None
     """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None if no closed
     form is known for these arguments; velocity 0 is the static limit.  The attribute is None for
     motions without a closed form."""
+
+    @property
+    def readings(self) -> tuple[Motion, ...]:
+        return ()
 
     @property
     def rotates(self) -> bool:
