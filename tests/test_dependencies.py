@@ -7,12 +7,14 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 TOP = Path(__file__).parents[1]
 PROJECT = tomllib.loads((TOP / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 LISTS = {"dependencies": PROJECT["dependencies"], **PROJECT["optional-dependencies"]}
-USED = [*LISTS["dependencies"], *LISTS["plot"], *LISTS["workflow"]]
+USED = [*LISTS["dependencies"], *LISTS["plot"], *LISTS["workflow"][1:]]
 DEPENDENCIES = {one.name: one.specifier for one in map(Requirement, USED)}
 OPTIONAL = {"matplotlib": "plot", "plotly": "plot", "snakemake": "workflow", "jinja2": "workflow"}
 
@@ -39,6 +41,15 @@ def test_every_requirement_has_a_lower_bound(name):
 )
 def test_releases_that_fail_are_excluded(name, version):
     assert not DEPENDENCIES[name].contains(version)
+
+
+def test_the_conda_recipe_requires_the_same_versions():
+    names = {"netCDF4": "netcdf4", "PyYAML": "pyyaml", "dask": "dask-core"}
+    names |= {"matplotlib": "matplotlib-base", "snakemake": "snakemake-minimal"}
+    recipe = yaml.safe_load((TOP / "containers" / "recipe.yaml").read_text())
+    needed = {names.get(name, name): bounds for name, bounds in DEPENDENCIES.items()}
+    listed = dict(one.split(" ", 1) for one in recipe["requirements"]["run"][1:])
+    assert {name: SpecifierSet(bounds) for name, bounds in listed.items()} == needed
 
 
 BLOCKED = (

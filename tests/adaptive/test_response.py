@@ -151,6 +151,8 @@ def test_shifts_of_contact(poisson, shift, force, work):
         ("indentation", {"forward": [0.0, 1.0], "load": [1, 1], "indentation": [1, 1]}),
         ("pressure", {"forward": [0.0, 1.0], "load": [1, 2], "pressure": "ellipse"}),
         ("state", {"forward": [0.0, 1.0], "state": "sticking"}),
+        ("state", {"forward": [0.0, 1.0], "state": ""}),
+        ("progress", {"forward": [0.0, 1.0], "progress": 3}),
         ("tolerance", {"forward": [0.0, 1.0], "tolerance": 0.0}),
         ("poisson", {"forward": [0.0, 1.0], "poisson": 0.7}),
     ],

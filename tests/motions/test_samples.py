@@ -92,6 +92,7 @@ def test_symmetries_of_samples():
 def test_equal_samples_are_one_motion():
     assert sampled(lateral=SINE) == sampled(lateral=SINE.copy())
     assert sampled(lateral=SINE) != sampled(forward=SINE)
+    assert sampled(load=1.0 + SINE) != sampled(indentation=1.0 + SINE)
 
 
 @pytest.mark.parametrize(

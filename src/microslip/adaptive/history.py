@@ -125,7 +125,7 @@ def history(
     end = 2 * np.pi * periods if motion.periodic else travel / velocity
     total = steps * (periods if motion.periodic else 1)
     path = make_path(problem.displacement, np.linspace(0.0, end, total + 1), depth=problem.depth)
-    march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
+    march = contact.march(path, tractions_at_start(contact, start), STEP_TOLERANCE)
     failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
     if failure:
         raise StepFailure(f"velocity = {velocity!r}: {failure}")
@@ -203,7 +203,8 @@ def _contact(problem: Problem, model: str, cells: int | None) -> Contact:
     return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
-def _start(contact: Contact, start: str) -> np.ndarray:
+def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
+    """Tractions of a contact in one of the initial states STARTS."""
     if start == "stress-free":
         return 0.0 * forward_slip(contact)
     if start == "full-slip":

@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 
 from microslip.adaptive.choice import choose_model
+from microslip.adaptive.history import STARTS, tractions_at_start
+from microslip.adaptive.period import ON_BOUND
 from microslip.contacts.coulomb import project
-from microslip.estimate.ladder import ladder_for
+from microslip.estimate.ladder import LOAD, ladder_for
 from microslip.estimate.refine import SMALLEST_SHARE
 from microslip.estimate.richardson import WEIGHTS, extrapolate
 from microslip.foundation.arguments import SMALLEST_TOLERANCE, real
 from microslip.foundation.errors import InputError
-from microslip.models.contact import Contact, March, StepFailure, forward_slip, full_slip
+from microslip.models.contact import Contact, March
 from microslip.models.path import LONG_STROKE, Path, make_path
 from microslip.motions.problem import Problem
 from microslip.motions.samples import SampledPath
@@ -28,21 +30,17 @@ from microslip.pressures.by_name import pressure_named
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 from microslip.solver.discretise import build_contact
-from microslip.solver.run import unsolved
 from microslip.solver.snapshots import bounds_at_phases
 
 Progress = Callable[[int, int], None]
-STARTS = ("stress-free", "full-slip", "full-rotation")
 STEP_SHARE = 0.05
 """Largest sum of the residuals of all steps of a march, divided by the tolerance; see
 refine.RUN_SHARE."""
 MOST_VALUES = 2e7
 """Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
-STEPS = 2
-"""Number of time steps for a path of length u_lim, divided by the level.  ladder.TRANSLATION has
-the same number for a stroke of u_lim."""
-ON_BOUND = 1.0 - 1e-4
-"""Smallest traction of a slipping point, divided by the friction bound."""
+STEPS = LOAD.steps / 2.0
+"""Number of time steps for a path of length u_lim, divided by the level.  In half a period with a
+stroke of u_lim, which is 2 u_lim long, an oscillating load has the same density of steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,9 +178,11 @@ def response(
         "load": load,
         "indentation": indentation,
     }
-    path, first, start = SampledPath.of_columns(columns), 0, state or STARTS[0]
-    if isinstance(start, Response):
-        path, first, start = _joined(start, path)
+    path, first, start = SampledPath.of_columns(columns), 0, state
+    if isinstance(state, Response):
+        path, first, start = _joined(state, path)
+    elif state is None:
+        start = STARTS[0]
     if not isinstance(start, str) or start not in STARTS:
         allowed = f"allowed is a Response or one of {', '.join(STARTS)}"
         raise InputError("state", state, allowed)
@@ -190,8 +190,10 @@ def response(
         raise InputError("state", start, "allowed for paths that rotate")
     poisson = real("poisson", poisson, 0.0, 0.5)
     tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 1.0)
-    given = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    problem = Problem(path, poisson=poisson, pressure=given)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of two arguments")
+    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    problem = Problem(path, poisson=poisson, pressure=pressure)
     return _refined(_Marches(problem, start, tolerance, progress), first)
 
 
@@ -213,8 +215,8 @@ def _joined(before: Response, path: SampledPath) -> tuple[SampledPath, int, str]
             allowed = f"allowed in the first row is where the state ended: {old.height[-1]:.12g}"
             raise InputError(name, float(path.height[0]), allowed)
         height = np.concatenate([old.height, path.height[1:]])
-    moved = path.rows - path.rows[0] + old.rows[-1]
-    rows = np.concatenate([old.rows, moved[1:]])
+    shift = old.rows[-1] - path.rows[0]
+    rows = np.concatenate([old.rows, path.rows[1:] + shift])
     return SampledPath(rows, height, path.by_load), len(old.rows) - 1, before.start
 
 
@@ -225,7 +227,7 @@ class _Marches:
     ----------
     rows : dict of int to np.ndarray
         Values at every row by level, shape (rows, 5): forward force, lateral force, torque,
-        dissipated energy, and sum of the residuals since the start.
+        dissipated energy, and a bound of the sum of the residuals since the start.
     stick : dict of int to np.ndarray
         Stick fraction at every row, by level.
     """
@@ -249,7 +251,7 @@ class _Marches:
         contact = build_contact(problem, self.model, self.ladder.resolution(level))
         counts = _steps(problem, level)
         step_tolerance = STEP_SHARE * self.tolerance / (2 * counts.sum())
-        state = _start(contact, self.start)
+        state = tractions_at_start(contact, self.start)
         out, stick = np.zeros((len(counts) + 1, 5)), np.full(len(counts) + 1, np.nan)
         initial, work = _stored_energy(contact, state), 0.0
         for first, last in _pieces(counts, state.size):
@@ -257,19 +259,17 @@ class _Marches:
                 problem.displacement, _phases(first, counts[first:last]), depth=problem.depth
             )
             march = contact.march(path, state, step_tolerance)
-            failure = unsolved(march.residual, march.solves, step_tolerance)
-            if failure:
-                raise StepFailure(failure)
-            ends, rows = np.cumsum([0, *counts[first:last]]), slice(first, last + 1)
+            ends, rows = np.cumsum([0, *counts[first:last]]), slice(first + 1, last + 1)
             tractions, bounds = _tractions(contact, path, march, ends)
             mean_forces = 0.5 * (march.forces[1:] + march.forces[:-1])
             works = np.sum(mean_forces * np.diff(path.positions, axis=0), axis=1)
             works = work + np.concatenate([[0.0], np.cumsum(works)])[ends]
             stored = np.array([_stored_energy(contact, one) for one in tractions])
-            out[rows, :3] = march.forces[ends]
-            out[rows, 3] = works - (stored - initial)
-            out[rows, 4] = out[first, 4] + march.residual * ends / ends[-1]
-            stick[first + 1 : last + 1] = _stick_fraction(contact, tractions, bounds)[1:]
+            out[first, :3] = march.forces[0]
+            out[rows, :3] = march.forces[ends[1:]]
+            out[rows, 3] = (works - (stored - initial))[1:]
+            out[rows, 4] = out[first, 4] + march.residual
+            stick[rows] = _stick_fraction(contact, tractions, bounds)[1:]
             work, state = works[-1], march.state
             if self.progress is not None:
                 self.progress(last, len(counts))
@@ -281,7 +281,7 @@ def _refined(marches: _Marches, first: int) -> Response:
     """The response from row `first` on, refined until the force errors are within the tolerance."""
     tolerance, reason = marches.tolerance, ""
     for level in marches.ladder.levels(tolerance):
-        three = [marches.at(one)[first:] for one in (level // 4, level // 2, level)]
+        three = [_from_row(marches.at(one), first) for one in (level // 4, level // 2, level)]
         limit = extrapolate([one[:, :4] for one in three])
         error = np.maximum(limit.error, SMALLEST_SHARE * tolerance)
         error += sum(abs(w) * one[:, 4:] for w, one in zip(WEIGHTS, three, strict=True))
@@ -297,7 +297,7 @@ def _refined(marches: _Marches, first: int) -> Response:
         force_lateral=lateral,
         torque=torque,
         force_error=error[:, :3],
-        dissipated_energy=limit.value[:, 3] - limit.value[0, 3],
+        dissipated_energy=limit.value[:, 3],
         dissipated_energy_error=error[:, 3],
         stick_fraction=marches.stick[level][first:],
         tolerance=tolerance,
@@ -309,6 +309,13 @@ def _refined(marches: _Marches, first: int) -> Response:
         problem=marches.problem,
         start=marches.start,
     )
+
+
+def _from_row(values: np.ndarray, first: int) -> np.ndarray:
+    """Values of _Marches.rows from the row `first` on, with the energy dissipated since then."""
+    out = values[first:].copy()
+    out[:, 3] -= out[0, 3]
+    return out
 
 
 def _steps(problem: Problem, level: int) -> np.ndarray:
@@ -325,8 +332,9 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
     while first < len(counts):
         done = ends[first - 1] if first else 0
         last = int(np.searchsorted(ends, done + MOST_VALUES / (2 * size)))
-        yield first, min(max(last, first + 1), len(counts))
-        first = min(max(last, first + 1), len(counts))
+        last = min(max(last, first + 1), len(counts))
+        yield first, last
+        first = last
 
 
 def _phases(row: int, counts: np.ndarray) -> np.ndarray:
@@ -360,11 +368,3 @@ def _stick_fraction(contact: Contact, tractions: np.ndarray, bounds: np.ndarray)
     axes = tuple(range(1, size.ndim))
     with np.errstate(invalid="ignore"):
         return sticking.sum(axes) / area.sum(axes)
-
-
-def _start(contact: Contact, start: str) -> np.ndarray:
-    if start == "stress-free":
-        return 0.0 * forward_slip(contact)
-    if start == "full-slip":
-        return forward_slip(contact)
-    return full_slip(contact, contact.lateral_position, -contact.forward_position)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from microslip.app.option_parser import format_as_options, option
-from microslip.app.question import Answer
+from microslip.app.question import Answer, refuse_output, write_output
 from microslip.app.terminal import complain
-from microslip.foundation.errors import CacheError, InputError, shown
+from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.prediction import EMPTY, NoPrediction, Prediction
@@ -20,7 +18,6 @@ from microslip.si.tables import Table
 
 FORMAT = ("decimal", "encoding")
 """Options that describe the format of the file."""
-ENDINGS = (".csv", ".nc")
 WIDTH = 13
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
 """Columns of a periodic motion.  They are empty for a contact that runs away."""
@@ -56,7 +53,7 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
 
     if options.propulsion or "points" in arguments:
         raise InputError("table", options.table, "allowed without --propulsion")
-    _refuse_output(options.output, options.table)
+    refuse_output(options.output, options.table)
     format: dict[str, Any] = {name: arguments[name] for name in FORMAT if name in arguments}
     shared = {name: value for name, value in arguments.items() if name not in FORMAT}
     table = table_of("table", options.table, NAMES, **format)
@@ -108,21 +105,6 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
     return " ".join(f"{name}{value}: {allowed}".split())
 
 
-def _refuse_output(path: str | None, table: str) -> None:
-    """Raise InputError if the output file cannot be written, or is the input table."""
-    if path is None:
-        return
-    file, allowed = Path(path), ""
-    if file.suffix.lower() not in ENDINGS:
-        allowed = f"a name that ends in {' or '.join(ENDINGS)}"
-    elif file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
-        allowed = "a file in a folder that can be written to"
-    elif file.resolve() == Path(table).resolve():
-        allowed = "another file than the table that is read"
-    if allowed:
-        raise InputError("output", path, f"allowed is {allowed}")
-
-
 def _write(
     path: str,
     motion: str,
@@ -131,21 +113,13 @@ def _write(
     rows: Sequence[Mapping[str, Any]],
 ) -> None:
     """Write all columns of all cases to a .csv or .nc file atomically.  Raises InputError."""
-    from microslip.foundation.files import writing_beside
     from microslip.si.table import as_dataset
 
     dataset = as_dataset(motion, table, answers)
     dataset["error"] = dataset["error"].copy(data=[row["error"] or "" for row in rows])
     lines = "case", table.lines, {"long_name": "line of the file"}
     dataset = dataset.assign_coords(line=lines)
-    try:
-        with writing_beside(Path(path)) as beside:
-            if Path(path).suffix.lower() == ".csv":
-                dataset.to_dataframe().to_csv(beside)
-            else:
-                dataset.to_netcdf(beside, engine="netcdf4")
-    except (OSError, CacheError) as error:
-        raise InputError("output", path, f"cannot be written: {error}") from None
+    write_output(path, dataset, lambda file: dataset.to_dataframe().to_csv(file))
 
 
 class _Quantity(NamedTuple):

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.app.option_parser import Said, format_as_options, option
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError, shown
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+ENDINGS = (".csv", ".nc")
+"""Endings of the names of output files."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
 
@@ -110,3 +117,35 @@ def respond(
     )  # the encoding may lack the letters of units
     print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if result.complete else 1
+
+
+def refuse_output(path: str | None, table: str) -> None:
+    """Raise InputError if the output file cannot be written, or is the input table."""
+    if path is None:
+        return
+    file, allowed = Path(path), ""
+    if file.suffix.lower() not in ENDINGS:
+        allowed = f"a name that ends in {' or '.join(ENDINGS)}"
+    elif file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
+        allowed = "a file in a folder that can be written to"
+    elif file.resolve() == Path(table).resolve():
+        allowed = "another file than the table that is read"
+    if allowed:
+        raise InputError("output", path, f"allowed is {allowed}")
+
+
+def write_output(path: str, dataset: xr.Dataset, to_csv: Callable[[Path], object]) -> None:
+    """Write a dataset to a .nc file, or call `to_csv` for a .csv file, atomically.
+
+    Raises InputError if the file cannot be written.
+    """
+    from microslip.foundation.files import writing_beside
+
+    try:
+        with writing_beside(Path(path)) as beside:
+            if Path(path).suffix.lower() == ".csv":
+                to_csv(beside)
+            else:
+                dataset.to_netcdf(beside, engine="netcdf4")
+    except (OSError, CacheError) as error:
+        raise InputError("output", path, f"cannot be written: {error}") from None

@@ -1,21 +1,27 @@
-"""The command The command `microslip response`: forces of a contact that follows a path from a
-file."""
+"""The command `microslip response`: forces of a contact that follows the path in a file."""
 
 from __future__ import annotations
 
 import argparse
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from microslip.app.predict_command import GROUPS
-from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.app.progress import elapsed_time
+from microslip.app.question import (
+    Answer,
+    add_json,
+    add_options,
+    refuse_output,
+    respond,
+    typed_options,
+    write_output,
+)
 from microslip.foundation import spec
-from microslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
     from microslip.adaptive.response import Response
@@ -25,16 +31,21 @@ OUTPUT = {
     "output": ("FILE", "write all columns to a .csv or .nc file"),
     "tolerance": (
         "T",
-        "largest error of a force over mu times the load, and of the torque over its value at full "
-        "slip (1e-3)",
+        "largest error of a force divided by mu times the load, and of the torque divided by its "
+        "value at full slip (1e-3)",
     ),
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
 }
-ENDINGS = (".csv", ".nc")
 ROUNDING = 1e-9
 """A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
 number."""
+ERRORS = {
+    "force_forward": "force_error",
+    "force_lateral": "force_error",
+    "torque": "torque_error",
+}
+"""Columns with the error estimates of forces and torque."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a path without units."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
@@ -48,8 +59,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "with error estimates.  The columns of the file are forward, lateral, angle, and load or "
         "indentation.  With units in the heading, as in forward [um], the options describe the "
         "contact as for `microslip predict`.  Without units and without a contact all numbers are "
-        "dimensionless: displacements over u_lim, the angle over u_lim / a, the load and the "
-        "indentation over those of the reference state."
+        "dimensionless: displacements are divided by u_lim, angles by u_lim / a, loads and "
+        "indentations by those of the reference state."
     )
     parser.add_argument("path", metavar="CSV", help="the path")
     bodies = parser.add_argument_group("bodies")
@@ -71,17 +82,15 @@ def run(options: argparse.Namespace) -> int:
 def _answer(options: argparse.Namespace) -> Answer:
     arguments = typed_options(options)
     output = arguments.pop("output", None)
-    if output is not None and Path(output).suffix.lower() not in ENDINGS:
-        allowed = f"allowed is a name that ends in {' or '.join(ENDINGS)}"
-        raise InputError("output", output, allowed)
+    refuse_output(output, options.path)
     if "tolerance" in arguments:
         arguments["tolerance"] = spec.read("tolerance", arguments["tolerance"])
     real = arguments.keys() - WITHOUT_CONTACT
-    arguments["progress"] = _progress if sys.stderr.isatty() else None
-    answer = (_real if real else _dimensionless)(options.path, arguments)
+    with elapsed_time("microslip response"):
+        answer = (_real if real else _dimensionless)(options.path, arguments)
     dataset = answer.to_xarray()
     if output is not None:
-        _write(dataset, Path(output))
+        write_output(output, dataset, lambda file: _frame(dataset).to_csv(file, index=False))
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
     plain |= answer.attributes | {"converged": answer.converged}
     return Answer(plain, _as_text(dataset, answer), answer.converged)
@@ -106,32 +115,16 @@ def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
     """The columns as CSV with six digits.  The reason precedes them if the response is not
     converged."""
     reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
-    size = np.abs(dataset.force_error)
-    forces = {
-        name: dataset[name].where(np.abs(dataset[name]) > ROUNDING * size, 0.0)
-        for name in ("force_forward", "force_lateral", "torque")
-    }
-    return reason + _csv(dataset.assign(forces), "%.6g").rstrip("\n")
+    forces = {}
+    for name, error in ERRORS.items():
+        least = ROUNDING * np.abs(dataset[error])
+        forces[name] = dataset[name].where(np.abs(dataset[name]) > least, 0.0)
+    frame = _frame(dataset.assign(forces))
+    return reason + frame.to_csv(index=False, float_format="%.6g", lineterminator="\n").rstrip("\n")
 
 
-def _csv(dataset: xr.Dataset, digits: str | None = None) -> str:
-    """The columns of a response as CSV.  Units other than 1 are part of the headings."""
+def _frame(dataset: xr.Dataset) -> pd.DataFrame:
+    """The columns of a response.  Units other than 1 are part of the headings."""
     units = {name: one.attrs["units"] for name, one in dataset.items()}
-    headings = {n: f"{n} [{unit}]" for n, unit in units.items() if unit != "1"}
-    frame = dataset.to_dataframe().rename(columns=headings)
-    return frame.to_csv(index=False, float_format=digits, lineterminator="\n")
-
-
-def _write(dataset: xr.Dataset, path: Path) -> None:
-    from microslip.foundation.files import writing_beside
-
-    with writing_beside(path) as beside:
-        if path.suffix.lower() == ".nc":
-            dataset.to_netcdf(beside, engine="netcdf4")
-        else:
-            Path(beside).write_text(_csv(dataset), encoding="utf-8")
-
-
-def _progress(row: int, rows: int) -> None:
-    sys.stderr.write(f"\rmicroslip response: row {row} of {rows}  ")
-    sys.stderr.flush()
+    headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+    return dataset.to_dataframe().rename(columns=headings)

@@ -27,8 +27,8 @@ NORMAL = ("load", "indentation")
 
 
 @dataclass(frozen=True, eq=False)
-class SampledPath(Motion):
-    """A motion through a sequence of rows, which does not repeat.  The phase is the row number.
+class _Samples(Motion):
+    """A motion given by rows.
 
     Attributes
     ----------
@@ -43,6 +43,30 @@ class SampledPath(Motion):
     rows: np.ndarray
     height: np.ndarray | None
     by_load: bool
+
+    @property
+    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
+        return self.height is not None
+
+    @property
+    def rotates(self) -> bool:
+        return self._varies(2)
+
+    @property
+    def half_disc(self) -> bool:
+        return not (self.rotates and self._varies(1))
+
+    def _varies(self, column: int) -> bool:
+        return bool(np.ptp(self.rows[:, column]) > 0.0)
+
+    def _depth_at(self, height: np.ndarray, pressure: Pressure) -> np.ndarray:
+        """Indentation depth at a load or an indentation."""
+        return pressure.of_load(height) if self.by_load else height
+
+
+@dataclass(frozen=True, eq=False)
+class SampledPath(_Samples):
+    """A motion through a sequence of rows, which does not repeat.  The phase is the row number."""
 
     periodic = False
     summary = "a path through rows"
@@ -65,18 +89,6 @@ class SampledPath(Motion):
     def name(self) -> str:
         return "path"
 
-    @property
-    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
-        return self.height is not None
-
-    @property
-    def rotates(self) -> bool:
-        return bool(np.ptp(self.rows[:, 2]) > 0.0)
-
-    @property
-    def half_disc(self) -> bool:
-        return not (self.rotates and np.ptp(self.rows[:, 1]) > 0.0)
-
     def at(self, phase: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Interpolate the values of the rows linearly."""
         return np.interp(phase, np.arange(len(values)), values)
@@ -89,8 +101,7 @@ class SampledPath(Motion):
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
         assert self.height is not None  # else the depth is constant
-        height = self.at(phase, self.height)
-        return pressure.of_load(height) if self.by_load else height
+        return self._depth_at(self.at(phase, self.height), pressure)
 
     def deepest(self, amplitude: float, pressure: Pressure) -> float:
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
@@ -109,7 +120,7 @@ class SampledPath(Motion):
 
 
 @dataclass(frozen=True, eq=False)
-class Sampled(Motion):
+class Sampled(_Samples):
     """One period of a motion of any shape, from equally spaced samples.
 
     With the amplitude A the indenter moves by A times the interpolated displacements.  A load or
@@ -128,9 +139,6 @@ class Sampled(Motion):
         Name of the motion, with a digest of the numbers.
     """
 
-    rows: np.ndarray
-    height: np.ndarray | None
-    by_load: bool
     text: str
 
     summary = "one period of any shape, from samples"
@@ -148,9 +156,10 @@ class Sampled(Motion):
         """
         rows, height, by_load = _rows_of(columns, FEWEST_SAMPLES)
         if not text:
-            parts = [rows, *([] if height is None else [height])]
+            parts = [rows] if height is None else [rows, height]
             digest = hashlib.sha256(b"".join(one.tobytes() for one in parts)).hexdigest()[:16]
-            text = f"array:sha256={digest}" + ("" if by_load else ",indentation")
+            kind = "" if height is None else ",load" if by_load else ",indentation"
+            text = f"array:sha256={digest}{kind}"
         return cls(rows, height, by_load, text)
 
     @property
@@ -178,30 +187,14 @@ class Sampled(Motion):
         """Displacements at the phases LOOP, for A = 1, (phases, 3)."""
         return self._plane(LOOP)
 
-    @cached_property
-    def half(self) -> Motion:
-        """The motion through every second sample."""
-        height = None if self.height is None else self.height[::2]
-        return Sampled(self.rows[::2], height, self.by_load, f"{self.text} (every second row)")
-
     @property
     def readings(self) -> tuple[Motion, ...]:
-        return (self.half,) if len(self.rows) >= 2 * FEWEST_SAMPLES else ()
-
-    @property
-    def loads(self) -> bool:  # type: ignore[override]  # a class attribute of motions with formulas
-        return self.height is not None
-
-    @property
-    def rotates(self) -> bool:
-        return self._varies(2)
-
-    @property
-    def half_disc(self) -> bool:
-        return not (self.rotates and self._varies(1))
-
-    def _varies(self, column: int) -> bool:
-        return bool(np.ptp(self.rows[:, column]) > 0.0)
+        """The motion through every second sample."""
+        if len(self.rows) < 2 * FEWEST_SAMPLES:
+            return ()
+        height = None if self.height is None else self.height[::2]
+        text = f"{self.text} (every second row)"
+        return (Sampled(self.rows[::2], height, self.by_load, text),)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
         """Whether half a period later the forward, lateral and angular displacements are multiplied
@@ -224,11 +217,8 @@ class Sampled(Motion):
 
     @cached_property
     def propels(self) -> bool:
-        return self._varies(0) and not self._reverses
-
-    @property
-    def _reverses(self) -> bool:
-        return any(self._repeats((-1.0, a, b)) for a in (1.0, -1.0) for b in (1.0, -1.0))
+        signs = ((-1.0, a, b) for a in (1.0, -1.0) for b in (1.0, -1.0))
+        return self._varies(0) and not any(map(self._repeats, signs))
 
     @cached_property
     def cycles(self) -> int:
@@ -263,8 +253,7 @@ class Sampled(Motion):
         return 0.5 * amplitude * float(np.ptp(self._loop, axis=0).max())
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
-        height = np.maximum(1.0 + amplitude * self._normal(phase), 0.0)
-        return pressure.of_load(height) if self.by_load else height
+        return self._depth_at(np.maximum(1.0 + amplitude * self._normal(phase), 0.0), pressure)
 
     def _extremes(self, amplitude: float, pressure: Pressure) -> tuple[float, float]:
         """Smallest and largest indentation."""
@@ -301,25 +290,25 @@ def _spline(values: np.ndarray) -> CubicSpline:
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Return displacements (rows, 3), the load or indentation (rows,) or None, and whether a load
     is given."""
-    given = {name: _column(name, one) for name, one in columns.items() if one is not None}
-    if not given:
+    arrays = {name: _column(name, one) for name, one in columns.items() if one is not None}
+    if not arrays:
         raise InputError("forward", None, "allowed is a displacement for every row")
-    first, length = next((name, len(one)) for name, one in given.items())
+    first, length = next((name, len(one)) for name, one in arrays.items())
     if length < fewest:
         raise InputError(first, length, f"allowed are at least {fewest} rows")
-    for name, one in given.items():
+    for name, one in arrays.items():
         if len(one) != length:
             raise InputError(name, len(one), f"allowed are as many rows as {first}: {length}")
-    heights = [name for name in NORMAL if name in given]
+    heights = [name for name in NORMAL if name in arrays]
     if len(heights) > 1:
         raise InputError("indentation", "with a load", "allowed is one of the two")
     for name in heights:
-        if given[name].min() < 0.0:
-            raise InputError(name, float(given[name].min()), "allowed are numbers >= 0")
-        if given[name].max() == 0.0:
+        if arrays[name].min() < 0.0:
+            raise InputError(name, float(arrays[name].min()), "allowed are numbers >= 0")
+        if arrays[name].max() == 0.0:
             raise InputError(name, 0.0, "allowed is a path that touches the flat")
-    rows = np.stack([given.get(name, np.zeros(length)) for name in PLANE], axis=1)
-    return rows, given[heights[0]] if heights else None, "indentation" not in given
+    rows = np.stack([arrays.get(name, np.zeros(length)) for name in PLANE], axis=1)
+    return rows, arrays[heights[0]] if heights else None, "indentation" not in arrays
 
 
 def _column(name: str, values: Any) -> np.ndarray:
