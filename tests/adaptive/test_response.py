@@ -146,6 +146,7 @@ def test_shifts_of_contact(poisson, shift, force, work):
     [
         ("forward", {"forward": [0.0]}),
         ("forward", {"forward": [0.0, np.nan]}),
+        ("forward", {"forward": [0.0, 1e300]}),
         ("lateral", {"forward": [0.0, 1.0], "lateral": [0.0, 1.0, 2.0]}),
         ("load", {"forward": [0.0, 1.0], "load": [1.0, -0.1]}),
         ("indentation", {"forward": [0.0, 1.0], "load": [1, 1], "indentation": [1, 1]}),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import LOOP, Motion, stick_focus, within_rings
 from microslip.pressures.pressure import Pressure
@@ -79,9 +80,9 @@ class SampledPath(_Samples):
         Raises
         ------
         InputError
-            If a column contains values that are not finite numbers, if columns have different
-            lengths, if there are fewer than two rows, if a load or an indentation is below 0, or if
-            both are given.
+            If a column contains values that are not numbers from -1e6 to 1e6, if columns have
+            different lengths, if there are fewer than two rows, if a load or an indentation is
+            below 0, or if both are given.
         """
         return cls(*_rows_of(columns, 2))
 
@@ -318,7 +319,9 @@ def _column(name: str, values: Any) -> np.ndarray:
         raise InputError(name, values, "allowed is an array of numbers") from None
     if out.ndim != 1:
         raise InputError(name, out.shape, "allowed is an array of one dimension")
-    if not np.isfinite(out).all():
-        row = int(np.argmin(np.isfinite(out)))
-        raise InputError(name, float(out[row]), f"allowed are finite numbers; this is row {row}")
+    usual = np.abs(out) <= LARGEST["amplitude"]
+    if not usual.all():
+        row, most = int(np.argmin(usual)), LARGEST["amplitude"]
+        allowed = f"allowed are numbers from -{most:g} to {most:g}; this is row {row}"
+        raise InputError(name, float(out[row]), allowed)
     return out
