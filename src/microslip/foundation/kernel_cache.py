@@ -64,7 +64,7 @@ def places() -> list[Path]:
 
 @cache
 def folder() -> Path:
-    """Folder of the code that is compiled from the running sources.  It is made if it does not
+    """Folder for compiled kernels of the running sources.  It is made if it does not
     exist.
 
     The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the cache folder

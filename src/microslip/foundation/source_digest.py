@@ -27,9 +27,9 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
-"""Folders of the package that do not influence results, apart from the files in ANSWERING."""
+"""Folders of the package whose files do not influence results, except the files in ANSWERING."""
 ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
-"""Files in OUTER that convert answers of the solver to results."""
+"""Files in OUTER that convert solver output to results."""
 NAMING = {
     "foundation/accessor.py",
     "foundation/files.py",

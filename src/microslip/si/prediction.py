@@ -349,7 +349,7 @@ class Forced(Prediction):
     safety_factor, safety_factor_error : float or None
         Force threshold divided by the force; None if the threshold is unknown.
     travel : Travel or None
-        Times to travel, for a contact that moves; else None.
+        Travel times if the contact moves, otherwise None.
     """
 
     force_N: float

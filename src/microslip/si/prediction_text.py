@@ -307,6 +307,6 @@ class _Texts(dict[str, Any]):
 
 
 ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
-"""Ends of the names of columns, which give the unit."""
+"""Suffixes of column names, which state the unit."""
 Show = Callable[..., list[str]]
 """Function show(title, template, when) -> lines."""

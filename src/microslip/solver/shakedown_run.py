@@ -39,7 +39,8 @@ LONG, DRIFTING = 200, 1.8
 """After LONG (half) periods, a ratio above DRIFTING means that the contact keeps drifting; a steady
 drift has the ratio 2.  On a coarse mesh the threshold can be below the force."""
 MOST_SHARE = 0.9
-"""Fraction of the displacement caused by the oscillation that defines `most_after`."""
+"""`most_after` is the number of periods after which the oscillation has caused this fraction of the
+displacement."""
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     tractions : np.ndarray, shape (phases, 2, ...)
         Tractions q, forward component first.
     bounds : np.ndarray, shape (phases, ...) or broadcast to it
-        Friction bounds g; q exceeds them by rounding errors at most.
+        Friction bounds g.  Tractions exceed them only by rounding errors.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Computation of the result of a request as plain values for JSON.
 
-microslip.sweeps.batches defines requests.  Functions of this module import the solver only when
+microslip.sweeps.batches defines requests.  Functions in this module import the solver only when
 they need it.
 """
 

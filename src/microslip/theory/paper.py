@@ -1,6 +1,6 @@
 """Closed forms of the paper, and exact static limits (v -> 0).
 
-All quantities are dimensionless. Lengths are in the contact radius a, and friction is in mu*F_z.
+All quantities are dimensionless. Lengths are divided by the contact radius a, forces by mu*F_z.
 Amplitudes are in u_lim (transverse, y~0) or in phi_lk(1/2) (bore, phi~). Velocities are in omega
 u_lim (transverse), a omega (continuous bore) or Omega phi0 a (oscillating bore). Forward is the
 direction of the macroscopic velocity, and lateral is perpendicular to it.
