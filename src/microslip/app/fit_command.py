@@ -99,9 +99,9 @@ def _refuse_files(options: argparse.Namespace) -> None:
         if path is not None and Path(path).suffix.lower() not in endings:
             allowed = f"allowed is a name that ends in {' or '.join(endings)}"
             raise InputError(name, path, allowed)
-    lacking = extras.missing("matplotlib") if options.figure is not None else ""
-    if lacking:
-        raise InputError("figure", options.figure, lacking)
+    hint = extras.missing("matplotlib") if options.figure is not None else ""
+    if hint:
+        raise InputError("figure", options.figure, hint)
 
 
 def _write(result: Fit, options: argparse.Namespace) -> None:
