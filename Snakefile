@@ -123,14 +123,14 @@ rule collect:
         batches=lambda wildcards: batches_for(wildcards.dataset),
         again=lambda wildcards: made_again(is_right(wildcards.dataset)),
     output:
-        updated(f"{RESULTS}/{{dataset}}.nc"),
+        in_place(f"{RESULTS}/{{dataset}}.nc"),
         summary=report(
-            updated(f"{RESULTS}/summaries/{{dataset}}.html"),
+            in_place(f"{RESULTS}/summaries/{{dataset}}.html"),
             caption="workflow/report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{dataset}.nc"},
         ),
-        stamp=updated(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
+        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('{dataset}')}"),
     log:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
@@ -150,15 +150,15 @@ rule draw:
         again=lambda wildcards: made_again(is_right(f"figures/{wildcards.figure}")),
     output:
         report(
-            updated(f"{RESULTS}/figures/{{figure}}.png"),
+            in_place(f"{RESULTS}/figures/{{figure}}.png"),
             caption="workflow/report/figure.rst",
             category=lambda wildcards: figure_targets.heading_of(
                 CONFIGURATION, PLAN.figures[wildcards.figure][0]
             ),
             labels={"figure": "{figure}"},
         ),
-        updated(f"{RESULTS}/figures/{{figure}}.pdf"),
-        stamp=updated(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
+        in_place(f"{RESULTS}/figures/{{figure}}.pdf"),
+        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('figures/{figure}')}"),
     log:
         f"{RESULTS}/logs/draw/{{figure}}.log",
     conda:
@@ -181,12 +181,12 @@ rule explore:
         again=lambda wildcards: made_again(is_right(f"pages/{wildcards.page}")),
     output:
         report(
-            updated(f"{RESULTS}/{{page}}.html"),
+            in_place(f"{RESULTS}/{{page}}.html"),
             caption="workflow/report/explorer.rst",
             category="Explorer",
             labels={"page": "{page}.html"},
         ),
-        stamp=updated(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
+        stamp=in_place(f"{RESULTS}/{stamps.stamp_of('pages/{page}')}"),
     log:
         f"{RESULTS}/logs/explore/{{page}}.log",
     conda:

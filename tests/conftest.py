@@ -121,11 +121,3 @@ def finished(tmp_path_factory):
 def project(finished, tmp_path):
     """A copy of the finished project for edits."""
     return finished.copied(tmp_path / "copy")
-
-
-@pytest.fixture
-def unplaced(monkeypatch):
-    """Draw figures without the layout engine, which takes most of the time."""
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)

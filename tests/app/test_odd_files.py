@@ -125,9 +125,8 @@ def test_a_dataset_that_no_sweep_has_made_is_refused(case):
     with pytest.raises(InputError) as caught:
         change(odd.whole()).microslip.at(0.15, 1.3)
     one_line(caught, [word])
-    assert (
-        odd.whole().microslip.at(0.15, 1.3).mu_macro_error < 0.1
-    )  # the dataset without the change
+    unchanged = odd.whole()
+    assert unchanged.microslip.at(0.15, 1.3).mu_macro_error < 0.1
 
 
 @pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)

@@ -103,6 +103,8 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
     kept = pd.read_csv(folder / "found.csv")
     assert kept.label.tolist()[:3] == ["first", "second", "third"]
     assert kept.error.isna().tolist() == [True, False, False, False]
+    assert kept.mu_macro.isna().tolist() == [False, True, True, True]
+    assert kept.converged.tolist() == [True, False, False, False]
     assert cli.main(words) == 1
     heading, row, *rest = capsys.readouterr().out.splitlines()
     assert heading.split()[:2] == ["line", "label"] and row.split()[:2] == ["2", "first"]

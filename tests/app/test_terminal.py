@@ -17,7 +17,6 @@ from microslip.foundation.compiled import OPTIONS
 
 PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]
-STEADY = ["point", "continuous-bore", "--velocity", "1"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")

@@ -21,7 +21,7 @@ MOTIONS = [
     ({"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     ({"amplitude": "-1 um"}, "--amplitude = '-1 um': allowed is a finite value at least 0 m"),
     ({"amplitude": "1 m"}, "times the 2.17e-07 m at which the whole contact slides; allowed is"),
-    ({"motion": "bore", "amplitude": "1e9 turn"}, "half of the contact radius sticks"),
+    ({"motion": "bore", "amplitude": "1e9 turn"}, "at which the stick radius is half"),
     ({"frequency": "0 Hz"}, "--frequency = '0 Hz': allowed is a finite value above 0 Hz"),
     ({"frequency": "20 s^-1"}, "may mean Hz or rad/s"),
     ({"rotation": "10 rpm"}, "--rotation = '10 rpm': transverse has none"),
@@ -113,7 +113,7 @@ DRIVES = [
     (SPRUNG | {"mass": "-20 g"}, "--mass = '-20 g': allowed is a finite value"),
     (
         SPRUNG | {"mass": "1e308 kg"},
-        "--mass = '1e308 kg': divided by",
+        "--mass = '1e308 kg': divided by that of the contact is beyond",
     ),
     (SPRUNG | {"motion": "longitudinal", "speed": "0 m/s"}, "allowed is a speed above 0 for a"),
     (SPRUNG | {"motion": "continuous-bore"} | STEADY, "continuous-bore is steady"),

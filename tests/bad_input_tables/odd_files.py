@@ -162,8 +162,8 @@ def grid(values=VALUES, **attributes):
 
 
 MM, UM = {"units": "mm"}, {"units": "um"}
-STRETCHED = grid(forward=MM, lateral=UM)  # equal to the other stretched cases
 NETCDF = [
+    (grid(forward=MM, lateral=UM), "stretched"),
     (grid(forward={"Units": "mm"}, lateral={"Units": "um"}), "stretched"),
     (grid(forward={"unit": "mm"}, lateral={"UNIT": "um"}), "stretched"),
     (grid(forward=MM, lateral=UM), "stretched"),

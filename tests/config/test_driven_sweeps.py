@@ -23,8 +23,8 @@ def configured(**drives):
 def test_axes_and_numbers_become_requests_in_the_order_of_the_dataset():
     sweep = configured(springs=SPRINGS | {"mass": 2}).drives["springs"]
     requests = batches.PointRequests(sweep)
-    request = [(r["stiffness"], r["velocity"]) for r in requests]
-    assert request == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
+    places = [(r["stiffness"], r["velocity"]) for r in requests]
+    assert places == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
     assert {r["mass"] for r in requests} == {"2"}
     assert not any("force" in r or "damping" in r for r in requests)
 
@@ -38,7 +38,7 @@ def test_a_force_stands_in_the_place_of_the_velocity():
 
 
 def test_what_is_moved_is_asked_for_as_before():
-    """Keys of results are hashes of requests: a request without a drive has no key for it."""
+    """Requests name their results by hashes, so one without a drive must not mention a drive."""
     (request,) = batches.PointRequests(load.from_mapping({"sweeps": PAPER}).sweeps["transverse"])
     names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
     assert set(request) == names | {"poisson", "amplitude", "velocity"}
@@ -98,9 +98,9 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
         assert data.velocity.dims == data.mu_macro.dims == ("amplitude", "force")
         assert data.drive == "force"
         point = data.sel(amplitude=0.5, force=0.6)
-        request = microslip.solve("transverse", amplitude=0.5, force=0.6, tolerance=1e-2)
-        assert float(point.velocity) == request.velocity > 0.0
-        assert float(point.velocity_error) == request.velocity_error
+        answer = microslip.solve("transverse", amplitude=0.5, force=0.6, tolerance=1e-2)
+        assert float(point.velocity) == answer.velocity > 0.0
+        assert float(point.velocity_error) == answer.velocity_error
         assert float(point.mu_macro) == 0.6
         # the limits over the amplitude are in the dataset, those over a velocity are not
         assert float(point.mu_static) > 0.5 and "mu_slider" not in data
@@ -117,9 +117,9 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
     with xr.open_dataset(written(tmp_path, "springs", SPRINGS | {"mass": 2})) as data:
         assert data.mu_macro.dims == ("stiffness", "amplitude", "velocity")
         assert float(data.mass) == 2.0 and data.drive == "mass, stiffness"
-        result = data.mu_macro.interp(stiffness=10.0, velocity=0.5, amplitude=1.0)
-        request = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
-        assert float(result) == pytest.approx(request.mu_macro, abs=1e-12)
+        point = data.mu_macro.interp(stiffness=10.0, velocity=0.5, amplitude=1.0)
+        answer = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
+        assert float(point) == pytest.approx(answer.mu_macro, abs=1e-12)
         assert data.stiffness.attrs["formula"] == "k u_lim / (mu F_z)"
 
 
@@ -127,17 +127,17 @@ def test_a_dataset_over_springs_has_their_axis(tmp_path):
 def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
     place = {"amplitude": 1.0, "tolerance": 1e-2}
     pull = {"velocity": 0.1, "stiffness": 0.5, "damping": 0.1}
-    for settings in ({"force": 0.4}, {"force": 1.5}, pull):
+    for drive in ({"force": 0.4}, {"force": 1.5}, pull):
         first, again = (
-            microslip.solve_stored("transverse", results=tmp_path, **place, **settings).to_dict()
+            microslip.solve_stored("transverse", results=tmp_path, **place, **drive).to_dict()
             for _ in range(2)
         )
-        request = microslip.solve("transverse", **place, **settings).to_dict()
-        for one in (first, again, request):
+        answer = microslip.solve("transverse", **place, **drive).to_dict()
+        for one in (first, again, answer):
             one.pop("solve_time_s")
-        assert first.keys() >= {*settings}
+        assert first.keys() >= {*drive}
         assert plain(first) == plain(again)
-        stored, fresh = plain(first), {k: v for k, v in plain(request).items() if v is not None}
+        stored, fresh = plain(first), {k: v for k, v in plain(answer).items() if v is not None}
         assert {name: stored[name] for name in fresh} == fresh
 
 
@@ -150,14 +150,14 @@ PAIR = {
 
 
 def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path):
-    settings = configured(pair=PAIR)
-    sweep, store = settings.drives["pair"], Store(tmp_path)
+    configuration = configured(pair=PAIR)
+    sweep, store = configuration.drives["pair"], Store(tmp_path)
     (request,) = batches.PointRequests(sweep)
     assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
     points = [batches.answer(request, store)[0]]
     assert points[0]["result"]["velocity"] == 0.0  # the force is below the static limit, 0.7^1.5
     path = tmp_path / "pair.nc"
-    sweep_dataset.write_sweep(path, sweep, points, [], settings.of_sweep("pair"))
+    sweep_dataset.write_sweep(path, sweep, points, [], configuration.of_sweep("pair"))
     with xr.open_dataset(path) as data:
         assert data.attrs["contacts"] == PAIR["contacts"]
         assert "mu_static" not in data and float(data["velocity"].squeeze()) == 0.0

@@ -77,8 +77,8 @@ def test_a_figure_has_room_for_so_many():
 
 
 def test_jobs_do_not_ask_the_solver():
-    changes = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
-    result = load.from_mapping(changes, ask_solver=False)
+    mapping = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
+    result = load.from_mapping(mapping, ask_solver=False)
     assert result.extended["circle"].motion == "no such"
 
 
@@ -128,9 +128,9 @@ def test_equal_motions_are_asked_for_alike():
 def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypatch, tmp_path):
     solver, calls = Solver(monkeypatch), []
 
-    def solve(*place, **changes):
-        calls.append(changes.get("pressure"))
-        return solver.solve(*place, **changes)
+    def solve(*place, **arguments):
+        calls.append(arguments.get("pressure"))
+        return solver.solve(*place, **arguments)
 
     monkeypatch.setattr("microslip.solve", solve)
     requests = requests_of(pressure="power:exponent=1.0")
@@ -185,7 +185,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     (tmp_path / "sub").mkdir()
     (tmp_path / "pad.csv").write_text(EVEN)
     (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
-    request = []
+    batches = []
     for folder, name in (
         (tmp_path, "file:pad.csv"),
         (tmp_path, "file:./sub/../pad.csv"),
@@ -193,17 +193,17 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
         (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
     ):
         result = load.load(with_pressure(folder, name))
-        request.append([*sweep.PointRequests(result.extended["pad"])])
+        batches.append([*sweep.PointRequests(result.extended["pad"])])
         assert str(tmp_path) not in json.dumps(result.of_sweep("pad"))
-    assert all(requests == request[0] for requests in request)
-    assert request[0][0]["pressure"].startswith("file:sha256=")
+    assert all(requests == batches[0] for requests in batches)
+    assert batches[0][0]["pressure"].startswith("file:sha256=")
     # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
     handed = load.with_files_found(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
     result = load.from_mapping(handed, ask_solver=False)
-    assert [*sweep.PointRequests(result.extended["pad"])] == request[0]
+    assert [*sweep.PointRequests(result.extended["pad"])] == batches[0]
     assert load.with_files_found(handed) == handed
 
 
@@ -236,8 +236,8 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     Solver(monkeypatch)
     data = built(tmp_path, motion="elliptic:phase=90.0", title="a circle")
     assert data.mu_macro.dims == ("amplitude", "velocity")
-    message = {key: data.attrs[key] for key in ("motion", "pressure", "title", "group")}
-    assert message == {
+    attributes = {key: data.attrs[key] for key in ("motion", "pressure", "title", "group")}
+    assert attributes == {
         "motion": "elliptic",
         "pressure": "hertz",
         "title": "a circle",

@@ -49,7 +49,10 @@ def test_a_rigid_contact_dissipates_its_way():
 
 
 def test_a_steady_spin_takes_a_torque():
-    """At v = 1/2 the torque is 1 - v^2 + 3/8 v^4 times (3 pi/16) mu F a (Eq 21)."""
+    """Torque and force at v = 1/2 follow from Eqs 22 and 21.
+
+    The torque is (3 pi/16) mu F a (1 - v^2 + 3/8 v^4), the force (3 pi/8) mu F (v - v^3/4).
+    """
     at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
     a = at_rest.contact_radius_m
     asked = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}

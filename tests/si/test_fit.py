@@ -320,6 +320,5 @@ def test_the_solver_finds_the_truth_that_it_made():
     again = microslip.fit("transverse", table, **SHARED, nu=0.0)
     assert again.u_lim_m == pytest.approx(found.u_lim_m, rel=2e-3)
     once_more = microslip.fit("transverse", table, **SHARED, nu=0.0)
-    assert str(once_more.to_dict()) == str(
-        again.to_dict()
-    )  # equal to the last bit, with NaN equal to NaN
+    # Equal to the last bit; in texts NaN equals NaN.
+    assert str(once_more.to_dict()) == str(again.to_dict())

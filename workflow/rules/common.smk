@@ -91,7 +91,7 @@ RESULTS = os.path.normpath(CONFIGURATION.results)
 
 HERE = exists(os.devnull)  # False for results in a storage, where stamps cannot be read
 AGAIN = f"{RESULTS}/{stamps.AGAIN}"
-updated = update if HERE else str  # keeps the old file until a job has written the new one
+in_place = update if HERE else str  # keeps the old file until a job has written the new one
 marked = str if HERE else local
 TO_SOLVE = {}
 

@@ -44,7 +44,7 @@ def summary(
         Whether the run compiles the solver.
     """
     store, mean_time = Store(folder), cache(lambda group: _mean_time(Path(folder), group))
-    count, untimed, maps, seconds = Counter(points=0), 0, False, [0.0]
+    count, slow, maps, seconds = Counter(points=0), 0, False, [0.0]
     for group, batch in jobs:
         maps = maps or batch is None
         kinds = Counter(
@@ -53,15 +53,15 @@ def summary(
             if not store.path(batches.group(request), batches.key_of(request)).exists()
         )
         count.update({"points": kinds["point"], "other runs": kinds.total() - kinds["point"]})
-        recorded = mean_time(group)
-        timed = kinds.total() if recorded else sum(kinds[kind] for kind in QUICK)
-        untimed += kinds.total() - timed
-        seconds.append(START + timed * (recorded or TYPICAL))
+        mean = mean_time(group)
+        quick = kinds.total() if mean else sum(kinds[kind] for kind in QUICK)
+        slow += kinds.total() - quick
+        seconds.append(START + quick * (mean or TYPICAL))
     parts = [f"{number:,} {_noun(what, number)}" for what, number in count.items() if number]
     lines = [f"To solve: {' and '.join(parts) or 'no points'}."]
     if parts:
         time = _words(max(sum(seconds) / cores, *seconds))
-        bound = "at least" if untimed else "about"
+        bound = "at least" if slow else "about"
         lines = [f"{lines[0][:-1]}, {bound} {time} on {cores} {_noun('cores', cores)}."]
     if maps:
         lines = lines if parts else []

@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip import fit
 
-    _refuse_endings(options)
+    _refuse_files(options)
     arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
     if options.map is not None:
         arguments["map"] = _opened(options.map)
@@ -91,16 +91,17 @@ def _opened(path: str) -> xr.Dataset:
         raise CacheError(f"--map: {error}") from None
 
 
-def _refuse_endings(options: argparse.Namespace) -> None:
-    """Raise InputError if the name of the output file has an unknown ending."""
+def _refuse_files(options: argparse.Namespace) -> None:
+    """Raise InputError for an output file with an unknown ending, and for a figure without
+    matplotlib."""
     for name, endings in (("figure", (".png", ".pdf")), ("output", (".nc",))):
         path = getattr(options, name)
         if path is not None and Path(path).suffix.lower() not in endings:
             allowed = f"allowed is a name that ends in {' or '.join(endings)}"
             raise InputError(name, path, allowed)
-    lacking = extras.missing("matplotlib") if options.figure is not None else ""
-    if lacking:
-        raise InputError("figure", options.figure, lacking)
+    hint = extras.missing("matplotlib") if options.figure is not None else ""
+    if hint:
+        raise InputError("figure", options.figure, hint)
 
 
 def _write(result: Fit, options: argparse.Namespace) -> None:

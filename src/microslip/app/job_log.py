@@ -33,7 +33,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     """Context manager of a job.  It yields a logger that writes to the file `path`.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log contains the traceback, or only one line for an error with a remedy.
+    with exit code 1.  The log contains the traceback.  For a CacheError, a SolverError or a full
+    disk, it contains only one line.
     """
     try:
         file = _LogFile(path, mode="w", encoding="utf-8")

@@ -151,10 +151,8 @@ class Plan:
             yield f"figures/{name}", Product(files, drawing.modules_of(name), datasets)
         periods = [f"{name}_periods" for name in explorer.maps_of(configuration)]
         for page in explorer.PAGES:
-            name, datasets = (
-                page.removesuffix(".html"),
-                tuple(explorer.datasets_of(configuration, page)),
-            )
+            datasets = tuple(explorer.datasets_of(configuration, page))
+            name = page.removesuffix(".html")
             yield f"pages/{name}", Product([page], PAGE_CODE, datasets, periods)
 
     @property

@@ -25,8 +25,11 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
             "with --contact-radius: hertz, ring:inner=0.5, file:FILE... (hertz)",
         ),
         "mu": ("MU", "coefficient of friction without vibration"),
-        "hardness": ("H", "for a warning of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
-        "density": ("RHO", "for a warning of inertia, such as '7850 kg/m^3'"),
+        "hardness": (
+            "H",
+            "hardness of the body, for a warning of yielding, such as '7 GPa', '700 HV', '60 HRC'",
+        ),
+        "density": ("RHO", "density of the body, for a warning of inertia, such as '7850 kg/m^3'"),
         "counter-hardness": ("H2", "hardness of the counterbody"),
         "counter-density": ("RHO2", "density of the counterbody"),
     },
@@ -41,10 +44,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "motion": {
         "amplitude": ("A", "half stroke, such as '1 um'; for bore an angle, such as '0.5 deg'"),
         "forward-amplitude": ("A", "forward half stroke, for elliptic and normal"),
-        "rotation-amplitude": (
-            "A",
-            "half stroke in spin, for transverse-bore and normal",
-        ),
+        "rotation-amplitude": ("A", "half stroke in spin, for transverse-bore and normal"),
         "load-amplitude": ("A", "half stroke of the normal load, for normal, such as '5 N'"),
         "phase": ("P", "phase between the oscillations, such as '90 deg' (0)"),
         "frequency": ("F", "frequency, such as '20 kHz', '1200 rpm' or '125664 rad/s'"),

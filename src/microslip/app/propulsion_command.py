@@ -19,7 +19,7 @@ OPTIONS = {
     "model": ("NAME", "auto, rigid, radial, polar or cartesian (auto)"),
     "tolerance": ("T", "largest accepted error of a force, absolute (1e-3)"),
     "points": ("N", "number of points on the line, both ends included (9)"),
-    "time-limit": ("SECONDS", "time limit of the computation"),
+    "time-limit": ("SECONDS", "time limit of the computation, checked between two marches"),
 }
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")

@@ -112,9 +112,8 @@ def respond(
         complain(f"{command}: {error}")
         return 2
     text = json.dumps(plain(result.plain)) if options.json else result.text
-    encoding = (
-        getattr(sys.stdout, "encoding", None) or "utf-8"
-    )  # the encoding may lack the letters of units
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    # The encoding may lack letters of units.
     print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if result.complete else 1
 

@@ -74,9 +74,9 @@ def main(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    lacking = extras.missing("snakemake")
-    if lacking:
-        complain(f"microslip sweep: {lacking}")
+    hint = extras.missing("snakemake")
+    if hint:
+        complain(f"microslip sweep: {hint}")
         return 2
     try:
         os.getcwd()

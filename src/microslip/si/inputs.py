@@ -127,7 +127,7 @@ def _body(young: object, nu: object, material: Any) -> Body:
 
 
 def _counterbody(body: Any) -> Body:
-    """The counterbody.  value: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid
+    """The counterbody.  body: a Material, a name, "E, nu", a pair (E, nu), or None for a rigid
     body."""
     if body is None:
         return Body(RIGID, "rigid (default)")

@@ -35,7 +35,8 @@ from microslip.si.validity import broken_assumptions, unchecked
 
 MILLIMETRE = 1e-3
 RUNS_AWAY = "runs away"
-"""Outcomes, and the words with which the solver's reason for each of them begins."""
+"""Outcome of a contact that accelerates without limit.  The solver's reason begins with these
+words."""
 UNKNOWN_WITHOUT = {
     "amplitude": ("amplitude_si",),
     "speed": ("speed_m_s",),

@@ -99,7 +99,7 @@ def prediction_text(record: Any) -> str:
         "amplitude", "the largest is dimensionless {amplitude}", record.motion in COMBINED
     )
     lines += show("velocity", "dimensionless {velocity}", not forced)
-    sentence = "{sought} {sought_text}, {least} reduction of {understood[reduction]}"
+    sentence = "{sought} {sought_text}, {least} with a reduction of {understood[reduction]}"
     lines += show("found", sentence + "; all other lines are for {sought_exact}")
     for name in ("force", "stiffness", "mass", "damping"):
         lines += show(name, f"dimensionless {{{name}}}")
@@ -162,11 +162,7 @@ def _moves_at_static_friction(record: Any) -> bool:
 
 def _outcome(record: Any, show: Show) -> list[str]:
     """Lines of a contact under a force: its threshold, outcome and displacement."""
-    lines, factor, columns = (
-        _threshold(record, show),
-        record.safety_factor,
-        record.uncertainty,
-    )
+    lines, factor, columns = _threshold(record, show), record.safety_factor, record.uncertainty
     safe = factor is not None and (factor > record.safety_factor_error or record.safety_factor_high)
     lines += show("safety factor", "{safety_factor}: threshold over force", bool(safe))
     lines += show("", "{safety_factor_interval}", bool(safe))
@@ -221,10 +217,7 @@ class _Texts(dict[str, Any]):
     """Texts of the columns of a Prediction: numbers with errors and units."""
 
     def __init__(self, record: Any):
-        length, force = (
-            length_unit(record.u_lim_m),
-            force_unit(record.friction_force_still_N),
-        )
+        length, force = length_unit(record.u_lim_m), force_unit(record.friction_force_still_N)
         powers = [record.drag_power_W or 0.0, record.vibration_power_W or 0.0]
         watts = prefixed(max(map(abs, powers)) or 1.0, "W")
         speed, self.record = (f"{length[0]}/s", length[1]), record
@@ -262,7 +255,6 @@ class _Texts(dict[str, Any]):
         self["sought_text"] = in_unit(record.sought_value, record.sought_error, unit)
         self["sought_exact"] = in_unit(record.sought_value, 0.0, unit)
         self["least"] = "the least" if record.sought == "amplitude" else "the largest"
-        self["least"] += " with a"
         spread = record.sought_spread
         if spread is not None:
             self["sought_spread_text"] = number_text(spread / unit[1], 0.0, unit[0], digits=2)

@@ -16,8 +16,8 @@ LARGEST_AMPLITUDE = 1e4
 SMALLEST_AMPLITUDE = 1e-6
 """Smallest dimensionless amplitude of the search."""
 SPEEDS = 1e-9, 1e6
-"""Smallest and largest velocity of the search.  For a rigid contact, the velocity is divided by
-the amplitude."""
+"""Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
+above 1, the velocity is divided by the amplitude."""
 STRIDE = 0.05
 """Step of the finite difference for the slope of friction, in the logarithm of the quantity."""
 
@@ -144,15 +144,15 @@ def _amplitudes(request: Request, _share: float) -> _Line:
     """The line of amplitudes.  A place is the logarithm of the dimensionless amplitude."""
     contact = request.contact
     unit = contact.u_lim / (contact.contact_radius if request.motion.spins else 1.0)
-    slides = "the amplitude at which the whole contact slides"
+    name = "u_lim divided by the contact radius" if request.motion.spins else "u_lim"
     return _Line(
         lambda place: request.at(amplitude=unit * math.exp(place)),
         math.log(SMALLEST_AMPLITUDE),
         0.0,
         math.log(LARGEST_AMPLITUDE),
         lambda place: unit * math.exp(place),
-        f"the smallest amplitude of the search, {SMALLEST_AMPLITUDE:g} times {slides},",
-        f"no amplitude up to {LARGEST_AMPLITUDE:g} times {slides}",
+        f"the smallest amplitude of the search, {SMALLEST_AMPLITUDE:g} times {name},",
+        f"no amplitude up to {LARGEST_AMPLITUDE:g} times {name}",
     )
 
 
@@ -161,7 +161,7 @@ def _speeds(request: Request, _share: float) -> _Line:
     speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
-        unit *= max(1.0, size)  # for a rigid contact the speed of the vibration
+        unit *= max(1.0, size)  # at large amplitudes the speed of the vibration is the unit
     slowest, fastest = SPEEDS
     return _Line(
         lambda place: request.at(speed=unit * math.exp(-place)),

@@ -202,7 +202,7 @@ class Request:
             allowed = f"allowed is at most {most:g} times the load"
             raise InputError("load_amplitude", arguments["load_amplitude"], allowed)
         if size is not None and not size <= most:
-            unit = "the angle at which half of the contact radius sticks"
+            unit = "the angle at which the stick radius is half the contact radius"
             if not self.motion.spins:
                 unit = f"the {self.contact.u_lim:.3g} m at which the whole contact slides"
             allowed = f"{size:.3g} times {unit}; allowed is at most {most:g} times"

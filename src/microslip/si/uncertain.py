@@ -17,12 +17,7 @@ from typing import Any
 from microslip.foundation.errors import InputError
 from microslip.si.inputs import QUANTITIES
 from microslip.si.motions import unit_of_amplitude
-from microslip.si.outcomes import (
-    Ends,
-    UncertainInput,
-    half_difference,
-    uncertainty_of_outcomes,
-)
+from microslip.si.outcomes import Ends, UncertainInput, half_difference, uncertainty_of_outcomes
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import EXCLUDED
 from microslip.si.quantities import read

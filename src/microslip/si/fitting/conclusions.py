@@ -66,7 +66,7 @@ def concluded(
     low, high = np.exp(ends[0])
     if not high < WIDEST_MU * low:
         fit = f"mu from {low:.3g} to {high:.3g} fits as well with another u_lim"
-        hint = "add rows without vibration, or rows where more friction falls"
+        hint = "add rows without vibration, or rows where vibration reduces friction more"
         raise InputError("measured", None, f"the rows determine neither number: {fit}; {hint}")
     fitted = mu * rows.weight * model.at(points)
     free = len(fitted) - 2

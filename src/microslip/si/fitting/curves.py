@@ -12,7 +12,8 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
 PIECES = 60
-"""Number of points with equal steps on a curve, and number of points with equal ratios."""
+"""Number of points with equal steps on a curve, and number of points with equal ratios.  Straight
+lines between them look smooth in a figure."""
 
 
 class Curve(NamedTuple):

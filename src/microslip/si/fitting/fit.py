@@ -168,7 +168,7 @@ def _scale(
         raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
-    texts["counterbody"] = "rigid, as none was given" if counterbody is None else counterbody
+    texts["counterbody"] = "rigid (default)" if counterbody is None else counterbody
     size = read("radius", radius, "m")
     texts["radius"] = size.text
     return Modulus(rows, ratio.si, motion == "bore", counterbody == "same", size.si), texts
