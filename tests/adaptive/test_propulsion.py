@@ -181,9 +181,8 @@ def test_marched_back_without_a_mirror():
         state = march.state
     found = microslip.solve(problem.motion.name, velocity, 1.0)
     mean = float(path.mean(march.forces)[FORWARD])
-    assert (
-        abs(found.mu_macro - mean) <= found.mu_macro_error + 1e-3
-    )  # discretisation error of the march
+    # 1e-3: discretisation error of the march
+    assert abs(found.mu_macro - mean) <= found.mu_macro_error + 1e-3
 
 
 def test_a_rigid_contact_pushed_back():

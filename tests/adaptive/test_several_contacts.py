@@ -302,9 +302,8 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
 def test_large_turns_are_those_of_rigid_contacts():
     """Eq 21 holds for each contact at every instant, at the velocity over its speed of rotation."""
     shares, leads, force = (0.75, 0.25), (0.0, np.deg2rad(60.0)), 0.4
-    radii = [
-        (2.0 * share) ** (1 / 3) for share in shares
-    ]  # contact radii over that of the mean load
+    # contact radii over that of the mean load
+    radii = [(2.0 * share) ** (1 / 3) for share in shares]
     phase = (np.arange(400) + 0.5) * np.pi / 400
     # all contacts rotate by the same angle, at different phases
     spins = [

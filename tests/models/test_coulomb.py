@@ -51,6 +51,8 @@ def test_zero_bound_and_zero_traction():
 @pytest.mark.parametrize(
     ("q", "slip", "expected"),
     [
+        ((0.5, 0.0), (0.0, 0.0), 0.0),  # sticks
+        ((1.0, 0.0), (3.0, 0.0), 0.0),  # slips along the traction on the bound
         ((0.5, 0.0), (0.2, 0.0), 0.2),  # slips below the bound
         ((0.5, 0.0), (4.0, 0.0), 0.5),  # slips far enough to reach the bound
         ((1.0, 0.0), (-0.3, 0.0), 0.3),  # slips backwards

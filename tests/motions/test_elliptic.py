@@ -142,3 +142,11 @@ def test_errors_are_within_their_estimates_by_finer_runs(velocity, amplitude):
     finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=2e-4)
     assert answer.converged and finer.converged
     assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
+
+
+def test_equal_loops_share_a_stored_point_in_the_folder_of_the_motion(tmp_path):
+    one = microslip.solve_stored("elliptic:phase=30", 0.5, 0.5, results=tmp_path)
+    other = microslip.solve_stored("elliptic:phase=30.0,lateral=1", 0.5, 0.5, results=tmp_path)
+    assert one.mu_macro == other.mu_macro
+    (point,) = tmp_path.rglob("*.json")
+    assert point.relative_to(tmp_path).parts[:2] == ("points", "elliptic")

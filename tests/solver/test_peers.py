@@ -92,9 +92,8 @@ def test_squares_are_asked_with_the_package(within):
 def test_it_applies_where_it_is_asked(motion, poisson, within):
     known = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
     assert ladders.models_for("aspher", motion, poisson) == known
-    assert bool(known) == (
-        "slider" in MODELS_OF_MOTION[motion]
-    )  # the slider has no rotations either
+    # the slider has no rotations either
+    assert bool(known) == ("slider" in MODELS_OF_MOTION[motion])
 
 
 def test_rotation_is_refused(within):

@@ -18,7 +18,7 @@ QUADRATURE = 1e-7
 """Error of the quadrature in Eqs 17 and 18 for pressures other than Hertz, which can have kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms by quadrature: over the motion for a sphere, and over the tabulated
+"""Errors of closed forms by quadrature: over the motion for a sphere, and also over the
 pressure for another indenter."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""

@@ -160,7 +160,7 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
 def warm_up(*kernels: str) -> None:
     """Compile kernels of the models that "auto" can choose; Numba caches them.
 
-    The first compilation takes up to a minute.  Several processes can compile different kernels at
+    The first compilation takes a while.  Several processes can compile different kernels at
     the same time.  Squares are compiled at their first use.
 
     Parameters

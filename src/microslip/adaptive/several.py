@@ -49,8 +49,7 @@ def _solve(request: Request) -> Result:
     exact = known_exactly(request)
     if exact is not None:
         return exact
-    from microslip.adaptive.friction import (
-        solve_friction,
-    )  # imported here because it loads compiled code
+    # imported here because it loads compiled code
+    from microslip.adaptive.friction import solve_friction
 
     return solve_friction(request)

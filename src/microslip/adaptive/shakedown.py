@@ -178,7 +178,7 @@ def shakedown(
 
 def _answer(request: Request, force: float) -> Shakedown:
     """Compute the Shakedown under a force."""
-    threshold, error, away = _threshold(request, force)
+    threshold, error, away = _threshold(request)
     request_fields: dict[str, Any] = {
         "motion": request.problem.motion.name,
         "pressure": request.problem.pressure.name,
@@ -201,7 +201,7 @@ def _answer(request: Request, force: float) -> Shakedown:
     return Shakedown(**request_fields, **_certified(request, force))
 
 
-def _threshold(request: Request, force: float) -> tuple[float, float, str]:
+def _threshold(request: Request) -> tuple[float, float, str]:
     """Compute the static limit, its error, and a message if the contact runs away, otherwise ""."""
     problem = request.problem
     away = runs_away(problem)

@@ -22,9 +22,8 @@ def shrink(forward: float, lateral: float, bound: float) -> float:
     """Factor between 0 and 1 that projects the traction (forward, lateral) onto the disc |q| <=
     bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
-    return min(
-        1.0, bound / max(size, 1e-300)
-    )  # without a branch, so that the compiler can vectorise it
+    # without a branch, so that the compiler can vectorise it
+    return min(1.0, bound / max(size, 1e-300))
 
 
 @kernel(inline="always")

@@ -96,7 +96,7 @@ def descend_driven(
     b, place, slope = step.imposed.copy(), 0.0, steepest
     inner = Step(b, step.bound, INNER * step.tolerance)
     low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
-    iterations, unsolved = 0, np.inf
+    iterations, error = 0, np.inf
     for _ in range(MOST_DISPLACEMENTS):
         copy(b, step.imposed)
         move_forward(place, b)
@@ -105,8 +105,8 @@ def descend_driven(
             return -1, residual, place
         iterations += count
         gap = balance.load - balance.stiffness * place - forward_force(system, fields.q)
-        unsolved = residual + abs(gap)
-        if unsolved <= step.tolerance:
+        error = residual + abs(gap)
+        if error <= step.tolerance:
             break
         if gap > 0.0:
             low = max(low, place)
@@ -120,7 +120,7 @@ def descend_driven(
         if not low < place < high:
             place = 0.5 * (low + high)
     copy(fields.y, fields.q)
-    return iterations, unsolved, place
+    return iterations, error, place
 
 
 @step_solver(Descent, descend_driven, _respond)

@@ -5,8 +5,8 @@ The error estimate has four sources:
 - resolution: Richardson extrapolation of the runs at n/4, n/2 and n, see richardson.py;
 - periodicity, solver: the value is a combination sum c_i f_i of runs.  Their distances d_i from the
   periodic state and the residuals r_i of their steps contribute sum |c_i| (d_i + r_i);
-- model: a pressure measured on a grid can be interpolated in several ways.  The finest run is
-  repeated for each interpolation; refinement does not reduce the differences.
+- model: a pressure on a grid, or a motion given by samples, can be interpolated in several ways.
+  The finest run is repeated for each interpolation; refinement does not reduce the differences.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ RUN_SHARE = 0.05
 """Largest distance of a run from its periodic state, divided by the tolerance.  Multiplied by the
 weights of the runs, it contributes at most a twelfth of the tolerance."""
 READING_SAFETY = 2.5
-"""Safety factor on the differences between the interpolations of a measured pressure (readings).
-None of them resolves a peak or an edge between the points of a grid."""
+"""Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
+None of them resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.7
 """Smallest error estimate by resolution, divided by the tolerance, in case three levels agree by
 chance.  Calibrated by benchmarks/error_estimates.py."""
@@ -111,7 +111,7 @@ def refine(
     tolerance : float
         Absolute tolerance of the quantity.
     readings : sequence of callable
-        Functions like `run`, for other pressures that agree with the same measured values.
+        Functions like `run`, for other interpolations of the same data.
     read : callable
         `read(run)` returns the quantity.
 
@@ -168,7 +168,7 @@ class _Levels:
         return self.runs[level]
 
     def under_other_readings(self, level: int) -> list[Run]:
-        """Runs at a level under the other readings of the pressure."""
+        """The runs at a level for the other readings."""
         for number, run in enumerate(self.readings):
             if (number, level) not in self.other_runs:
                 finest = self.ladder.resolution(level)

@@ -66,9 +66,8 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
         allowed = f"allowed are up to {MOST_CONTACTS} contacts, not {len(records)}"
         raise InputError("contacts", text, allowed)
     loads = [record["load"] for record in records]
-    mean = (
-        sum(loads) / len(loads) if len(set(loads)) > 1 else loads[0]
-    )  # equal loads become exactly 1
+    # equal loads become exactly 1
+    mean = sum(loads) / len(loads) if len(set(loads)) > 1 else loads[0]
     return tuple(
         BodyContact(record["load"] / mean, record["phase"] % 360.0, record["amplitude"])
         for record in records

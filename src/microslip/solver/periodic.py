@@ -71,8 +71,8 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         finished, broken = search.search(system, loading, inertia, target, memory, some)
         if broken:
             signal.raise_signal(signal.SIGINT)
-        marches_made = int(memory.counts[0] - marches)
-        contact.take(marches_made * path.solves, int(memory.counts[1] - iterations), tractions.size)
+        count = int(memory.counts[0] - marches)
+        contact.take(count * path.solves, int(memory.counts[1] - iterations), tractions.size)
     marches, iterations = map(int, memory.counts[:2])
     state, forces, body, numbers = memory.best
     state = layout.unpack(state)

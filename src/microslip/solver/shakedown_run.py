@@ -203,9 +203,8 @@ class _Walk:
         The bound is infinite if the ratio of the last two terms is above SLOWEST_RATIO.
         """
         before, last = self._last_two()
-        if (
-            last <= self.residual / self.contact.stiffness
-        ):  # at rest within the residual of the steps
+        # at rest within the residual of the steps
+        if last <= self.residual / self.contact.stiffness:
             return last
         ratio = last / before if before > 0.0 else np.inf
         return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.models.contact import Contact, March
+from microslip.models.contact import Contact
 from microslip.models.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
@@ -45,7 +45,8 @@ class StaticState(NamedTuple):
     Attributes
     ----------
     residual, oscillating : np.ndarray
-        Constant tractions R, and tractions q_osc, in the shape of the contact's states.
+        Constant tractions R, and tractions q_osc at the first turning point, in the shape of the
+        states of the contact.
     solver_residual : float
         Residual of the step solver summed over the steps, as a force divided by mu F_z.
     solves : int
@@ -56,23 +57,6 @@ class StaticState(NamedTuple):
     oscillating: np.ndarray
     solver_residual: float
     solves: int
-
-
-def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:
-    """Tractions at the first turning point under the oscillation alone, minus their mean.
-
-    `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
-    point is at the phase -pi/2.  The result has the shape of the states of the contact.
-    """
-    # by Masing's rule the first quarter period from a stress-free start ends on the closed loop;
-    # the tractions at the other turning point have the opposite sign
-    return -_quarter_march(contact, oscillation, step_tolerance).state
-
-
-def _quarter_march(contact: Contact, oscillation: Callable, step_tolerance: float) -> March:
-    """The March from a stress-free start to the second turning point."""
-    start = np.zeros((2, *contact.lateral_position.shape))
-    return contact.march(_quarter(oscillation), start, step_tolerance)
 
 
 @lru_cache(maxsize=32)
@@ -103,7 +87,14 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
 
 
 def static_state(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticState:
-    """Compute the StaticState of a contact; for the arguments see `oscillating_part`."""
-    march = _quarter_march(contact, oscillation, step_tolerance)
+    """Compute the StaticState of a contact.
+
+    `oscillation(phase)` returns the rigid displacement without forward motion.  The first turning
+    point is at the phase -pi/2.
+    """
+    start = np.zeros((2, *contact.lateral_position.shape))
+    # by Masing's rule the first quarter period from a stress-free start ends on the closed loop, at
+    # the second turning point; the tractions at the first one have the opposite sign
+    march = contact.march(_quarter(oscillation), start, step_tolerance)
     residual = residual_part(-march.state, contact.bound)
     return StaticState(residual, -march.state, march.residual, march.solves)

@@ -201,9 +201,8 @@ def _on_these_points(
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
         sticks = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
-    near = (
-        periodic.converged or periodic.distance <= ENOUGH * distance
-    )  # the distance is part of the error
+    # the distance is part of the error
+    near = periodic.converged or periodic.distance <= ENOUGH * distance
     periods = periods_of(periodic.marches, problem)
     reason = unsolved(limit.solver_residual, limit.solves, inner)
     if not near:

@@ -227,9 +227,9 @@ def search(
             return False, True
         counts[0] += 1
         counts[1] += trace.iterations
-        fields, copied = trace.fields.ravel(), guess.ravel()
-        for i in range(copied.size):
-            copied[i] = fields[i]
+        fields, row = trace.fields.ravel(), guess.ravel()
+        for i in range(row.size):
+            row[i] = fields[i]
         if goal.mirror:
             mirrored(system, trace.state, image)
         else:

@@ -31,9 +31,8 @@ STATIC_LIMITS = {
     "transverse": StaticLimit(paper.static_limit_transverse),
     "bore": StaticLimit(paper.static_limit_bore, any_poisson=True),
     "longitudinal": StaticLimit(paper.static_limit_longitudinal),
-    "zigzag": StaticLimit(
-        paper.static_limit_transverse
-    ),  # the limit depends on the turning points only
+    # the limit of the zigzag is that of the sine, since it depends on the turning points only
+    "zigzag": StaticLimit(paper.static_limit_transverse),
 }
 
 LARGEST_DROPS = {

@@ -163,11 +163,11 @@ class RadialContact(SystemContact):
         stages = path.stages.shape[1]
         ends = self._checked_growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
-        shifted = ends.copy()
-        shifted[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins
-        edge = np.repeat(shifted[:-1, None], stages, axis=1)
-        edge[:, -1] = shifted[1:]
-        return self.bounds(path.depth, np.append(shifted[:1], edge))
+        radii = ends.copy()
+        radii[:-1] += shift * np.diff(ends)  # not the last one, where the next march begins
+        edge = np.repeat(radii[:-1, None], stages, axis=1)
+        edge[:, -1] = radii[1:]
+        return self.bounds(path.depth, np.append(radii[:1], edge))
 
 
 def width_of(rings: int) -> int:

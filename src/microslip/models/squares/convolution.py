@@ -314,9 +314,9 @@ def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> N
                 for k in range(second.shape[2]):
                     second[part, i, k] *= operator.kernel[i, k]
     elif operator.images == 1:
-        copied, values = first.ravel(), second.ravel()
+        copy, values = first.ravel(), second.ravel()
         for i in range(values.size):
-            copied[i] = values[i]
+            copy[i] = values[i]
         _multiply_coupled(operator, first, second)
     elif operator.halving.sign < 0.0:
         half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)

@@ -91,8 +91,8 @@ def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, fl
     sign = (-1) ** number
     forward = path.positions[1:, 0] - start[0] + number * (end[0] - start[0])
     lateral = sign * path.positions[1:, 1] - start[1]
-    steps_made = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
-    return steps_made[:, 0], float(steps_made[:, 1].sum())
+    results = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
+    return results[:, 0], float(results[:, 1].sum())
 
 
 def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float) -> Run:
