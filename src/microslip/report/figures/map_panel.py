@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from scipy.spatial import KDTree
 
@@ -43,8 +44,8 @@ def number_contours(
 ) -> None:
     """Write numbers on contours after the layout has given the panel its final size.
 
-    A number is placed where the other contours are farthest away. A contour without enough space
-    for a number has none.
+    A number is placed where the other contours and the ends of its own contour, which could be read
+    as a minus sign, are farthest away. A contour without enough space for a number has none.
 
     Parameters
     ----------
@@ -57,14 +58,17 @@ def number_contours(
     height = size * look.DPI / 72.0
 
     def write() -> None:
-        lines = [axes.transData.transform(path.vertices) for path in contours.get_paths()]
+        paths = contours.get_paths()
+        lines = [axes.transData.transform(path.vertices) for path in paths]
         low, high = axes.bbox.get_points() + 2.0 * height * np.array([[1.0], [-1.0]])
         places: list[np.ndarray] = []
         for k, vertices in enumerate(lines):
             line = vertices[((vertices > low) & (vertices < high)).all(axis=1)]
             if not len(line):
                 continue
-            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], low[None]])).query(line)
+            starts = np.flatnonzero(paths[k].codes == Path.MOVETO)
+            ends = vertices[np.concatenate([starts, starts - 1])]
+            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], ends])).query(line)
             if places:
                 room[KDTree(places).query(line)[0] < 3.0 * height] = 0.0
             if room.max() > 0.7 * height:
