@@ -78,7 +78,7 @@ def number_contours(
             ink |= {"manual": axes.transData.inverted().transform(places).tolist()}
             for text in axes.clabel(contours, **ink):
                 if filled is not None:
-                    behind = filled.to_rgba(float(text.get_text()))
+                    behind = filled.to_rgba(np.array(float(text.get_text())))
                     text.set_path_effects([withStroke(linewidth=OUTLINE, foreground=behind)])
 
     panels.after_layout(axes.get_figure(root=True), write)
