@@ -10,7 +10,7 @@ tolerance than the most accurate map of the name. A point is covered if the erro
 most its estimate plus the error estimate of the reference. The output file stores the references,
 so that the next run continues.
 
-The error estimate of a uniform grid is that of friction.at, with nodes from the certified map that
+The error estimate of a uniform grid is that of microslip.at, with nodes from the certified map that
 count as exact. The cost of a point is measured by solving some points of the grid and of the map at
 the tolerance of the map.
 """
@@ -105,7 +105,7 @@ def surpluses_at(dataset, points):
 
 def judged(dataset, points, truth):
     """A line of the table of error estimates."""
-    answers = [dataset.friction.at(v, a, poisson=nu) for v, a, nu in points]
+    answers = [dataset.microslip.at(v, a, poisson=nu) for v, a, nu in points]
     mu, estimate = (
         np.array([float(x[n]) for x in answers]) for n in ("mu_macro", "mu_macro_error")
     )
@@ -143,14 +143,14 @@ def of_map(dataset):
 
 def of_uniform_grid(dataset, count):
     """Line of a uniform grid, with error estimates at the centres of its meshes."""
-    grid = dataset.friction.on_grid(count, count)
+    grid = dataset.microslip.on_grid(count, count)
     grid["mu_macro_error"] = xr.zeros_like(grid.mu_macro_error) + dataset.tolerance
     grid["converged"] = xr.ones_like(grid.mu_macro, bool)
     middles = {
         "velocity": np.sqrt(grid.velocity.values[1:] * grid.velocity.values[:-1]),
         "amplitude": 0.5 * (grid.amplitude.values[1:] + grid.amplitude.values[:-1]),
     }
-    estimate = grid.drop_vars("source").friction.at(**middles).mu_macro_error.values
+    estimate = grid.drop_vars("source").microslip.at(**middles).mu_macro_error.values
     nodes = [axis.ravel() for axis in np.meshgrid(grid.velocity.values, grid.amplitude.values)]
     seconds = cost(dataset, *nodes, np.full(count * count, float(dataset["poisson"])))
     return of_grid(dataset, f"{count} x {count}, uniform", count * count, estimate, seconds)

@@ -33,7 +33,7 @@ def omitted(dataset):
         for i in range(1, dataset.sizes[dim] - 1):
             rest = dataset.isel({dim: np.delete(np.arange(dataset.sizes[dim]), i)})
             line = dataset.isel({dim: [i]})
-            answer = rest.friction.at(line["velocity"].values, line["amplitude"].values)
+            answer = rest.microslip.at(line["velocity"].values, line["amplitude"].values)
             errors.append(abs(answer.mu_macro.values - line.mu_macro.values).ravel())
             bounds.append((answer.mu_macro_error.values + line.mu_macro_error.values).ravel())
     return np.concatenate(errors), np.concatenate(bounds)
@@ -55,7 +55,7 @@ def places(dataset, points, rng):
 def solved(dataset, velocity, amplitude, label):
     """(error, bound) of answers at points, with the solver as reference."""
     pairs = list(zip(velocity, amplitude, strict=True))
-    answer = dataset.friction.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
+    answer = dataset.microslip.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
     results = [
         microslip.solve(dataset.motion, v, a, tolerance=TOLERANCE)
         for v, a in tqdm(pairs, desc=label, leave=False)

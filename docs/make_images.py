@@ -13,7 +13,7 @@ from PIL import Image
 
 IMAGES = Path(__file__).parent / "images"
 SCALE = 200 / 300
-"""Resolution of an image over that of a figure."""
+"""Resolution of an image divided by that of a figure."""
 
 
 def main(results, *names):

@@ -195,9 +195,8 @@ def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_an
         low, high = (float(slow.mu_macro + sign * slow.mu_macro_error) for sign in (-1, 1))
         assert low <= float(still.mu_macro + still.mu_macro_error)
         assert high >= float(edge.mu_macro) - 1e-12
-        at_0 = paper.static_limit_transverse(
-            amplitude
-        )  # the static limit decreases with Poisson's ratio
+        # The static limit decreases with Poisson's ratio.
+        at_0 = paper.static_limit_transverse(amplitude)
         assert at_0 - 0.012 <= float(still.mu_macro) <= at_0
 
 

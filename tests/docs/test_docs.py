@@ -234,9 +234,8 @@ def make_scripts(folder):
 
 
 def run_python(block, page, namespace, environment):
-    if (
-        environment.get("PYTHONPATH") == "src"
-    ):  # a copy of the package that this process has not imported
+    # This process has not imported the copy of the package in src.
+    if environment.get("PYTHONPATH") == "src":
         return run_command([sys.executable, "-c", block.text], page, block, environment)
     said = io.StringIO()
     code = compile("\n" * block.line + block.text, page, "exec")

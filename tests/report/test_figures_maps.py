@@ -8,9 +8,12 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.legend import Legend
+from matplotlib.path import Path
 from matplotlib.text import Text
+from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
 from stubs.figures_stub import VELOCITY, artists
 
@@ -39,13 +42,27 @@ XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721
 XYZ = np.vstack([XYZ, [0.0193339, 0.1191920, 0.9503041]])
 
 
-def lab(colours):
-    """CIELAB of sRGB colours, shape (n, 3); D65."""
+def lab(colours, vision="normal"):
+    """CIELAB of sRGB colours, shape (n, 3), with a kind of colour vision; D65."""
     c = np.asarray(colours, float)
     linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    linear = np.clip(linear @ np.transpose(SEEN[vision]), 0, 1)
     x = linear @ XYZ.T / XYZ.sum(axis=1)
     f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
     return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], -1)
+
+
+# Linear RGB as it is seen with three kinds of colour vision, severity 1 (Machado, Oliveira,
+# Fernandes, IEEE TVCG 15 (2009) 1291).
+SEEN = {
+    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216]]
+    + [[-0.003882, -0.048116, 1.051998]],
+    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413]]
+    + [[-0.011820, 0.042940, 0.968881]],
+    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602]]
+    + [[0.004733, 0.691367, 0.303900]],
+    "normal": np.eye(3),
+}
 
 
 def shown(values, levels=(-1.0, 1.0)):
@@ -62,6 +79,14 @@ def test_colours_are_even_below_0_and_those_of_figure_2_above_whatever_the_range
     steps = np.linalg.norm(np.diff(below, axis=0), axis=1)
     assert steps.max() < 1.3 * steps.min()
     assert np.all(np.diff(below[:, 0]) > 0)  # colours become lighter away from 0
+
+
+@pytest.mark.parametrize("vision", SEEN)
+def test_negative_friction_differs_from_positive_for_all_kinds_of_colour_vision(vision):
+    below = lab(shown([-0.1, -0.2, -0.3, -0.4, -0.5]), vision)
+    above = lab(shown(np.linspace(0.1, 1, 91)), vision)
+    away = np.linalg.norm(below[:, None] - above, axis=-1)
+    assert away.min() > 10  # a difference of 2 or 3 is just visible
 
 
 def test_lines_stand_out_from_their_bands():
@@ -164,6 +189,53 @@ def test_a_number_is_on_its_contour_apart_from_the_others_inside_the_frame():
             if abs(level - float(text.get_text())) > 0.05:
                 away = np.hypot(*(axes.transData.transform(path.vertices) - at).T)
                 assert away.min() > 0.7 * height
+
+
+def test_a_number_has_a_long_line_on_both_sides():
+    """A short line before a number could be read as a minus sign."""
+    axes, lines = contours_of(mapped(6, 9))
+    paths = {
+        f"{level:.1f}": path for level, path in zip(lines.levels, lines.get_paths(), strict=True)
+    }
+    assert len(axes.texts) >= 3
+    for text in axes.texts:
+        path = paths[text.get_text()]
+        starts = np.flatnonzero(path.codes == Path.MOVETO)
+        ends = axes.transData.transform(path.vertices[np.concatenate([starts, starts - 1])])
+        away = np.hypot(*(ends - axes.transData.transform(text.get_position())).T)
+        left, right, end, *_ = np.sort(away) * 72 / axes.figure.dpi / text.get_fontsize()
+        assert left == pytest.approx(right, rel=0.01) and end > 2.0 * right
+
+
+def pixels(figure):
+    """The drawn figure, shape (height, width, 3)."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
+
+
+def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
+    dense = mapped(40, 40)
+    dense["mu_macro"][0, 0] = 1.0  # a jump, so that the points are drawn
+    axes, _ = contours_of(dense)
+    (points,) = artists(axes, "points")
+    seen = {}
+    for shows_points in (True, False):
+        for shows_numbers in (True, False):
+            points.set_visible(shows_points)
+            for text in axes.texts:
+                text.set_visible(shows_numbers)
+            seen[shows_points, shows_numbers] = pixels(axes.figure)
+
+    def differ(one, other):
+        return np.abs(seen[one] - seen[other]).max(axis=-1) > 60  # neighbouring bands: 12
+
+    alone = seen[False, True]
+    inked = (alone < 40).all(axis=-1) | (alone > 215).all(axis=-1)  # black or white
+    letters = binary_dilation(inked & differ((False, True), (False, False)), iterations=3)
+    behind = (letters & differ((True, False), (False, False))).sum()
+    visible = (letters & differ((True, True), (False, True))).sum()
+    assert behind > 100 and visible < 0.01 * behind  # edges of letters are blurred
 
 
 @pytest.mark.parametrize(

@@ -194,9 +194,8 @@ def test_the_atlas_shows_every_outcome(stability):
         labels = [label.get_text() for label in axes.get_yticklabels()]
         methods = labels if any(labels) else methods
         assert methods[0] == "shipped" and "jacobi" not in methods
-        expected = (
-            cases["outcome"].sel({"method": methods}).values
-        )  # not a keyword: sel has its own
+        # As a dict, because sel has another keyword `method`.
+        expected = cases["outcome"].sel({"method": methods}).values
         (mesh,) = artists(axes, "outcome")
         np.testing.assert_array_equal(mesh.get_array().filled(0), expected)
         signs = {text.get_position()[::-1]: text.get_text() for text in axes.texts}

@@ -220,7 +220,6 @@ def test_a_third_direction_is_halved_where_friction_bends_over_it_and_only_there
 
 
 def test_surpluses_of_three_nodes_are_twice_their_second_differences():
-    values = np.multiply.outer(
-        np.ones((5, 5)), [0.0, 1.0, 4.0]
-    )  # the second differences of x^2 are 2
+    # The second differences of x^2 are 2.
+    values = np.multiply.outer(np.ones((5, 5)), [0.0, 1.0, 4.0])
     assert surpluses_of(values) == pytest.approx((0.0, 0.0, 4.0))

@@ -59,9 +59,8 @@ def test_other_motions_and_pressures_are_certified_likewise():
     settings = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
     (map_,) = load.from_mapping(settings).certified.values()
     assert map_.name == "certified_cone"
-    assert map_refinement.coordinates_of(map_).patches == [
-        ((0.0, 0.0), (1.0, 1.0))
-    ]  # no kinks are known for this pressure
+    # No kinks are known for this pressure.
+    assert map_refinement.coordinates_of(map_).patches == [((0.0, 0.0), (1.0, 1.0))]
     request = certified_stub.first_requests(map_)[0]
     assert (request["motion"], request["pressure"]) == ("bore", "power:exponent=1")
     with pytest.raises(ConfigError, match="certified_cone: another result has this name"):

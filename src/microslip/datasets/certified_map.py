@@ -68,9 +68,8 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         name: ("point", np.array(axis))
         for name, axis in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
-    axes = {
-        "poisson": ((), map_.sweep.poisson[0])
-    } | axes  # a scalar, unless it is a direction of the map
+    # Poisson's ratio and velocity are scalars, unless they are directions of the map.
+    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes
     if map_.force is None:
         axes = {"velocity": ((), 0.0)} | axes
     dataset = xr.Dataset(

@@ -56,7 +56,7 @@ def to_xarray(record: object) -> xr.Dataset:
         return xr.Dataset(columns, attrs=record.attributes)
     kind = next((kind for kind in AXES if isinstance(record, kind)), None)
     if kind is None:
-        names = ", ".join(kind.__name__ for kind in AXES)
+        names = ", ".join(kind.__name__ for kind in (*AXES, Response, RealResponse))
         raise InputError(
             "record", record, f"allowed is one of {names}, not {type(record).__name__}"
         )

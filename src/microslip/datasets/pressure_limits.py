@@ -38,9 +38,8 @@ def formulas_under(motion: str, name: str) -> dict:
         zone, static = _of_indenter(motion, pressure)
         exact = replace(exact, function=_each(static))
     elif pressure.hertzian and motion != "bore":
-        zone = (
-            paper.static_transverse
-        )  # an elliptic stick zone carries the same fraction of the load
+        # An elliptic stick zone carries the same fraction of the load.
+        zone = paper.static_transverse
         exact = replace(exact, function=_each(exact.function))
     else:
         return forms

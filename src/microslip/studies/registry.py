@@ -1,7 +1,7 @@
 """All studies: cost of accuracy, failures of methods, claims of the paper, and propulsion.
 
-Each study has a package with two modules. The first one (`accuracy_cost`, `stability`, `claims` or
-`propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
+Each study is a package with two main modules. The first one (`accuracy_cost`, `stability`, `claims`
+or `propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
 every start. The second one, `dataset`, builds a dataset from the results. The modules `ladders`
 (resolutions of the models) and `requests` (forms of the requests) are common to the studies.
 """

@@ -163,7 +163,8 @@ def _roots(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Find the roots of a function in brackets; also returns True where the search succeeded.
 
-    arguments: additional arguments of the function; chosen: the arguments for each bracket.
+    left, right: ends of the brackets, shape (n,); arguments: additional arguments of the function,
+    shape (m,) each; chosen: mask, shape (m,), of the n arguments that belong to the brackets.
     """
     from scipy.optimize.elementwise import find_root
 

@@ -34,7 +34,7 @@ NAMES = {
     for name, form in forms.items()
     if not name.startswith("mu_torque")
 }
-"""Name of a closed form for each friction limit."""
+"""A closed form of each friction limit, by the name of its variable."""
 
 
 def is_map(dataset: xr.Dataset) -> bool:

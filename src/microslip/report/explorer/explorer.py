@@ -102,8 +102,8 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
 
 def _count(sweep: Sweep) -> int:
     """Return the number of points of a sweep."""
-    pulls = [values for _, values, _ in sweep.drives]
-    axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *pulls)
+    drives = [values for _, values, _ in sweep.drives]
+    axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *drives)
     return prod(len(axis) for axis in axes if axis)
 
 

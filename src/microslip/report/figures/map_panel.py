@@ -12,6 +12,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from scipy.spatial import KDTree
 
 from microslip.datasets.query.surface import Surface
@@ -25,6 +27,8 @@ FEW = len(LINE_LEVELS)
 """The points are drawn if there are fewer than this along an axis."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
+OUTLINE = 3.0
+"""Line width in points of the outline of numbers. Half of it is outside the letters."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 
 
@@ -35,28 +39,36 @@ def bands(axes: Axes, *table: np.ndarray, **settings: Any) -> ContourSet:
     return filled
 
 
-def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
+def number_contours(
+    axes: Axes, contours: ContourSet, size: float, filled: ContourSet | None = None
+) -> None:
     """Write numbers on contours after the layout has given the panel its final size.
 
-    A number is placed where the other contours are farthest away. A contour without enough space
-    for a number has none.
+    A number is placed where the other contours and the ends of its own contour, which could be read
+    as a minus sign, are farthest away. A contour without enough space for a number has none.
 
     Parameters
     ----------
     size : float
         Font size in points.
+    filled : ContourSet or None
+        Bands behind the contours. Their colour outlines the numbers, which can then be read above
+        points. Defaults to no outline.
     """
     height = size * look.DPI / 72.0
 
     def write() -> None:
-        lines = [axes.transData.transform(path.vertices) for path in contours.get_paths()]
+        paths = contours.get_paths()
+        lines = [axes.transData.transform(path.vertices) for path in paths]
         low, high = axes.bbox.get_points() + 2.0 * height * np.array([[1.0], [-1.0]])
         places: list[np.ndarray] = []
         for k, vertices in enumerate(lines):
             line = vertices[((vertices > low) & (vertices < high)).all(axis=1)]
             if not len(line):
                 continue
-            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], low[None]])).query(line)
+            starts = np.flatnonzero(paths[k].codes == Path.MOVETO)
+            ends = vertices[np.concatenate([starts, starts - 1])]
+            room, _ = KDTree(np.concatenate([*lines[:k], *lines[k + 1 :], ends])).query(line)
             if places:
                 room[KDTree(places).query(line)[0] < 3.0 * height] = 0.0
             if room.max() > 0.7 * height:
@@ -64,7 +76,10 @@ def number_contours(axes: Axes, contours: ContourSet, size: float) -> None:
         if places:
             ink: look.Ink = {"fmt": "%.1f", "fontsize": size, "inline_spacing": 2}
             ink |= {"manual": axes.transData.inverted().transform(places).tolist()}
-            axes.clabel(contours, **ink)
+            for text in axes.clabel(contours, **ink):
+                if filled is not None:
+                    behind = filled.to_rgba(np.array(float(text.get_text())))
+                    text.set_path_effects([withStroke(linewidth=OUTLINE, foreground=behind)])
 
     panels.after_layout(axes.get_figure(root=True), write)
 
@@ -114,7 +129,7 @@ def fill(
         linewidths=[1.1 if level == 0 else 0.7 for level in lines],
     )
     contours.set_gid("contours")
-    number_contours(axes, contours, size)
+    number_contours(axes, contours, size, filled)
     axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
     panels.logarithmic(axes.xaxis)
     panels.ticks_outside(axes)

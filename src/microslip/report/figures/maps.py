@@ -97,13 +97,13 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     """Return a new figure, the panels for `count` maps, and the panels for the two cuts."""
     if count == 1:
         figure = look.new_figure(look.DOUBLE, 4.2)
-        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
+        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0), squeeze=False).flat
         return figure, [left.subplots()], *right.subplots(2, 1)
     across = min(count, ACROSS)
     rows = -(-count // across)
     heights = rows * ROW[across], 2.7
     figure = look.new_figure(look.DOUBLE, sum(heights))
-    upper, lower = figure.subfigures(2, 1, height_ratios=heights)
+    upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
     maps = list(upper.subplots(rows, across, squeeze=False).flat)
     for axes in maps[count:]:
         axes.remove()
