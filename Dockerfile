@@ -6,7 +6,7 @@ FROM python:3.12-slim
 COPY . /source
 RUN /source/containers/install.sh /source /opt/microslip && rm -rf /source
 
-# Compiled kernels and sweeps are written by whoever runs the container.
+# The user of the container writes compiled kernels and results, so these folders are outside the image.
 ENV PATH=/opt/microslip/bin:$PATH XDG_CACHE_HOME=/tmp/cache
 WORKDIR /work
 ENTRYPOINT ["microslip"]
