@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from models.test_pulled import BODIES, START, plain
+from models.test_force_and_spring import BODIES, START, plain
 from reference_pull import pulled_march
 
 from microslip.models.contact import forward_slip

@@ -95,9 +95,9 @@ def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
 def test_nothing_of_a_map_is_left_over(certified):
     results = certified.folder / "results"
     plan = Plan(load.load(certified.folder / "tiny.yaml"))
-    assert not any(leftovers.left_over(results, [plan]).values())
+    assert not any(leftovers.find_leftovers(results, [plan]).values())
     without = load.from_mapping({"sweeps": {"transverse": AXES}})
-    left = leftovers.left_over(results, [Plan(without)])
+    left = leftovers.find_leftovers(results, [Plan(without)])
     assert len(left[leftovers.KINDS[0]]) == len(certified.points())
     names = {path.name for path in left[leftovers.KINDS[2]]}
     assert names == {

@@ -47,7 +47,7 @@ def test_every_dataset_has_a_caption(wildcards):
 def settings():
     """The default configuration with its defaults filled in."""
     given = load.read_yaml(ROOT / "config" / "config.yaml")
-    return load.with_files_found(given, folders=[ROOT / "config"])
+    return load.with_defaults_and_paths(given, folders=[ROOT / "config"])
 
 
 @cache

@@ -161,7 +161,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            action=option_parser.Said,
+            action=option_parser.StoreSpelling,
             default=DEFAULTS.get(name),
             metavar=metavar,
             help=text,
