@@ -262,7 +262,7 @@ def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]
     line."""
     if argument == "motion":
         return "MOTION", options.motion
-    option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
+    option = getattr(options, "spellings", {}).get(argument, f"--{argument.replace('_', '-')}")
     return option, getattr(options, argument, None)
 
 
