@@ -69,7 +69,7 @@ def test_rows_that_tell_mu_alone_are_exit_code_1(folder, capsys):
     table(velocity, np.full(6, 0.06), force)
     assert cli.main(["fit", "transverse", "measured.csv", *SHARED, "--map", "map.nc"]) == 1
     said = capsys.readouterr().out
-    assert "NOT TOLD: the rows determine mu alone: any u_lim above" in said
+    assert "NOT DETERMINED: the rows determine mu alone: any u_lim above" in said
     assert "\nmu                0.3" in said and "\nu_lim" not in said
 
 

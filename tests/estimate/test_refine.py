@@ -209,7 +209,7 @@ def test_what_was_known_before_the_budget_was_spent_is_the_answer():
 def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
     found = refine(FakeRun(most=2), LADDER, 1e-3)
     assert not found.converged and np.isnan(found.value.value) and found.value.error == np.inf
-    assert found.reason == "all is spent: no error is known yet"
+    assert found.reason == "all is spent: there is no error estimate yet"
 
 
 # Readings of a pressure

@@ -212,13 +212,13 @@ LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "gro
     [
         ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
         ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
-         "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+         "sweeps: no map for the explorer; allowed: transverse or bore with two "
          "amplitudes and two velocities above 0"),
         ({"sweeps": {"bore": FINE | {"amplitude": [0, *range(1, 51)]}}}, explorer.PAGE,
-         "sweeps.bore: 5,151 points have no room in the explorer; allowed: up to 5,000"),
+         "sweeps.bore: 5,151 points do not fit into the explorer; allowed: up to 5,000"),
         ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE, None),
         ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE_OF_ALL,
-         "sweeps: 20,305 points have no room in explorer_all.html; allowed: up to 20,000, "
+         "sweeps: 20,305 points do not fit into explorer_all.html; allowed: up to 20,000, "
          "at all of Poisson's ratios together"),
     ],
 )  # fmt: skip

@@ -269,7 +269,7 @@ def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
     assert seen == [SWEPT_RESOLUTION]  # no other run has started
     assert not found.converged and np.isnan(found.mu_macro)
     assert found.exhausted == spent
-    assert "no error is known yet" in found.reason
+    assert "there is no error estimate yet" in found.reason
 
 
 def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
@@ -286,6 +286,6 @@ def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
 @pytest.mark.slow
 def test_a_propulsion_line_and_a_shakedown_end_where_the_search_does():
     line = microslip.propulsion("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
-    assert not line.converged and "no error is known yet" in line.reason
+    assert not line.converged and "there is no error estimate yet" in line.reason
     rest = microslip.shakedown("normal:lateral=0.5", 0.4321, 0.05, most_work=1.0)
-    assert not rest.converged and "no error is known yet" in rest.reason
+    assert not rest.converged and "there is no error estimate yet" in rest.reason

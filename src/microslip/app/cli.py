@@ -50,8 +50,8 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
         "point",
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
-        description="Mean forward friction force over mu F_z at one point, with an error estimate. "
-        "mu_macro is a ratio: 1 without an effect of the vibration, 0 without friction.  The "
+        description="Mean forward friction force divided by mu F_z at one point, with an error "
+        "estimate.  mu_macro is a ratio: 1 without an effect of the vibration, 0 without friction.  The "
         "apparent coefficient of friction is mu_apparent = mu mu_macro.  "
         f"{BORE}",
     )
@@ -107,16 +107,22 @@ F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
         "P",
-        "prescribed force in place of a velocity, over mu times the mean normal load; the "
+        "prescribed force in place of a velocity, divided by mu times the mean normal load; the "
         "result is the velocity",
     ),
-    "stiffness": ("K", f"of a spring whose far end has the velocity, over mu F_z / u_lim{F_Z}"),
-    "mass": ("M", f"of the body on the spring or force, over mu F_z / (u_lim omega^2){F_Z} (0)"),
-    "damping": ("C", f"of a dashpot beside the spring, over mu F_z / (u_lim omega){F_Z} (0)"),
+    "stiffness": (
+        "K",
+        f"of a spring whose far end has the velocity, divided by mu F_z / u_lim{F_Z}",
+    ),
+    "mass": (
+        "M",
+        f"of the body on the spring or force, divided by mu F_z / (u_lim omega^2){F_Z} (0)",
+    ),
+    "damping": ("C", f"of a dashpot beside the spring, divided by mu F_z / (u_lim omega){F_Z} (0)"),
     "contacts": (
         "TEXT",
         "several contacts of one body, such as 'phase=0;phase=180': for each, load (1, relative to "
-        "the others), phase in degrees (0) and amplitude (1, over A)",
+        "the others), phase in degrees (0) and amplitude (1, divided by A)",
     ),
     "pressure": (
         "NAME",

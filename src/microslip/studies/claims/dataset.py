@@ -222,7 +222,7 @@ def _patches(settings: Claims, runs: Runs) -> dict:
         "patch_velocity": variable((), velocity, "velocity of the patches"),
         "patch_amplitude": variable((), amplitude, "amplitude of the patches"),
     }
-    share = "size of the traction over the friction bound, 1 where a point slips"
+    share = "size of the traction divided by the friction bound, 1 where a point slips"
     sides = {side: np.asarray(result[f"stick_{side}"], float) for side in ("right", "left")}
     for side, values in sides.items():
         long_name = f"sticking fraction of the contact area, {SIDES[side]} lateral positions"
@@ -232,7 +232,7 @@ def _patches(settings: Claims, runs: Runs) -> dict:
     entries["patch_phase"] = variable("patch_step", result["phase"], "phase", units="rad")
     for name in ("lateral", "forward"):
         values = result[f"{name}_position"]
-        entries[f"patch_{name}"] = variable("patch_point", values, f"{name} position over a")
+        entries[f"patch_{name}"] = variable("patch_point", values, f"{name} position divided by a")
     moments = np.asarray(result["moment_phase"], float)
     dims = ("patch_moment", "patch_point")
     return entries | {
@@ -269,7 +269,7 @@ def _edges(amplitude: float, moments: np.ndarray) -> dict:
     dims = ("patch_moment", "patch_edge")
     return {
         f"patch_edge_{name}": variable(
-            dims, [edge[i] for edge in edges], f"{name} position of the edge, over a"
+            dims, [edge[i] for edge in edges], f"{name} position of the edge, divided by a"
         )
         for i, name in enumerate(("lateral", "forward"))
     }

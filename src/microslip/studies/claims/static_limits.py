@@ -133,7 +133,7 @@ def _shares(motion: str) -> dict:
     used = "fraction of the friction bound that the oscillation uses at its turning points"
     left = "fraction of the friction bound that remains for the forward direction, mean over angle"
     return {
-        "share_radius": variable("share_radius", radius, "radius over a"),
+        "share_radius": variable("share_radius", radius, "radius divided by a"),
         dims[0]: variable(dims[0], amplitudes, f"amplitude, motion {motion}"),
         f"{motion}_used_share": variable(dims, used_share(*at), used),
         f"{motion}_left_share": variable(dims, left_share(*at), left),
