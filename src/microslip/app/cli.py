@@ -51,8 +51,8 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force divided by mu F_z at one point, with an error "
-        "estimate.  mu_macro is a ratio: 1 without an effect of the vibration, 0 without friction.  "
-        "The apparent coefficient of friction is mu_apparent = mu mu_macro.  "
+        "estimate.  mu_macro is a ratio: 1 without an effect of the vibration, 0 without "
+        "friction.  The apparent coefficient of friction is mu_apparent = mu mu_macro.  "
         f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
