@@ -95,8 +95,10 @@ print("numpy" in sys.modules)
 
 
 def test_jobs_of_other_sweeps_do_not_import_the_solver():
-    done = subprocess.run([sys.executable, "-c", ALONE], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    process = subprocess.run(
+        [sys.executable, "-c", ALONE], capture_output=True, text=True, check=True
+    )
+    assert process.stdout == "False\n"
 
 
 def test_a_static_limit_is_allowed_where_the_solver_knows_it():

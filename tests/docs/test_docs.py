@@ -234,17 +234,17 @@ def run_python(block, page, namespace, environment):
     # This process has not imported the copy of the package in src.
     if environment.get("PYTHONPATH") == "src":
         return run_command([sys.executable, "-c", block.text], page, block, environment)
-    said = io.StringIO()
+    message = io.StringIO()
     code = compile("\n" * block.line + block.text, page, "exec")
-    with contextlib.redirect_stdout(said):
+    with contextlib.redirect_stdout(message):
         exec(code, namespace)
-    return said.getvalue()
+    return message.getvalue()
 
 
 def run_command(command, page, block, environment):
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
-    assert done.returncode == 0, f"{page}:{block.line}: {done.stdout}{done.stderr}"
-    return done.stdout
+    process = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
+    assert process.returncode == 0, f"{page}:{block.line}: {process.stdout}{process.stderr}"
+    return process.stdout
 
 
 def run_snakefile(block, page, environment):
@@ -275,15 +275,17 @@ def check_yaml(block):
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
-def assert_said(said, expected, where):
+def assert_said(message, expected, where):
     """Assert equal words, and numbers within 1 % or 1.5 units of the last printed digit."""
-    assert NUMBER.sub("#", said).split() == NUMBER.sub("#", expected).split(), f"{where}: {said}"
-    for new, old in zip(NUMBER.findall(said), NUMBER.findall(expected), strict=True):
+    assert NUMBER.sub("#", message).split() == NUMBER.sub("#", expected).split(), (
+        f"{where}: {message}"
+    )
+    for new, old in zip(NUMBER.findall(message), NUMBER.findall(expected), strict=True):
         digits = re.sub(r"e.*", "", old)
         scale = 10.0 ** float(old.split("e")[1]) if "e" in old else 1.0
         last = scale * 10.0 ** -len(digits.partition(".")[2])
         near = max(0.01 * abs(float(old)), 1.5 * last if "." in digits else 0.0)
-        assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {said}"
+        assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {message}"
 
 
 def rewrite(page, printed):
@@ -309,13 +311,13 @@ def opens(page):
 def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
-    namespace, said, printed = {"__name__": "__main__"}, None, {}
+    namespace, message, printed = {"__name__": "__main__"}, None, {}
     for block in blocks(page):
         where = f"{page}:{block.line}"
         if reason_not_to_run(page, block):
             assert block.kind == "sh", where
             run_command(["bash", "-n", "-c", block.text], page, block, environment)
-            said = None
+            message = None
             continue
         file = file_of(block)
         if file:
@@ -324,19 +326,19 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
         if block.kind == "yaml":
             check_yaml(block)
         elif block.kind in ("python", "{code-cell}") and not file:
-            said = run_python(block, page, namespace, environment)
+            message = run_python(block, page, namespace, environment)
         elif block.kind == "sh":
-            said = run_command(["bash", "-euc", block.text], page, block, environment)
+            message = run_command(["bash", "-euc", block.text], page, block, environment)
         elif block.kind == "snakemake":
-            said = run_snakefile(block, page, environment)
+            message = run_snakefile(block, page, environment)
         elif block.kind == "text":
-            assert said is not None, f"{where}: no block before it prints text"
+            assert message is not None, f"{where}: no block before it prints text"
             try:
-                assert_said(said, block.text, where)
+                assert_said(message, block.text, where)
             except AssertionError:
                 if not request.config.getoption("rewrite", False):
                     raise
-                printed[block.line] = said
+                printed[block.line] = message
         else:
             allowed = file or block.kind == "bibtex" or block.kind.startswith("{")
             assert allowed, f"{where}: unknown kind of block"
@@ -457,7 +459,7 @@ class Loaded(HTMLParser):
 )
 def test_the_site_is_built_without_a_warning_and_without_a_network(tmp_path):
     refused = {f"{kind}_proxy": "http://127.0.0.1:9" for kind in ("http", "https", "all")}
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-m", "sphinx", "-W", "-n", "-q", "docs", tmp_path / "html"],
         cwd=ROOT,
         env=os.environ | refused,
@@ -465,7 +467,7 @@ def test_the_site_is_built_without_a_warning_and_without_a_network(tmp_path):
         text=True,
         timeout=300,
     )
-    assert done.returncode == 0, done.stderr
+    assert process.returncode == 0, process.stderr
     pages = {str(p.relative_to(tmp_path / "html")): p for p in tmp_path.rglob("*.html")}
     for page in PAGES:
         if page.startswith("docs/"):
