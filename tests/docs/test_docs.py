@@ -311,6 +311,7 @@ def opens(page):
 def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
     namespace, message, printed = {"__name__": "__main__"}, None, {}
     for block in blocks(page):
         where = f"{page}:{block.line}"
