@@ -194,7 +194,7 @@ def split_number(text: str) -> tuple[str, str]:
 def stopped(read_so_far: str, rest: str) -> str:
     """A message with the place at which reading stopped, and a hint about the likely meaning."""
     hint = (
-        ", since the decimal separator is a point and there is no thousands separator"
+        ", since decimals follow a point and thousands have no separator"
         if "," in rest
         else ""
     )
