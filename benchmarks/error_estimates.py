@@ -75,7 +75,7 @@ EVERY = 500
 DOCS = Path(__file__).parents[1] / "docs/measured"
 LADDER_FOR = friction.ladder_for
 """The unchanged function of the package."""
-KEPT = "all_references"
+ALL_REFERENCES = "all_references"
 """Key of the list of all references in a line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
 """Sources of the error estimate."""
@@ -150,7 +150,7 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
         "reason": result.reason,
         "seconds": round(seconds, 3),
     }
-    if reference is not None and KEPT not in reference:
+    if reference is not None and ALL_REFERENCES not in reference:
         return line | reference
     calibrate()
     return line | judged(k, point, line, result, reference)
@@ -163,7 +163,9 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
     references of an earlier run.
     """
     began = time.process_time()
-    every, spent = (list(before[KEPT]), before["reference_seconds"]) if before else ([], 0.0)
+    every, spent = (
+        (list(before[ALL_REFERENCES]), before["reference_seconds"]) if before else ([], 0.0)
+    )
     first_result = None
 
     def best():
@@ -186,7 +188,7 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
         if not clear() and not first["by"] and not others:
             every.append(tighter(point)[0])
     return best() | {
-        KEPT: [one for one in every if one["by"]],
+        ALL_REFERENCES: [one for one in every if one["by"]],
         "reference_seconds": round(spent + time.process_time() - began, 3),
     }
 
@@ -231,7 +233,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
 
 def contradict(line: dict) -> bool:
     """True if two references of a line differ by more than the sum of their uncertainties."""
-    every = line.get(KEPT, ())
+    every = line.get(ALL_REFERENCES, ())
     return any(
         abs(one["reference"] - other["reference"]) > one["uncertainty"] + other["uncertainty"]
         for one in every
@@ -261,7 +263,7 @@ def _verdict(lines):
     limit = beta.ppf(CONFIDENCE, x + 1, n - x) if x < n else 1.0
     largest = max((ratio(line) for line in converged), default=0.0)
     farthest = max((_over_tolerance(line) for line in converged), default=0.0)
-    twice = [line for line in lines if len(line.get(KEPT, ())) > 1]
+    twice = [line for line in lines if len(line.get(ALL_REFERENCES, ())) > 1]
     text = (
         f"{len(lines)} points, {n} of them converged and with a reference. Too small beyond the"
         f" uncertainty of the reference: {x} ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f} in 1,000)."
@@ -313,7 +315,7 @@ def _exceptions(lines):
         if contradict(line):
             every = ", ".join(
                 f"{one['reference']:.6g} +- {one['uncertainty']:.0e} ({one['by']})"
-                for one in line[KEPT]
+                for one in line[ALL_REFERENCES]
             )
             text.append(f"\nReferences contradict each other: {_named(line)}: {every}.")
     return text

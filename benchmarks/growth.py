@@ -47,12 +47,12 @@ class Project:
         command = [sys.executable, "-m", "snakemake", "-s", ROOT / "Snakefile", "-j2"]
         command += ["--workflow-profile", ROOT / "profiles/default", "--configfile", "many.yaml"]
         began = time.perf_counter()
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, *arguments], cwd=self.folder, capture_output=True, text=True, check=False
         )
         seconds = time.perf_counter() - began
-        output = done.stdout + done.stderr
-        if done.returncode:
+        output = process.stdout + process.stderr
+        if process.returncode:
             sys.exit(output)
         largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
         return output, seconds, largest

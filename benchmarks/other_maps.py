@@ -59,7 +59,7 @@ def map_of(name, error):
     return load.from_mapping(one, folders=[CONFIGURATION.parent]).certified[f"certified_{name}"]
 
 
-def made(map_, store):
+def records_of(map_, store):
     """The records of all points of a map."""
     records = []
 
@@ -95,7 +95,7 @@ def _digits(low, high, share):
 def judged(name, error, options, store):
     """A line of the table."""
     map_ = map_of(name, error)
-    records = made(map_, store)
+    records = records_of(map_, store)
     data = certified_map.build(map_, records)
     drifts = map_.force is not None
     question = Drift(data) if drifts else Friction(data)
@@ -103,8 +103,8 @@ def judged(name, error, options, store):
     rows = []
     for request in tqdm(points_of(map_, options.places, options.seed), desc=map_.name, leave=False):
         true = answer(request, store)[0]["result"]
-        said = question.at(float(request[across]), float(request["amplitude"]))
-        pair = [float(said[part]) for part in (value, f"{value}_error")]
+        answer_at = question.at(float(request[across]), float(request["amplitude"]))
+        pair = [float(answer_at[part]) for part in (value, f"{value}_error")]
         rows.append([*pair, true[value], true[f"{value}_error"]])
     value_on_map, estimate, true, own = np.array(rows).T
     away, scale = abs(value_on_map - true), np.hypot(1.0, true) if drifts else 1.0

@@ -28,10 +28,10 @@ def add_lines(
     """
     with ProcessPoolExecutor(workers) as pool, output.open("a") as file:
         jobs = [pool.submit(*jobs_of(k)) for k in numbers if k not in lines]
-        for done, job in enumerate(as_completed(jobs), start=1):
+        for number, job in enumerate(as_completed(jobs), start=1):
             line = job.result()
             lines[line["k"]] = line
-            file.write("\n" * (done == 1) + json.dumps(line) + "\n")
+            file.write("\n" * (number == 1) + json.dumps(line) + "\n")
             file.flush()
-            print(f"\r{done} of {len(jobs)} points", end="", flush=True)
+            print(f"\r{number} of {len(jobs)} points", end="", flush=True)
     print()

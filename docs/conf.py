@@ -13,7 +13,7 @@ project = "microslip"
 author = "the developers of microslip"
 version = release = microslip.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "offline_math", "plain_docstrings"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "offline_math", "plain_docstrings"]
 extensions += ["sphinx.ext.napoleon"]  # after plain_docstrings, which does not process sections
 root_doc = "index"
 exclude_patterns = ["_ext"]
@@ -23,6 +23,13 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 myst_update_mathjax = False
 html_math_renderer = "mathml"
+
+# The tutorials are notebooks. The build runs them in a temporary folder and stops at an error.
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_merge_streams = True
 
 napoleon_google_docstring = False
 napoleon_use_param = napoleon_use_rtype = False
@@ -49,9 +56,26 @@ INCLUDED = {
 }
 
 
+# Titles of tables that benchmarks write.
+TITLES = {
+    "angles": "Error against the number of angles",
+    "calibration": "Calibration of the error estimates",
+    "certified": "Errors of certified maps at random points",
+    "error_estimates": "Validation of the error estimates at 6,000 points",
+    "explorer": "Loading time of the explorer",
+    "faults": "Recovery of sweeps from faults",
+    "first_run": "Time of the first run",
+    "interpolation": "Errors of interpolation between the points of a map",
+    "paper_method": "Cost of the paper's method",
+    "slurm": "Sweep on Slurm",
+    "static_approach": "Approach to the static limit",
+    "sweep_cost": "Cost of the points of a map",
+}
+
+
 def _adapt(app, name, source):
-    if name.startswith("measured/"):  # the output of benchmarks has no title
-        source[0] = f"# Measured: {name.split('/')[1].replace('_', ' ')}\n\n" + source[0]
+    if name.startswith("measured/") and not source[0].startswith("# "):
+        source[0] = f"# {TITLES[Path(name).name]}\n\n{source[0]}"
     folder = Path(name).parent
     for file, page in INCLUDED.items():
         away, here = os.path.relpath(file, folder), os.path.relpath(page, folder)

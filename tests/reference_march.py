@@ -39,12 +39,12 @@ def solved_stage(matrix, b, bound, start):
     q, ahead, momentum = start, start, 1.0
     for count in range(200_000):
         slip = (b.ravel() - matrix @ ahead.ravel()).reshape(b.shape)
-        moved = projected(ahead + length * slip, bound)
-        if np.sum((moved - q) * (ahead - moved)) > 0.0:
+        proposal = projected(ahead + length * slip, bound)
+        if np.sum((proposal - q) * (ahead - proposal)) > 0.0:
             momentum = 1.0
         following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
-        ahead = moved + (momentum - 1.0) / following * (moved - q)
-        change, q, momentum = np.abs(moved - q).max(), moved, following
+        ahead = proposal + (momentum - 1.0) / following * (proposal - q)
+        change, q, momentum = np.abs(proposal - q).max(), proposal, following
         if change < 1e-15 and count > 50:
             return q
     raise AssertionError("the reference did not converge")
@@ -59,7 +59,7 @@ def march(matrix, bound, displacement, phases, q, stages=2):
     def elastic(q):
         return (matrix @ q.ravel()).reshape(q.shape)
 
-    found = [q]
+    result = [q]
     for start, end in pairwise(phases):
         before = elastic(q) - displacement(start)  # minus the slip so far
         carried = 0.0
@@ -68,8 +68,8 @@ def march(matrix, bound, displacement, phases, q, stages=2):
             q = solved_stage(matrix, b, bound, q)
             carried = (1.0 - GAMMA) / GAMMA * (b - elastic(q))
         q = solved_stage(matrix, before + displacement(end) - carried, bound, q)
-        found.append(q)
-    return np.array(found)
+        result.append(q)
+    return np.array(result)
 
 
 def periodic(matrix, bound, displacement, phases, q, mirrored):
@@ -79,9 +79,9 @@ def periodic(matrix, bound, displacement, phases, q, mirrored):
     repeats, which takes few periods unless the forward motion is slow.
     """
     for _ in range(1000):
-        found = march(matrix, bound, displacement, phases, q)
-        change = np.abs(mirrored(found[-1]) - q).max()
-        q = mirrored(found[-1])
+        result = march(matrix, bound, displacement, phases, q)
+        change = np.abs(mirrored(result[-1]) - q).max()
+        q = mirrored(result[-1])
         if change < 1e-12:
-            return found
+            return result
     raise AssertionError("the reference did not become periodic")

@@ -57,7 +57,7 @@ def pulled_march(contact, displacement, phases, q, body, start, stages=2):
     def elastic(q):
         return (matrix @ q.ravel()).reshape(q.shape)
 
-    found, places = [q], [x]
+    result, places = [q], [x]
     for begin, end in pairwise(phases):
         g = (GAMMA if stages == 2 else 1.0) * (end - begin)
         stiffness = k + c / g + m / g**2
@@ -73,6 +73,6 @@ def pulled_march(contact, displacement, phases, q, body, start, stages=2):
             speed = (now - past_x) / g
             past_x, past_rate = x + share * (now - past_x), rate + share * (speed - past_rate)
         x, rate = now, speed
-        found.append(q)
+        result.append(q)
         places.append(x)
-    return np.array(found), np.array(places)
+    return np.array(result), np.array(places)

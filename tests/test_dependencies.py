@@ -67,8 +67,8 @@ def run_without_extras(*words):
 
 
 def test_a_point_needs_no_extra():
-    done = run_without_extras("point", "transverse", "--velocity", "0.1", "--amplitude", "0")
-    assert done.returncode == 0 and "mu_macro" in done.stdout
+    process = run_without_extras("point", "transverse", "--velocity", "0.1", "--amplitude", "0")
+    assert process.returncode == 0 and "mu_macro" in process.stdout
 
 
 @pytest.mark.parametrize(
@@ -79,9 +79,9 @@ def test_a_point_needs_no_extra():
     ],
 )
 def test_a_command_that_needs_an_extra_names_it(words, extra):
-    done = run_without_extras(*words)
-    assert done.returncode == 2
-    (line,) = done.stderr.splitlines()
+    process = run_without_extras(*words)
+    assert process.returncode == 2
+    (line,) = process.stderr.splitlines()
     assert f"microslip[{extra}]" in line
 
 

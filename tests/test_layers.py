@@ -68,12 +68,12 @@ def test_no_modules_import_each_other_in_a_circle():
 
 def test_physics_knows_no_files_workflow_or_plots():
     forbidden = {"xarray", "netCDF4", "matplotlib", "snakemake", "yaml", "json", "os", "pathlib"}
-    known = set()
+    names = set()
     for path in MODULES:
         files = path == LISTS_FILES or (path.parts[0] == "pressures" and path.stem in FROM_FILES)
         if path.parts[0] in PHYSICS and not files:
-            known |= {(str(path), name) for name in imported(path)[1] & forbidden}
-    assert not known
+            names |= {(str(path), name) for name in imported(path)[1] & forbidden}
+    assert not names
 
 
 def test_nothing_else_in_the_physics_knows_where_files_are():

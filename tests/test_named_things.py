@@ -41,13 +41,13 @@ def names_in(path):
 @pytest.fixture(scope="module")
 def modules():
     """Names in the modules by the name of a module, and modules by the name of a package."""
-    found = defaultdict(set)
+    result = defaultdict(set)
     for path in PACKAGE.rglob("*.py"):
         own = path.parent.name if path.stem == "__init__" else path.stem
-        found[own] |= set(names_in(path))
-        found[path.parent.name].add(path.stem)
-        found[path.parent.parent.name].add(path.parent.name)
-    return found
+        result[own] |= set(names_in(path))
+        result[path.parent.name].add(path.stem)
+        result[path.parent.parent.name].add(path.parent.name)
+    return result
 
 
 def prose(path):
@@ -75,8 +75,8 @@ def is_there(owner, name, modules):
 def test_classes_and_constants_named_in_prose_exist(modules):
 
     def unknown(words):
-        found = DOTTED.finditer(words)
-        return [match[0] for match in found if not is_there(match[1], match[2], modules)]
+        result = DOTTED.finditer(words)
+        return [match[0] for match in result if not is_there(match[1], match[2], modules)]
 
     gone = [
         f"{path.relative_to(ROOT)}: line {line}: {name}"

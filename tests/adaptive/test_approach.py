@@ -76,9 +76,9 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     # free_limit assumes a constant exponent
     assert abs(free_limit(mu) - exact) <= error.max() + 0.05 * excess[-1]
     assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
-    found = exponents(SLOW, excess)
-    assert found.min() > 0.6 and found.max() < 0.75
-    assert np.all(np.diff(found) > 0.0)
+    result = exponents(SLOW, excess)
+    assert result.min() > 0.6 and result.max() < 0.75
+    assert np.all(np.diff(result) > 0.0)
     # the limit differs from Eq 11 of the paper
     assert abs(free_limit(mu) - float(paper.static_transverse(amplitude))) > 100 * error.max()
 
@@ -92,8 +92,8 @@ def test_bore_marches_fall_to_the_closed_form():
     assert abs(free_limit(mu) - exact) <= error.max()
     excess = mu - exact
     assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
-    found = exponents(SLOW, excess)
-    assert found.min() > 0.68 and found.max() < 0.8
+    result = exponents(SLOW, excess)
+    assert result.min() > 0.68 and result.max() < 0.8
     assert abs(free_limit(mu) - float(paper.static_bore(1.0))) > 100 * error.max()
 
 

@@ -25,13 +25,13 @@ SLOW = ("transverse", 1e-9, 0.5)
 @pytest.mark.slow
 def test_a_point_that_would_take_hours_ends_as_not_converged():
     """The limit is checked inside a run: the first run alone would take ten times the work."""
-    found = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
-    assert not found.converged and found.exhausted == "work"
-    assert found.reason.startswith("the work that the point may take, 5e+05, is spent")
-    assert 5e5 < found.effort.work < 6e5  # at most one march more
+    result = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
+    assert not result.converged and result.exhausted == "work"
+    assert result.reason.startswith("the work that the point may take, 5e+05, is spent")
+    assert 5e5 < result.effort.work < 6e5  # at most one march more
     again = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
-    assert again.effort == found.effort
-    assert np.array_equal(again.mu_macro, found.mu_macro, equal_nan=True)
+    assert again.effort == result.effort
+    assert np.array_equal(again.mu_macro, result.mu_macro, equal_nan=True)
 
 
 @pytest.mark.slow
@@ -50,16 +50,16 @@ def test_what_is_known_by_then_is_told():
 @pytest.mark.parametrize("model", MODELS)
 def test_every_point_has_a_bound(monkeypatch, model):
     """The default limit is finite and far above the work of this point."""
-    seen = []
+    calls = []
 
     def noted(most_work, time_limit):
-        seen.append((most_work, time_limit))
+        calls.append((most_work, time_limit))
         return Budget(most_work, time_limit)
 
     monkeypatch.setattr(request, "Budget", noted)
-    found = microslip.solve("transverse", 0.3, 1.0, model=model, tolerance=0.1)
-    ((most_work, time_limit),) = seen
-    assert found.effort.work < 1e-2 * most_work < np.inf
+    result = microslip.solve("transverse", 0.3, 1.0, model=model, tolerance=0.1)
+    ((most_work, time_limit),) = calls
+    assert result.effort.work < 1e-2 * most_work < np.inf
     assert time_limit == np.inf
 
 
@@ -80,9 +80,9 @@ def test_every_march_counts():
 
 
 def test_the_time_limit_ends_a_point_and_says_so():
-    found = microslip.solve(*SLOW, tolerance=1e-6, time_limit=1e-9)
-    assert not found.converged and found.exhausted == "time"
-    assert found.reason.startswith("the time limit of 1e-09 s is over")
+    result = microslip.solve(*SLOW, tolerance=1e-6, time_limit=1e-9)
+    assert not result.converged and result.exhausted == "time"
+    assert result.reason.startswith("the time limit of 1e-09 s is over")
     assert microslip.solve("transverse", 0.3, 1.0, time_limit=1e9).converged
 
 
@@ -94,8 +94,8 @@ def test_bad_bounds_are_refused(name, value):
 
 
 def test_an_answer_that_ran_out_of_time_is_not_kept(tmp_path):
-    found = microslip.solve_stored(*SLOW, tolerance=1e-4, results=tmp_path, time_limit=1e-9)
-    assert found.exhausted == "time" and not list(tmp_path.rglob("*.json"))
+    result = microslip.solve_stored(*SLOW, tolerance=1e-4, results=tmp_path, time_limit=1e-9)
+    assert result.exhausted == "time" and not list(tmp_path.rglob("*.json"))
 
 
 # Ctrl-C
@@ -144,8 +144,8 @@ def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatc
     monkeypatch.setattr(system_contact, "march", broken_once)
     before = signal.signal(signal.SIGINT, lambda *_: heard.append(True))
     try:
-        found = contact.march(path, state, 1e-8)
+        result = contact.march(path, state, 1e-8)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert np.array_equal(found.forces, expected.forces)
+    assert np.array_equal(result.forces, expected.forces)
     assert len(calls) == 2 and heard == [True]

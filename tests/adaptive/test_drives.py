@@ -47,23 +47,23 @@ def apart(one, other):
 def test_a_fast_contact_on_a_spring_has_the_friction_of_the_energy_bound(body):
     """The bound does not depend on Poisson's ratio, so that rings at ratio 0 can check it."""
     place = ("transverse", 9.24, 0.871)
-    found = microslip.solve(*place, **body, poisson=0.3, tolerance=1e-2, time_limit=1.0)
-    assert found.converged and found.model == "closed-form"
-    assert found.mu_macro + found.mu_macro_error == pytest.approx(1.0, abs=1e-9)
-    assert found.mu_macro_error < 0.5 / (9.24 / 0.871) ** 2
+    result = microslip.solve(*place, **body, poisson=0.3, tolerance=1e-2, time_limit=1.0)
+    assert result.converged and result.model == "closed-form"
+    assert result.mu_macro + result.mu_macro_error == pytest.approx(1.0, abs=1e-9)
+    assert result.mu_macro_error < 0.5 / (9.24 / 0.871) ** 2
     marched = microslip.solve(*place, **body, model="radial", tolerance=1e-3)
-    assert marched.converged and apart(found, marched) <= 1.0
+    assert marched.converged and apart(result, marched) <= 1.0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("body", ENDLESS)
 @pytest.mark.parametrize("place", PLACES)
 def test_what_does_not_give_way_has_the_friction_of_the_velocity(place, body):
-    moved = microslip.solve(*PLACES[place])
-    pulled = microslip.solve(*PLACES[place], **ENDLESS[body])
-    assert moved.converged and pulled.converged
-    assert apart(moved, pulled) < 1.0
-    assert abs(moved.mu_macro - pulled.mu_macro) < 1.5e-3
+    at_velocity = microslip.solve(*PLACES[place])
+    under_force = microslip.solve(*PLACES[place], **ENDLESS[body])
+    assert at_velocity.converged and under_force.converged
+    assert apart(at_velocity, under_force) < 1.0
+    assert abs(at_velocity.mu_macro - under_force.mu_macro) < 1.5e-3
 
 
 @pytest.mark.slow
@@ -139,15 +139,15 @@ def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
 
 def moving_at(problem, drive, cells=24, steps=64, method=None):
     settings = Settings() if method is None else Settings(method)
-    found = simulate_driven(
+    result = simulate_driven(
         replace(problem, drive=drive),
         "radial",
         Resolution(cells, 1, steps),
         Accuracy(1e-5),
         settings,
     )
-    assert found.converged
-    return found
+    assert result.converged
+    return result
 
 
 def test_a_force_next_to_the_limit_is_told_from_it_by_a_finer_limit():
@@ -157,8 +157,10 @@ def test_a_force_next_to_the_limit_is_told_from_it_by_a_finer_limit():
     """
     limit = microslip.solve("transverse", 0.0, 1e-3).mu_macro
     assert limit > 0.9995
-    found = microslip.solve("transverse", amplitude=1e-3, force=0.9975, poisson=0.3, tolerance=1e-2)
-    assert (found.velocity, found.velocity_error, found.converged) == (0.0, 0.0, True)
+    result = microslip.solve(
+        "transverse", amplitude=1e-3, force=0.9975, poisson=0.3, tolerance=1e-2
+    )
+    assert (result.velocity, result.velocity_error, result.converged) == (0.0, 0.0, True)
 
 
 def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
@@ -168,20 +170,22 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
     """
     limit = microslip.solve("transverse", 0.0, 1e-3, poisson=0.3)
     assert abs(limit.mu_macro - 0.9998) < limit.mu_macro_error
-    found = microslip.solve("transverse", amplitude=1e-3, force=0.9998, poisson=0.3, tolerance=1e-2)
-    assert math.isnan(found.velocity) and found.velocity_error == math.inf
-    assert not found.converged and "force threshold" in found.reason
+    result = microslip.solve(
+        "transverse", amplitude=1e-3, force=0.9998, poisson=0.3, tolerance=1e-2
+    )
+    assert math.isnan(result.velocity) and result.velocity_error == math.inf
+    assert not result.converged and "force threshold" in result.reason
 
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
-    def unsolved(asked, accuracy):
+    def unsolved(request, accuracy):
         refined = unknown("a step was left unsolved", Ladder(1, 0, 0))
         return replace(refined, value=Estimate(5.4, {"solver": 1e9}))
 
     monkeypatch.setattr(driven_contact, "_refined", unsolved)
-    found = microslip.solve("transverse", amplitude=1.0, force=0.8)
-    assert math.isnan(found.velocity) and found.velocity_error == math.inf
-    assert (found.converged, found.reason) == (False, "a step was left unsolved")
+    result = microslip.solve("transverse", amplitude=1.0, force=0.8)
+    assert math.isnan(result.velocity) and result.velocity_error == math.inf
+    assert (result.converged, result.reason) == (False, "a step was left unsolved")
 
 
 def test_a_heavy_contact_that_oscillates_along_the_force_moves_from_its_static_limit_on():
@@ -213,9 +217,9 @@ def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
     """The force P is the cosine of the slip direction: v = P |w| / sqrt(1 - P^2), mean |w| = 2/pi
     A."""
     rigid = 2.0 / np.pi * force / math.sqrt(1.0 - force**2)
-    found = [microslip.solve("transverse", amplitude=a, force=force) for a in (50.0, 400.0)]
-    left = [abs(one.velocity / one.amplitude - rigid) / rigid for one in found]
-    assert all(one.converged for one in found)
+    result = [microslip.solve("transverse", amplitude=a, force=force) for a in (50.0, 400.0)]
+    left = [abs(one.velocity / one.amplitude - rigid) / rigid for one in result]
+    assert all(one.converged for one in result)
     assert left[1] < 0.004 and left[1] < 0.4 * left[0]
 
 
@@ -223,15 +227,15 @@ def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
 def test_large_bore_amplitudes_are_those_of_a_rigid_contact():
     """Eq 21 holds at every instant for the ratio of velocity and rotation, whose mean is 2/pi."""
     steady = brentq(lambda v: paper.bore_forward(v) - 0.5, 0.1, 2.0)
-    found = [microslip.solve("bore", amplitude=a, force=0.5) for a in (30.0, 200.0)]
-    left = [abs(one.velocity - 2.0 / np.pi * steady) for one in found]
-    assert all(one.converged for one in found)
+    result = [microslip.solve("bore", amplitude=a, force=0.5) for a in (30.0, 200.0)]
+    left = [abs(one.velocity - 2.0 / np.pi * steady) for one in result]
+    assert all(one.converged for one in result)
     assert left[1] < 0.003 and left[1] < 0.5 * left[0]
 
 
 def test_a_force_on_a_steady_bore_inverts_equation_21():
-    found = microslip.solve("continuous-bore", force=0.6)
-    assert paper.bore_forward(found.velocity) == pytest.approx(0.6, abs=1e-9)
+    result = microslip.solve("continuous-bore", force=0.6)
+    assert paper.bore_forward(result.velocity) == pytest.approx(0.6, abs=1e-9)
     spring = microslip.solve("continuous-bore", 0.3, stiffness=0.1, mass=2.0)
     assert spring.mu_macro == microslip.solve("continuous-bore", 0.3).mu_macro
 
@@ -242,13 +246,13 @@ def test_a_force_on_a_steady_bore_inverts_equation_21():
     [pytest.param({"velocity": 0.1, "stiffness": 0.5}, marks=pytest.mark.long), {"force": 0.5}],
 )
 def test_rings_angular_points_and_squares_agree(drive):
-    found = {
+    result = {
         model: microslip.solve("transverse", amplitude=1.0, model=model, tolerance=t, **drive)
         for model, t in (("radial", 1e-3), ("polar", 1e-3), ("cartesian", 1e-2))
     }
-    assert all(one.converged for one in found.values())
+    assert all(one.converged for one in result.values())
     for name in ("polar", "cartesian"):
-        one, other = found["radial"], found[name]
+        one, other = result["radial"], result[name]
         if "force" in drive:
             error = one.velocity_error + other.velocity_error
             assert one.velocity == pytest.approx(other.velocity, abs=error)
@@ -269,10 +273,10 @@ def test_a_force_moves_the_contact_faster_than_the_friction_of_a_velocity_says(
     amplitude, force, velocity
 ):
     """Values of an independent prototype with 20 to 24 rings, accurate to one percent."""
-    found = microslip.solve("transverse", amplitude=amplitude, force=force, tolerance=1e-4)
-    assert found.velocity == pytest.approx(velocity, rel=0.01)
-    moved = microslip.solve("transverse", found.velocity, amplitude)
-    assert moved.mu_macro - moved.mu_macro_error > force
+    result = microslip.solve("transverse", amplitude=amplitude, force=force, tolerance=1e-4)
+    assert result.velocity == pytest.approx(velocity, rel=0.01)
+    at_velocity = microslip.solve("transverse", result.velocity, amplitude)
+    assert at_velocity.mu_macro - at_velocity.mu_macro_error > force
 
 
 SPRINGS = {
@@ -296,8 +300,8 @@ def test_friction_through_a_spring_is_that_of_the_prototype(body):
     problem = Problem(motion_named("transverse"), 0.1, 1.0, 0.0)
     euler = Method("backward Euler", integrator=EULER)
     stiffness, mass = body
-    found = moving_at(problem, Spring(stiffness=stiffness, mass=mass), method=euler)
-    assert found.mu == pytest.approx(SPRINGS[body], rel=0.003)
+    result = moving_at(problem, Spring(stiffness=stiffness, mass=mass), method=euler)
+    assert result.mu == pytest.approx(SPRINGS[body], rel=0.003)
 
 
 # A period that begins without contact, and a body without memory
@@ -318,23 +322,23 @@ def springs_on_a_spring(velocity, amplitude, stiffness, count, steps):
     for k in range(1, steps + 1):
         overlap = np.maximum(load[k] ** (2.0 / 3.0) - x**2, 0.0)
 
-        def moved(step, k=k, stretch=stretch, overlap=overlap):
+        def stretch_at(step, k=k, stretch=stretch, overlap=overlap):
             return np.clip(stretch + step, -overlap, overlap)
 
-        def left(step, k=k, place=place, moved=moved):
-            return moved(step) @ width - stiffness * (velocity * phase[k] - place - step)
+        def imbalance(step, k=k, place=place, stretch_at=stretch_at):
+            return stretch_at(step) @ width - stiffness * (velocity * phase[k] - place - step)
 
-        step = brentq(left, -10.0, 10.0, xtol=1e-12)
-        stretch, place = moved(step), place + step
+        step = brentq(imbalance, -10.0, 10.0, xtol=1e-12)
+        stretch, place = stretch_at(step), place + step
         force[k] = stretch @ width
     return force[:-1].mean() / load[:-1].mean()
 
 
 def test_a_soft_spring_pulls_a_contact_that_lifts_off():
-    found = microslip.solve("normal", 0.4, 1.35, stiffness=0.05)
+    result = microslip.solve("normal", 0.4, 1.35, stiffness=0.05)
     expected = springs_on_a_spring(0.4, 1.35, 0.05, 400, 1000)  # 0.03288 with 1600 and 4000
-    assert found.converged
-    assert abs(found.mu_macro - expected) <= found.mu_macro_error
+    assert result.converged
+    assert abs(result.mu_macro - expected) <= result.mu_macro_error
 
 
 @pytest.mark.slow
@@ -370,9 +374,9 @@ def fail(resolution):
 def test_a_steady_rotation_is_refused_only_where_rounding_hides_its_velocity():
     with pytest.raises(InputError, match="force = .*: allowed is a force below 0.9999999 "):
         microslip.solve("continuous-bore", force=1.0 - 1e-9)
-    found = microslip.solve("continuous-bore", force=1.0 - 1e-6)
+    result = microslip.solve("continuous-bore", force=1.0 - 1e-6)
     # 1 - 0.1 / v^2, the series of Eq 21 for fast sliding
-    assert found.velocity == pytest.approx(np.sqrt(0.1e6), rel=1e-5)
+    assert result.velocity == pytest.approx(np.sqrt(0.1e6), rel=1e-5)
 
 
 def test_where_nothing_has_to_be_found_any_force_is_answered():
@@ -398,22 +402,22 @@ def test_the_softest_spring_allowed_has_the_friction_of_a_soft_one():
 def test_a_fast_contact_is_where_its_friction_is_the_force():
     """Friction hardly rises there, so a small unbalanced force is a large error of the velocity."""
     place = {"amplitude": 15.0, "force": 0.93, "mass": 1.0}
-    found, finer = (microslip.solve("elliptic", **place, tolerance=t) for t in (2e-3, 1e-4))
-    assert found.converged and finer.converged
-    error = found.velocity_error + finer.velocity_error
-    assert found.velocity == pytest.approx(finer.velocity, abs=error)
+    result, finer = (microslip.solve("elliptic", **place, tolerance=t) for t in (2e-3, 1e-4))
+    assert result.converged and finer.converged
+    error = result.velocity_error + finer.velocity_error
+    assert result.velocity == pytest.approx(finer.velocity, abs=error)
 
 
 def test_a_small_mass_that_moves_far_slower_than_a_contact_without_mass_is_solved():
     """The tolerance is relative to the resulting velocity, not to the initial estimate."""
     place = {"amplitude": 4.189, "force": 0.2761, "mass": 0.04953, "poisson": 0.3}
     motion, pressure = "elliptic:forward=0.5,phase=0,forward_cycles=2", "power:exponent=8"
-    found, finer = (
+    result, finer = (
         microslip.solve(motion, **place, pressure=pressure, tolerance=t) for t in (1e-3, 5e-4)
     )
-    assert found.converged and finer.converged and found.velocity_error <= 1e-3
-    error = found.velocity_error + finer.velocity_error
-    assert found.velocity == pytest.approx(finer.velocity, abs=error)
+    assert result.converged and finer.converged and result.velocity_error <= 1e-3
+    error = result.velocity_error + finer.velocity_error
+    assert result.velocity == pytest.approx(finer.velocity, abs=error)
 
 
 LIGHT = {
@@ -428,18 +432,18 @@ LIGHT = {
 @pytest.mark.parametrize(("place", "velocity"), LIGHT.values(), ids=LIGHT)
 def test_steps_resolve_the_natural_oscillation_of_a_light_mass(place, velocity, tolerance):
     """The expected velocities come from runs with 3072 imposed steps in a period."""
-    found = microslip.solve("zigzag", **place, tolerance=tolerance)
-    assert found.converged
-    assert found.velocity == pytest.approx(velocity, abs=found.velocity_error)
+    result = microslip.solve("zigzag", **place, tolerance=tolerance)
+    assert result.converged
+    assert result.velocity == pytest.approx(velocity, abs=result.velocity_error)
 
 
 @pytest.mark.slow
 def test_steps_resolve_a_light_mass_on_a_spring():
     """The expected friction comes from a run with 48 rings and 4056 imposed steps in a period."""
     body = {"stiffness": 0.3379, "mass": 0.001225}
-    found = microslip.solve("zigzag", 0.948, 1.93, **body, pressure="punch")
-    assert found.converged
-    assert found.mu_macro == pytest.approx(0.773748, abs=found.mu_macro_error)
+    result = microslip.solve("zigzag", 0.948, 1.93, **body, pressure="punch")
+    assert result.converged
+    assert result.mu_macro == pytest.approx(0.773748, abs=result.mu_macro_error)
 
 
 @pytest.mark.slow
@@ -449,18 +453,18 @@ def test_steps_resolve_a_light_mass_on_a_spring():
     ids=["free", "imposed"],
 )
 def test_a_mass_too_light_for_the_steps_is_not_converged(mass, imposed):
-    found = microslip.solve(
+    result = microslip.solve(
         "zigzag", amplitude=2.356, force=0.8082, mass=mass, tolerance=1e-2, **imposed
     )
-    assert not found.converged
-    assert found.reason.startswith("mass too small")
+    assert not result.converged
+    assert result.reason.startswith("mass too small")
 
 
 def test_what_runs_away_says_so():
     for force in (1.0, 1.7):
-        found = microslip.solve("transverse", amplitude=0.5, force=force)
-        assert not found.converged and math.isnan(found.velocity)
-        assert found.reason.startswith("runs away: ")
+        result = microslip.solve("transverse", amplitude=0.5, force=force)
+        assert not result.converged and math.isnan(result.velocity)
+        assert result.reason.startswith("runs away: ")
     light = microslip.solve("normal:lateral=1", amplitude=0.5, force=0.6)
     assert light.reason.startswith("runs away: without mass")
 
@@ -476,9 +480,9 @@ def test_the_error_of_the_static_limit_is_part_of_the_answer():
     0."""
     limit = microslip.solve("transverse", 0.0, 0.5, model="radial")
     assert limit.mu_macro_error > 1e-6
-    found = microslip.solve("transverse", amplitude=0.5, force=limit.mu_macro, model="radial")
-    assert found.converged
-    assert found.velocity - found.velocity_error <= 0.0 <= found.velocity
+    result = microslip.solve("transverse", amplitude=0.5, force=limit.mu_macro, model="radial")
+    assert result.converged
+    assert result.velocity - result.velocity_error <= 0.0 <= result.velocity
 
 
 def test_equal_questions_have_equal_answers():

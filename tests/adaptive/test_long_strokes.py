@@ -17,9 +17,11 @@ def test_a_zigzag_is_that_of_a_rigid_contact(velocity, amplitude, tolerance):
     which raises the friction by at most u_lim over the stroke."""
     problem = Problem(motion_named("zigzag"), velocity, amplitude)
     rigid = 1.0 / np.hypot(1.0, 2.0 / np.pi * problem.stroke / problem.drift)
-    found = microslip.solve("zigzag", velocity, amplitude, tolerance=tolerance)
-    assert found.converged
-    assert -found.mu_macro_error <= found.mu_macro - rigid <= 1.0 / amplitude + found.mu_macro_error
+    result = microslip.solve("zigzag", velocity, amplitude, tolerance=tolerance)
+    assert result.converged
+    assert (
+        -result.mu_macro_error <= result.mu_macro - rigid <= 1.0 / amplitude + result.mu_macro_error
+    )
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), PLACES)
@@ -37,6 +39,6 @@ def test_several_contacts_with_long_strokes_are_each_alone():
     """At a prescribed velocity contacts do not interact."""
     place, tolerance = ("transverse", 115.0, 50000.0), {"tolerance": 1e-3}
     alone = microslip.solve(*place, **tolerance)
-    found = microslip.solve(*place, contacts="phase=0;phase=90", **tolerance)
-    error = alone.mu_macro_error + found.mu_macro_error
-    assert found.converged and found.mu_macro == pytest.approx(alone.mu_macro, abs=error)
+    result = microslip.solve(*place, contacts="phase=0;phase=90", **tolerance)
+    error = alone.mu_macro_error + result.mu_macro_error
+    assert result.converged and result.mu_macro == pytest.approx(alone.mu_macro, abs=error)

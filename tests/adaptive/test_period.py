@@ -31,79 +31,79 @@ def given(request):
 
 @pytest.mark.slow
 def test_the_mean_force_is_the_certified_one(given):
-    (motion, velocity, amplitude, poisson), found = given
+    (motion, velocity, amplitude, poisson), result = given
     answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)
-    assert found.converged
-    mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
+    assert result.converged
+    mean = np.trapezoid(result.force_forward, result.phase) / (2 * np.pi)
     assert mean == pytest.approx(answer.mu_macro, abs=2e-3)
     # under an oscillating load, mu_macro resolves the change of the contact area within steps
-    assert mean == pytest.approx(found.mu_macro, abs=1e-3 if motion.startswith("normal") else 1e-5)
+    assert mean == pytest.approx(result.mu_macro, abs=1e-3 if motion.startswith("normal") else 1e-5)
 
 
 def test_a_period_ends_where_it_began(given):
-    _, found = given
+    _, result = given
     for name in ("traction_forward", "traction_lateral"):
-        rows = getattr(found, name)
-        assert np.abs(rows[-1] - rows[0]).max() < 1e-3 * found.bound.max()
+        rows = getattr(result, name)
+        assert np.abs(rows[-1] - rows[0]).max() < 1e-3 * result.bound.max()
 
 
 def test_every_point_slips_forward_as_far_as_the_sphere_moves(given):
-    _, found = given
-    travel = found.forward[-1] - found.forward[0]
-    assert found.slip_forward[1:].sum(axis=0) == pytest.approx(travel, rel=1e-3)
+    _, result = given
+    travel = result.forward[-1] - result.forward[0]
+    assert result.slip_forward[1:].sum(axis=0) == pytest.approx(travel, rel=1e-3)
 
 
 def test_tractions_keep_to_the_bound_and_oppose_no_more_than_slip(given):
-    _, found = given
-    size = np.hypot(found.traction_forward, found.traction_lateral)
-    assert (size <= found.bound * (1 + 1e-9) + 1e-15).all()
-    slip = np.hypot(found.slip_forward, found.slip_lateral)
-    bound = np.broadcast_to(found.bound, slip.shape)
+    _, result = given
+    size = np.hypot(result.traction_forward, result.traction_lateral)
+    assert (size <= result.bound * (1 + 1e-9) + 1e-15).all()
+    slip = np.hypot(result.slip_forward, result.slip_lateral)
+    bound = np.broadcast_to(result.bound, slip.shape)
     held = (bound > 0.0) & (np.concatenate([bound[-2:-1], bound[:-1]]) > 0.0)
     # large slip, in contact during the whole step
-    sliding = found.slips & (slip > 0.2 * slip.max()) & held
-    cosine = found.slip_forward * found.traction_forward
-    cosine += found.slip_lateral * found.traction_lateral
+    sliding = result.slips & (slip > 0.2 * slip.max()) & held
+    cosine = result.slip_forward * result.traction_forward
+    cosine += result.slip_lateral * result.traction_lateral
     assert (cosine[sliding] > 0.9 * (slip * size)[sliding]).all()
-    assert slip[~found.slips & held].max() < 0.3 * slip.max()
+    assert slip[~result.slips & held].max() < 0.3 * slip.max()
 
 
 def test_the_work_of_the_forces_is_dissipated(given):
-    (motion, *_), found = given
+    (motion, *_), result = given
 
     def work(force, way):
         return np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(way))
 
-    spent = work(found.force_forward, found.forward) + work(found.force_lateral, found.lateral)
-    spent += TORQUE_FULL_SLIP * work(found.torque, found.angle)
-    size = np.hypot(found.slip_forward, found.slip_lateral)
-    bound = np.broadcast_to(found.bound, size.shape)
+    spent = work(result.force_forward, result.forward) + work(result.force_lateral, result.lateral)
+    spent += TORQUE_FULL_SLIP * work(result.torque, result.angle)
+    size = np.hypot(result.slip_forward, result.slip_lateral)
+    bound = np.broadcast_to(result.bound, size.shape)
     between = 0.5 * (bound[1:] + bound[:-1])  # the bound can change in a step
-    lost = np.sum(found.area * between * size[1:])
+    lost = np.sum(result.area * between * size[1:])
     assert spent == pytest.approx(lost, rel=0.03), motion
 
 
 def test_areas_fill_the_disc_and_carry_the_load(given):
-    (motion, _, amplitude, _), found = given
+    (motion, _, amplitude, _), result = given
     load = np.ones(1)
     if motion.startswith("normal"):
         cycles = 2.0 if "normal_cycles=2" in motion else 1.0
-        load = 1.0 + amplitude * np.sin(cycles * found.phase)
+        load = 1.0 + amplitude * np.sin(cycles * result.phase)
     largest = load.max() ** (2.0 / 3.0)  # a is proportional to the cube root of the load
-    assert found.area.sum() == pytest.approx(np.pi * largest, rel=1e-3)
-    assert (found.bound * found.area).sum(axis=-1) == pytest.approx(load, rel=1e-9)
-    assert np.sum(found.area * found.lateral_position) == pytest.approx(0.0, abs=1e-12)
+    assert result.area.sum() == pytest.approx(np.pi * largest, rel=1e-3)
+    assert (result.bound * result.area).sum(axis=-1) == pytest.approx(load, rel=1e-9)
+    assert np.sum(result.area * result.lateral_position) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_contact_never_slides_fully_near_the_static_limit():
-    found = microslip.period("bore", 0.01, 1.0)
-    assert not found.slips.all(axis=1).any()
+    result = microslip.period("bore", 0.01, 1.0)
+    assert not result.slips.all(axis=1).any()
     inside = paper.bore_stick_radius(1.0) * 0.5
-    core = np.hypot(found.forward_position, found.lateral_position) < inside
+    core = np.hypot(result.forward_position, result.lateral_position) < inside
     # the slip patches alternate between right and left
-    right = core & (found.lateral_position > 0.3 * inside)
-    left = core & (found.lateral_position < -0.3 * inside)
-    lead = found.slips[:, right].mean(axis=1) - found.slips[:, left].mean(axis=1)
+    right = core & (result.lateral_position > 0.3 * inside)
+    left = core & (result.lateral_position < -0.3 * inside)
+    lead = result.slips[:, right].mean(axis=1) - result.slips[:, left].mean(axis=1)
     half = len(lead) // 2
     assert lead[: half + 1] == pytest.approx(-lead[half:], abs=0.05)
     assert lead.max() > 0.5
@@ -131,13 +131,13 @@ def test_odd_counts_are_refused(name):
 @pytest.mark.parametrize("pressure", ["power:exponent=1", "ring"])
 def test_a_period_under_another_pressure(pressure):
     """The bound is that of the pressure, and the mean force agrees with `solve`."""
-    found = microslip.period("bore", 0.3, 1.0, pressure=pressure, cells=24, angles=16, steps=96)
+    result = microslip.period("bore", 0.3, 1.0, pressure=pressure, cells=24, angles=16, steps=96)
     answer = microslip.solve("bore", 0.3, 1.0, pressure=pressure, tolerance=5e-3)
-    assert found.converged
-    assert float(found.area @ found.bound) == pytest.approx(1.0)
-    size = np.hypot(found.traction_forward, found.traction_lateral)
-    assert np.all(size <= found.bound * (1.0 + 1e-9))
-    assert found.mu_macro == pytest.approx(answer.mu_macro, abs=1e-2)
+    assert result.converged
+    assert float(result.area @ result.bound) == pytest.approx(1.0)
+    size = np.hypot(result.traction_forward, result.traction_lateral)
+    assert np.all(size <= result.bound * (1.0 + 1e-9))
+    assert result.mu_macro == pytest.approx(answer.mu_macro, abs=1e-2)
 
 
 def test_a_period_needs_a_pressure_that_rings_can_take():

@@ -307,11 +307,11 @@ def test_equal_inputs_give_equal_bits(motion, amplitude, nu):
 
 
 def test_progress_sees_every_run():
-    seen = []
-    result = microslip.solve("transverse", 0.3, 1.2, progress=seen.append)
-    assert len(seen) == len(set(seen)) >= 3
-    assert max(r.cells for r in seen) == result.cells
-    assert 2 * max(r.steps for r in seen) == result.steps_per_period
+    calls = []
+    result = microslip.solve("transverse", 0.3, 1.2, progress=calls.append)
+    assert len(calls) == len(set(calls)) >= 3
+    assert max(r.cells for r in calls) == result.cells
+    assert 2 * max(r.steps for r in calls) == result.steps_per_period
 
 
 def test_warm_up_leaves_a_working_solver():
@@ -390,13 +390,13 @@ def test_periods_are_full_ones_whatever_a_lap_is():
 
 
 def test_what_has_no_periods_counts_none():
-    for found in (
+    for result in (
         microslip.solve("continuous-bore", 0.5, model="polar", tolerance=1e-2),
         microslip.solve("transverse", 0.0, 0.5),
         microslip.solve("transverse", 0.0, 0.5, model="radial", tolerance=1e-2),
         microslip.solve("transverse", 0.5, 0.0),
     ):
-        assert found.periods == 0 and found.steps_per_period == 0
+        assert result.periods == 0 and result.steps_per_period == 0
 
 
 # Forces over the mean load
@@ -409,15 +409,15 @@ def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
     from microslip.solver import simulate as module
     from microslip.solver.method import SHIPPED
 
-    seen, run = [], module._run
+    calls, run = [], module._run
 
     def noted(motion, model, resolution, tolerance, *rest):
-        seen.append((resolution.steps, tolerance / motion.mean_load))
+        calls.append((resolution.steps, tolerance / motion.mean_load))
         return run(motion, model, resolution, tolerance, *rest)
 
     monkeypatch.setattr(module, "_run", noted)
     method = replace(SHIPPED, extrapolated=True)
     problem = Problem(motion_named("normal"), 0.3, 0.9, 0.0)
     simulate(problem, "radial", Resolution(8, 1, 16), 1e-4, settings=module.Settings(method))
-    assert [steps for steps, _ in seen] == [16, 8]
-    assert [tolerance for _, tolerance in seen] == pytest.approx([1e-4, 1e-4])
+    assert [steps for steps, _ in calls] == [16, 8]
+    assert [tolerance for _, tolerance in calls] == pytest.approx([1e-4, 1e-4])

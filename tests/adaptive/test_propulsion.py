@@ -179,16 +179,16 @@ def test_marched_back_without_a_mirror():
     for _ in range(4):
         march = contact.march(path, state, 1e-8)
         state = march.state
-    found = microslip.solve(problem.motion.name, velocity, 1.0)
+    result = microslip.solve(problem.motion.name, velocity, 1.0)
     mean = float(path.mean(march.forces)[FORWARD])
     # 1e-3: discretisation error of the march
-    assert abs(found.mu_macro - mean) <= found.mu_macro_error + 1e-3
+    assert abs(result.mu_macro - mean) <= result.mu_macro_error + 1e-3
 
 
 def test_a_rigid_contact_pushed_back():
-    found = microslip.solve(EIGHT, -0.7, 1.0, model="rigid")
-    assert abs(found.mu_macro - rigid_eight(-0.7)[0]) <= found.mu_macro_error
-    assert found.velocity == -0.7
+    result = microslip.solve(EIGHT, -0.7, 1.0, model="rigid")
+    assert abs(result.mu_macro - rigid_eight(-0.7)[0]) <= result.mu_macro_error
+    assert result.velocity == -0.7
 
 
 @pytest.mark.slow
@@ -267,8 +267,8 @@ def test_a_line_that_would_take_too_long_is_given_up():
 @pytest.mark.slow
 def test_a_line_within_its_bounds_is_the_same():
     free, bound = (
-        microslip.propulsion(EIGHT, 1.0, tolerance=1e-2, points=3, **given).to_dict()
-        for given in ({}, {"most_work": 1e12, "time_limit": 1e6})
+        microslip.propulsion(EIGHT, 1.0, tolerance=1e-2, points=3, **settings).to_dict()
+        for settings in ({}, {"most_work": 1e12, "time_limit": 1e6})
     )
     free.pop("solve_time_s"), bound.pop("solve_time_s")
     assert free == bound

@@ -102,11 +102,11 @@ def independent_march(rows, load, rings, substeps):
             inside = force * (1 - np.clip(1 - (edges / radius) ** 2, 0.0, None) ** 1.5)
             bound = np.diff(inside) / (np.pi * np.diff(edges**2))
 
-            def moved(phase):
+            def displacement(phase):
                 place = [np.interp(phase, np.arange(len(rows)), column) for column in rows.T]
                 return np.repeat(np.array(place)[:, None], rings, axis=1)
 
-            state = reference_march.march(matrix, bound, moved, at, state, stages=1)[-1]
+            state = reference_march.march(matrix, bound, displacement, at, state, stages=1)[-1]
         forces.append((contact.weight * state).sum(axis=1))
     return np.array(forces)
 

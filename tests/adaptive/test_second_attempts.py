@@ -43,25 +43,25 @@ def test_what_converges_is_run_once():
 
 def test_tighter_steps_come_first():
     run_at = Stubborn(easy=0.5, reach=1.0, careless=False)
-    found = continuation.run_safely(run_at, 1.0, None)
-    assert (found.converged, found.effort.retried, found.effort.work) == (True, 1, 20)
+    result = continuation.run_safely(run_at, 1.0, None)
+    assert (result.converged, result.effort.retried, result.effort.work) == (True, 1, 20)
 
 
 @pytest.mark.parametrize("reach", [8.0, 3.0, 1.5, 1.2])
 def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
     run_at = Stubborn(easy=100.0, reach=reach)
-    found = continuation.run_safely(run_at, 1.0, None)
-    assert found.converged and found.mu == 1.0 and found.effort.retried == 1
-    assert found.effort.work == 10 * len(run_at.asked)
+    result = continuation.run_safely(run_at, 1.0, None)
+    assert result.converged and result.mu == 1.0 and result.effort.retried == 1
+    assert result.effort.work == 10 * len(run_at.asked)
     assert run_at.asked[-1] == 1.0
 
 
 def test_a_failure_is_told_as_the_first_attempt_tells_it():
     for run_at in (Stubborn(easy=100.0, reach=1.1), Stubborn(easy=1e99, reach=1.1)):
-        found = continuation.run_safely(run_at, 1.0, None)
-        assert not found.converged
-        assert found.reason == "failed at 1"
-        assert found.effort.updates == 5 * len(run_at.asked) < 5 * 100
+        result = continuation.run_safely(run_at, 1.0, None)
+        assert not result.converged
+        assert result.reason == "failed at 1"
+        assert result.effort.updates == 5 * len(run_at.asked) < 5 * 100
 
 
 # Points at which the first attempt fails

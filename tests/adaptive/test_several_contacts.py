@@ -41,9 +41,9 @@ ALONE = {
 LONG = ("a rotation on a spring", "an oscillating load with a rotation", "no axis of symmetry")
 
 
-def answer(found):
+def answer(result):
     """The requested quantity and its error."""
-    return found.answer.value, found.answer.error
+    return result.answer.value, result.answer.error
 
 
 @pytest.mark.slow
@@ -119,12 +119,12 @@ def test_at_a_velocity_each_contact_is_alone(motion):
     mean = microslip.predict(motion, load=f"{np.mean(loads)} N", **REAL, **MOVED[motion])
     contacts = f"load={loads[0]};load={loads[1]},phase=60"
     place = motion, mean.velocity, mean.amplitude
-    found = microslip.solve(*place, contacts=contacts)
+    result = microslip.solve(*place, contacts=contacts)
     force = sum(one.friction_force_N for one in each) / sum(loads) / 0.3
-    assert found.converged
+    assert result.converged
     # the two contacts differ
     assert abs(each[0].mu_macro - each[1].mu_macro) > 0.03
-    assert abs(found.mu_macro - force) <= found.mu_macro_error + 1e-3
+    assert abs(result.mu_macro - force) <= result.mu_macro_error + 1e-3
     still = microslip.solve(motion, 0.0, mean.amplitude, contacts=contacts)
     static = sum(one.mu_static * load for one, load in zip(each, loads, strict=True)) / sum(loads)
     assert abs(still.mu_macro - static) <= still.mu_macro_error + 1e-3
@@ -134,16 +134,16 @@ def test_at_a_velocity_each_contact_is_alone(motion):
 @pytest.mark.parametrize("force", [0.1, 0.3, 0.7])
 @pytest.mark.parametrize("amplitude", [0.5, pytest.param(1.0, marks=pytest.mark.long), 5.0])
 def test_two_sliders_against_each_other_have_their_closed_form(amplitude, force):
-    found = microslip.solve("longitudinal", amplitude=amplitude, force=force, contacts=AGAINST)
-    assert found.converged
-    assert abs(found.velocity - antiphase_drift(force, amplitude)) <= found.velocity_error
+    result = microslip.solve("longitudinal", amplitude=amplitude, force=force, contacts=AGAINST)
+    assert result.converged
+    assert abs(result.velocity - antiphase_drift(force, amplitude)) <= result.velocity_error
 
 
 @pytest.mark.slow
 def test_more_sliders_that_work_against_each_other_in_pairs_do_as_well():
     four = ";".join(["phase=0", "phase=180", "load=1,phase=180", "phase=360"])
-    found = microslip.solve("longitudinal", amplitude=1.0, force=0.3, contacts=four)
-    assert abs(found.velocity - antiphase_drift(0.3, 1.0)) <= found.velocity_error
+    result = microslip.solve("longitudinal", amplitude=1.0, force=0.3, contacts=four)
+    assert abs(result.velocity - antiphase_drift(0.3, 1.0)) <= result.velocity_error
 
 
 def rigid_velocity(force, contacts, amplitude):
@@ -171,12 +171,12 @@ def test_large_amplitudes_are_those_of_rigid_contacts():
     shares = [(3 / 6, 0.0, 1.0), (1 / 6, 90.0, 1.0), (2 / 6, 45.0, 2.0)]
     lost = []
     for amplitude in (40.0, 160.0):
-        found = microslip.solve(
+        result = microslip.solve(
             "transverse", amplitude=amplitude, force=0.4, contacts=contacts, tolerance=3e-3
         )
-        assert found.converged
+        assert result.converged
         rigid = rigid_velocity(0.4, shares, amplitude)
-        lost.append((rigid - found.velocity) / rigid)
+        lost.append((rigid - result.velocity) / rigid)
     assert 0.0 < lost[1] < 0.03
     assert lost[1] < 0.45 * lost[0]
 
@@ -195,10 +195,10 @@ def unequal_limit(amplitude):
 @pytest.mark.slow
 def test_the_threshold_of_a_body_is_the_mean_of_its_contacts():
     limit = unequal_limit(0.4)
-    given = {"amplitude": 0.4, "contacts": UNEQUAL}
-    below = microslip.solve("transverse", force=limit - 1e-5, **given)
+    settings = {"amplitude": 0.4, "contacts": UNEQUAL}
+    below = microslip.solve("transverse", force=limit - 1e-5, **settings)
     assert (below.velocity, below.velocity_error, below.converged) == (0.0, 0.0, True)
-    above = microslip.solve("transverse", force=limit + 0.06, tolerance=3e-4, **given)
+    above = microslip.solve("transverse", force=limit + 0.06, tolerance=3e-4, **settings)
     assert above.converged
     assert above.velocity > 2.0 * above.velocity_error
 
@@ -251,19 +251,19 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_does_not_go_with_several_contacts_is_refused(name):
-    motion, given, contacts, expected = REFUSED[name]
+    motion, settings, contacts, expected = REFUSED[name]
     with pytest.raises(InputError) as refused:
-        microslip.solve(motion, contacts=contacts, **given)
+        microslip.solve(motion, contacts=contacts, **settings)
     assert (refused.value.argument, refused.value.value) == ("contacts", contacts)
     assert expected in refused.value.allowed
 
 
 def test_contacts_that_do_not_vibrate_hold_as_much_as_can_be():
     """At a prescribed velocity a contact without oscillation has full friction."""
-    found = microslip.solve("transverse", 0.1, 1.0, contacts="load=2;load=1,amplitude=0")
+    result = microslip.solve("transverse", 0.1, 1.0, contacts="load=2;load=1,amplitude=0")
     alone = microslip.solve("transverse", 0.1 / (4 / 3) ** (2 / 3), 1.0 / (4 / 3) ** (2 / 3))
-    assert found.mu_macro == pytest.approx((2.0 * alone.mu_macro + 1.0) / 3.0, abs=1e-12)
-    assert found.contacts == (
+    assert result.mu_macro == pytest.approx((2.0 * alone.mu_macro + 1.0) / 3.0, abs=1e-12)
+    assert result.contacts == (
         "load=1.33333333333,phase=0,amplitude=1;load=0.666666666667,phase=0,amplitude=0"
     )
 
@@ -273,10 +273,10 @@ def test_contacts_whose_loads_differ_in_time_are_weighted_with_them():
     """The friction is the mean of the contacts, weighted by their mean loads."""
     motion, each = "normal:indentation=1,lateral=1", []
     for amplitude in (0.8, 0.4):
-        found = microslip.solve(motion, 0.3, amplitude, tolerance=1e-2)
+        result = microslip.solve(motion, 0.3, amplitude, tolerance=1e-2)
         # the load is proportional to the indentation to the power 3/2
         phase = (np.arange(4000) + 0.5) * 2.0 * np.pi / 4000
-        each.append((found.mu_macro, np.mean((1.0 + amplitude * np.sin(phase)) ** 1.5)))
+        each.append((result.mu_macro, np.mean((1.0 + amplitude * np.sin(phase)) ** 1.5)))
     both = microslip.solve(motion, 0.3, 0.8, contacts="phase=0;amplitude=0.5", tolerance=1e-2)
     expected = sum(mu * load for mu, load in each) / sum(load for _, load in each)
     assert abs(each[0][0] - each[1][0]) > 0.1
@@ -290,10 +290,10 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
     alone = [float(paper.static_limit_bore(0.8 / load ** (1 / 3))) for load in loads]
     limit = float(np.dot(loads, alone)) / 2.0
     assert abs(alone[0] - alone[1]) > 0.1
-    given = {"amplitude": 0.8, "contacts": "load=3;load=1,phase=45"}
-    below = microslip.solve("bore", force=limit - 2e-3, **given)
+    settings = {"amplitude": 0.8, "contacts": "load=3;load=1,phase=45"}
+    below = microslip.solve("bore", force=limit - 2e-3, **settings)
     assert (below.velocity, below.velocity_error, below.converged) == (0.0, 0.0, True)
-    above = microslip.solve("bore", force=limit + 0.1, **given)
+    above = microslip.solve("bore", force=limit + 0.1, **settings)
     assert above.converged
     assert above.velocity > 2.0 * above.velocity_error
 
@@ -325,15 +325,15 @@ def test_large_turns_are_those_of_rigid_contacts():
         )
     rigid, lost = float(middle.mean()), []
     for amplitude in (10.0, 40.0):
-        found = microslip.solve(
+        result = microslip.solve(
             "bore",
             amplitude=amplitude,
             force=force,
             contacts="load=3;load=1,phase=60",
             tolerance=1e-2,
         )
-        assert found.converged
-        lost.append((rigid - found.velocity) / rigid)
+        assert result.converged
+        lost.append((rigid - result.velocity) / rigid)
     assert 0.0 < lost[1] < 0.1
     assert lost[1] < 0.5 * lost[0]
 
@@ -341,11 +341,11 @@ def test_large_turns_are_those_of_rigid_contacts():
 @pytest.mark.long
 @pytest.mark.parametrize("drive", [{"force": 0.3}, SPRING], ids=["force", "spring"])
 def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
-    given = {"amplitude": 1.5, "contacts": "load=2;load=1,phase=90"} | drive
-    rings = microslip.solve("transverse", **given)
-    angles = microslip.solve("transverse", model="polar", tolerance=3e-3, **given)
+    settings = {"amplitude": 1.5, "contacts": "load=2;load=1,phase=90"} | drive
+    rings = microslip.solve("transverse", **settings)
+    angles = microslip.solve("transverse", model="polar", tolerance=3e-3, **settings)
     squares = microslip.solve(
-        "transverse", model="cartesian", cells=12, steps=32, tolerance=None, **given
+        "transverse", model="cartesian", cells=12, steps=32, tolerance=None, **settings
     )
     for other in (angles, squares):
         assert abs(answer(rings)[0] - answer(other)[0]) <= answer(rings)[1] + answer(other)[1]
@@ -354,10 +354,15 @@ def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
 
 @pytest.mark.long
 def test_angles_and_squares_agree_on_contacts_that_turn():
-    given = {"amplitude": 1.5, "force": 0.4, "contacts": "load=2;load=1,phase=90", "poisson": 0.3}
-    angles = microslip.solve("bore", tolerance=3e-3, **given)
+    settings = {
+        "amplitude": 1.5,
+        "force": 0.4,
+        "contacts": "load=2;load=1,phase=90",
+        "poisson": 0.3,
+    }
+    angles = microslip.solve("bore", tolerance=3e-3, **settings)
     squares = microslip.solve(
-        "bore", model="cartesian", cells=12, steps=32, tolerance=None, **given
+        "bore", model="cartesian", cells=12, steps=32, tolerance=None, **settings
     )
     assert abs(angles.velocity - squares.velocity) <= angles.velocity_error + squares.velocity_error
     assert squares.velocity_error < 0.02
@@ -367,9 +372,9 @@ def test_angles_and_squares_agree_on_contacts_that_turn():
 def test_loads_in_antiphase_let_a_body_walk_that_two_in_phase_hold():
     """Loads in antiphase keep the total load constant, so the body does not run away.  The contact
     under load drags the body along."""
-    motion, given = "normal:lateral=1", {"amplitude": 0.6, "force": 0.6, "tolerance": 1e-2}
-    against = microslip.solve(motion, contacts=AGAINST, **given)
+    motion, settings = "normal:lateral=1", {"amplitude": 0.6, "force": 0.6, "tolerance": 1e-2}
+    against = microslip.solve(motion, contacts=AGAINST, **settings)
     assert against.converged and against.velocity > 10.0 * against.velocity_error
     for contacts in ("phase=0", "phase=0;phase=0"):
-        together = microslip.solve(motion, contacts=contacts, **given)
+        together = microslip.solve(motion, contacts=contacts, **settings)
         assert "runs away" in together.reason and not together.converged

@@ -24,27 +24,27 @@ def mindlin(force):
 @pytest.mark.parametrize("force", [0.0, 0.1, 0.5, 0.9])
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 def test_without_vibration_it_is_mindlins(force, poisson):
-    found = microslip.shakedown("transverse", 0.0, force, poisson=poisson)
-    assert found.converged and found.displacement_error <= 1e-2
+    result = microslip.shakedown("transverse", 0.0, force, poisson=poisson)
+    assert result.converged and result.displacement_error <= 1e-2
     # the closed form neglects the small lateral slip at nu > 0
-    assert abs(found.displacement - mindlin(force)) <= found.displacement_error
-    assert found.pushed == pytest.approx(mindlin(force), abs=5e-3) and found.threshold == 1.0
+    assert abs(result.displacement - mindlin(force)) <= result.displacement_error
+    assert result.pushed == pytest.approx(mindlin(force), abs=5e-3) and result.threshold == 1.0
 
 
 @pytest.mark.parametrize(("force", "amplitude"), [(0.3, 0.2), (0.5, 0.4), (0.2, 0.7)])
 def test_under_a_load_that_oscillates_it_is_mindlins_at_the_least_load(force, amplitude):
     """At the least load the displacement is that of a contact under this constant load.  Points
     that return into contact carry no traction, so that nothing slips any more."""
-    found = microslip.shakedown("normal", amplitude, force)
+    result = microslip.shakedown("normal", amplitude, force)
     load = 1.0 - amplitude
     depth = load ** (2.0 / 3.0)
-    assert abs(found.displacement - depth * mindlin(force / load)) <= found.displacement_error
-    assert found.pushed == pytest.approx(mindlin(force), abs=5e-3)
+    assert abs(result.displacement - depth * mindlin(force / load)) <= result.displacement_error
+    assert result.pushed == pytest.approx(mindlin(force), abs=5e-3)
 
 
 def test_a_contact_that_nothing_resists_goes_along_with_its_own_oscillation():
-    found = microslip.shakedown("longitudinal", 0.5, 0.4)
-    assert abs(found.displacement - mindlin(0.4)) <= found.displacement_error
+    result = microslip.shakedown("longitudinal", 0.5, 0.4)
+    assert abs(result.displacement - mindlin(0.4)) <= result.displacement_error
 
 
 POINTS = [("transverse", 0.3, 0.5), ("transverse", 0.9, 0.5), ("bore", 3.0, 0.9)]
@@ -97,9 +97,9 @@ def test_what_is_left_is_no_more_than_is_said():
 
 
 def test_above_the_threshold_there_is_no_end():
-    found = microslip.shakedown("transverse", 0.5, 0.6)
-    assert not found.converged and found.displacement == math.inf
-    assert found.reason.startswith("drifts on for ever: the force is above the threshold, 0.5644")
+    result = microslip.shakedown("transverse", 0.5, 0.6)
+    assert not result.converged and result.displacement == math.inf
+    assert result.reason.startswith("drifts on for ever: the force is above the threshold, 0.5644")
     away = microslip.shakedown("transverse", 0.5, 1.2)
     assert not away.converged and away.reason.startswith("runs away")
 
@@ -108,8 +108,8 @@ def test_a_contact_that_would_march_for_ever_says_so():
     """The force is above the threshold, which the run does not check."""
     problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=8, angles=1, steps=8)
-    found = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())
-    assert not found.converged and "still moves after" in found.reason
+    result = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())
+    assert not result.converged and "still moves after" in result.reason
 
 
 def test_equal_questions_get_equal_bits():
@@ -119,7 +119,7 @@ def test_equal_questions_get_equal_bits():
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"motion": "continuous-bore", "amplitude": None}, "motion = 'continuous-bore': "),
         (
@@ -135,26 +135,26 @@ def test_equal_questions_get_equal_bits():
         ({"time_limit": 0.0}, "time_limit = 0.0: "),
     ],
 )
-def test_bad_input_gets_one_line(changed, said):
-    given = {"motion": "transverse", "amplitude": 0.5, "force": 0.3} | changed
+def test_bad_input_gets_one_line(changed, message):
+    settings = {"motion": "transverse", "amplitude": 0.5, "force": 0.3} | changed
     with pytest.raises(InputError) as refused:
-        microslip.shakedown(**given)
-    assert str(refused.value).startswith(said) and "\n" not in str(refused.value)
+        microslip.shakedown(**settings)
+    assert str(refused.value).startswith(message) and "\n" not in str(refused.value)
 
 
 @pytest.mark.long
 def test_in_si_units_it_is_told_of_a_joint_that_stays():
     joint = {"material": "steel", "counterbody": "steel", "radius": "200 mm", "load": "1 kN"}
     joint |= {"mu": 0.15, "frequency": "50 Hz", "amplitude": "0.5 um"}
-    found = microslip.predict("transverse", **joint, force="60 N")
-    same = microslip.shakedown("transverse", found.amplitude, found.force, poisson=found.poisson)
-    assert found.outcome == "stays"
-    assert found.displacement_m == pytest.approx(same.displacement * found.u_lim_m)
-    assert found.displacement_error_m <= 1e-2 * found.u_lim_m
-    assert found.cycles_to_rest == same.most_after
+    result = microslip.predict("transverse", **joint, force="60 N")
+    same = microslip.shakedown("transverse", result.amplitude, result.force, poisson=result.poisson)
+    assert result.outcome == "stays"
+    assert result.displacement_m == pytest.approx(same.displacement * result.u_lim_m)
+    assert result.displacement_error_m <= 1e-2 * result.u_lim_m
+    assert result.cycles_to_rest == same.most_after
     moving = microslip.predict("transverse", **joint, force="100 N")
     assert moving.displacement_m is None
-    assert np.isfinite(found.displacement_m)
+    assert np.isfinite(result.displacement_m)
 
 
 def test_a_force_beside_a_problem_that_has_one_is_refused_by_its_name():

@@ -51,9 +51,9 @@ def test_errors_are_covered_where_few_rings_and_steps_agree_by_chance(
     point = {"velocity": velocity, "amplitude": amplitude, "pressure": pressure}
     many = microslip.solve(f"elliptic:{path}", **point, tolerance=None, cells=cells, steps=steps)
     for tolerance in (1e-2, 5e-3):
-        given = microslip.solve(f"elliptic:{path}", **point, tolerance=tolerance)
-        assert given.converged
-        assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error
+        answer = microslip.solve(f"elliptic:{path}", **point, tolerance=tolerance)
+        assert answer.converged
+        assert abs(answer.mu_macro - many.mu_macro) <= answer.mu_macro_error
 
 
 def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
@@ -65,8 +65,8 @@ def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
         "pressure": "punch:flat=0.8",
     }
     many = microslip.solve(motion, **point, tolerance=None, cells=24, steps=288)
-    given = microslip.solve(motion, **point, tolerance=0.1)
-    assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error < 0.1
+    answer = microslip.solve(motion, **point, tolerance=0.1)
+    assert abs(answer.mu_macro - many.mu_macro) <= answer.mu_macro_error < 0.1
 
 
 def test_without_a_known_limit_the_excess_is_the_largest_possible():

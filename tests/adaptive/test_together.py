@@ -40,11 +40,11 @@ def test_full_slip_stays_full_slip_on_finer_points():
 
 def test_turning_slip_is_interpolated_between_angles():
     coarse, fine = contact(8, 6), contact(24, 16)
-    given, expected = (
+    settings, expected = (
         full_slip(one, one.lateral_position, -one.forward_position) for one in (coarse, fine)
     )
     # linear interpolation on a circle has an error of an eighth of the squared angle
-    off = np.abs(fine.prolonged(given) - expected) / fine.bound
+    off = np.abs(fine.prolonged(settings) - expected) / fine.bound
     assert 0.0 < off.max() <= (math.pi / 6) ** 2 / 8.0
 
 

@@ -205,15 +205,15 @@ except CacheError as error:
 def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     """A limit on the size of files stands for a full disk: both interrupt a write."""
     before = dataset.read_bytes()
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", FULL_DISK, dataset],
         env={**os.environ, "PYTHONPATH": SOURCE},
         capture_output=True,
         text=True,
         timeout=60,
     )
-    assert (done.stdout.count("\n"), done.returncode) == (1, 0)
-    assert f"cannot write {dataset}: " in done.stdout and "make room" in done.stdout
+    assert (process.stdout.count("\n"), process.returncode) == (1, 0)
+    assert f"cannot write {dataset}: " in process.stdout and "make room" in process.stdout
     assert dataset.read_bytes() == before
     assert {p.name for p in dataset.parent.iterdir()} == {"bore.nc"}
 

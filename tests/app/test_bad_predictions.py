@@ -7,9 +7,9 @@ from microslip.app import cli
 
 
 def refused(changed, part, capsys, *flags):
-    given = {"motion": "transverse"} | GOOD | changed
-    motion = given.pop("motion")
-    words = [f"--{name.replace('_', '-')}={text}" for name, text in given.items() if text]
+    settings = {"motion": "transverse"} | GOOD | changed
+    motion = settings.pop("motion")
+    words = [f"--{name.replace('_', '-')}={text}" for name, text in settings.items() if text]
     assert cli.main(["predict", motion, *words, *flags]) == 2
     out, line = capsys.readouterr()
     assert out == "" and line.startswith("microslip predict: ") and line.count("\n") == 1

@@ -43,17 +43,17 @@ def test_a_table_gives_both_numbers_a_figure_and_a_dataset(folder, capsys):
     words = ["fit", "transverse", "measured.csv", *SHARED, "--map", "map.nc"]
     files = ["--figure", "fit.png", "--output", "fit.nc"]
     assert cli.main([*words, *files, "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert said["told"] == ["mu", "u_lim"]
+    message = json.loads(capsys.readouterr().out)
+    assert message["told"] == ["mu", "u_lim"]
     # The rows are exact values of the map, and its error estimates are bounds.
-    assert said["mu"] == pytest.approx(MU, rel=1e-5)
-    assert said["u_lim_m"] == pytest.approx(U_LIM, rel=1e-5)
-    assert said["u_lim_low_m"] < U_LIM < said["u_lim_high_m"]
+    assert message["mu"] == pytest.approx(MU, rel=1e-5)
+    assert message["u_lim_m"] == pytest.approx(U_LIM, rel=1e-5)
+    assert message["u_lim_low_m"] < U_LIM < message["u_lim_high_m"]
     assert (folder / "fit.png").read_bytes().startswith(b"\x89PNG")
-    kept = xr.load_dataset(folder / "fit.nc")
-    assert float(kept.mu) == said["mu"] and kept.sizes["row"] == 12
-    assert kept.fitted.values == pytest.approx(kept.measured.values, rel=1e-4)
-    assert {variable.attrs.get("units") for variable in kept.values()} >= {"1", "N", "m", "m s-1"}
+    rows = xr.load_dataset(folder / "fit.nc")
+    assert float(rows.mu) == message["mu"] and rows.sizes["row"] == 12
+    assert rows.fitted.values == pytest.approx(rows.measured.values, rel=1e-4)
+    assert {variable.attrs.get("units") for variable in rows.values()} >= {"1", "N", "m", "m s-1"}
     assert cli.main(words) == 0
     text = capsys.readouterr().out
     assert (
@@ -68,9 +68,9 @@ def test_rows_that_tell_mu_alone_are_exit_code_1(folder, capsys):
     force = MU * LOAD * (1.0 + 1e-3 * np.cos(3.0 * np.arange(6)))
     table(velocity, np.full(6, 0.06), force)
     assert cli.main(["fit", "transverse", "measured.csv", *SHARED, "--map", "map.nc"]) == 1
-    said = capsys.readouterr().out
-    assert "NOT TOLD: the rows determine mu alone: any u_lim above" in said
-    assert "\nmu                0.3" in said and "\nu_lim" not in said
+    message = capsys.readouterr().out
+    assert "NOT DETERMINED: the rows determine mu alone: any u_lim above" in message
+    assert "\nmu                0.3" in message and "\nu_lim" not in message
 
 
 BAD = [
@@ -88,13 +88,13 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("words", "said"), BAD, ids=[said for _, said in BAD])
-def test_bad_input_is_one_line(folder, capsys, words, said):
+@pytest.mark.parametrize(("words", "message"), BAD, ids=[message for _, message in BAD])
+def test_bad_input_is_one_line(folder, capsys, words, message):
     try:
         code = cli.main(["fit", "transverse", *words])
     except SystemExit as end:  # raised by the parser
         code = end.code
     streams = capsys.readouterr()
     assert code == 2 and streams.out == ""
-    assert said in streams.err and streams.err.startswith("microslip fit: ")
+    assert message in streams.err and streams.err.startswith("microslip fit: ")
     assert streams.err.count("\n") == 1

@@ -59,9 +59,9 @@ def test_a_log_that_cannot_be_opened_gives_one_line(tmp_path):
 def test_what_the_system_refuses_needs_no_traceback(number, tmp_path, capsys):
     with pytest.raises(SystemExit), job_log(tmp_path / "log"):
         raise OSError(number, "refused", "kernel.nbi")
-    said = (tmp_path / "log").read_text()
-    assert said.startswith("Error: cannot write kernel.nbi: refused; make room")
-    assert capsys.readouterr().err == said
+    message = (tmp_path / "log").read_text()
+    assert message.startswith("Error: cannot write kernel.nbi: refused; make room")
+    assert capsys.readouterr().err == message
 
 
 def test_any_other_error_goes_to_the_log_in_full(tmp_path):

@@ -18,8 +18,8 @@ AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 def configured(folder, name, **bore):
     """Write a configuration with one small sweep."""
     path = folder / f"{name}.yaml"
-    given = {"results": str(folder / "results"), "sweeps": {"bore": AXES | bore}}
-    path.write_text(yaml.safe_dump(given))
+    settings = {"results": str(folder / "results"), "sweeps": {"bore": AXES | bore}}
+    path.write_text(yaml.safe_dump(settings))
     return path
 
 
@@ -62,12 +62,12 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
     assert names(results) == before
-    said = capsys.readouterr().out
-    assert "2 points and single runs that no configuration requests" in said
-    assert "1 batches that no configuration requests" in said
-    assert "3 datasets, pages and figures" in said and "pendulum.nc" in said
-    assert "nothing is removed without --delete" in said
-    assert "mine" not in said
+    message = capsys.readouterr().out
+    assert "2 points and single runs that no configuration requests" in message
+    assert "1 batches that no configuration requests" in message
+    assert "3 datasets, pages and figures" in message and "pendulum.nc" in message
+    assert "nothing is removed without --delete" in message
+    assert "mine" not in message
 
 
 @pytest.mark.slow
@@ -122,8 +122,8 @@ def test_no_folder_above_the_results_is_removed(tmp_path):
     """The folder of results stays as well, however its path is written."""
     results = tmp_path / "above" / "results"
     configuration = only_one_dataset(results, tmp_path)
-    given = f"{tmp_path}/above/results/../results/."
-    configuration.write_text(yaml.safe_dump({"results": given, "sweeps": {"bore": AXES}}))
+    settings = f"{tmp_path}/above/results/../results/."
+    configuration.write_text(yaml.safe_dump({"results": settings, "sweeps": {"bore": AXES}}))
     assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
     assert results.is_dir() and not any(results.iterdir())
 
@@ -157,8 +157,8 @@ def test_a_folder_of_results_may_be_a_link(tmp_path):
     only_one_dataset(elsewhere, tmp_path)
     (tmp_path / "results").symlink_to(elsewhere)
     configuration = tmp_path / "linked.yaml"
-    given = {"results": str(tmp_path / "results"), "sweeps": {"bore": AXES}}
-    configuration.write_text(yaml.safe_dump(given))
+    settings = {"results": str(tmp_path / "results"), "sweeps": {"bore": AXES}}
+    configuration.write_text(yaml.safe_dump(settings))
     assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
     assert elsewhere.is_dir() and not any(elsewhere.iterdir())
 
@@ -169,8 +169,8 @@ def test_without_the_batch_of_a_map_the_points_of_its_motion_stay(
 ):
     map_ = AXES | {"velocity": [0.1, 2], "adaptive": {"error": 0.1}}
     configuration = tmp_path / "map.yaml"
-    given = {"results": str(results), "sweeps": {"bore": map_}}
-    configuration.write_text(yaml.safe_dump(given))
+    settings = {"results": str(results), "sweeps": {"bore": map_}}
+    configuration.write_text(yaml.safe_dump(settings))
     (file,) = Plan(load.load(configuration)).batch_files("certified_bore")
     if damaged:
         write_atomically(results / file, b'{"key": ')

@@ -24,10 +24,10 @@ SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 def one_line(caught, words):
-    said = str(caught.value)
-    assert "\n" not in said
-    assert [word for word in words if word not in said] == []
-    return said
+    message = str(caught.value)
+    assert "\n" not in message
+    assert [word for word in words if word not in message] == []
+    return message
 
 
 @pytest.mark.parametrize(("text", "expected"), odd.VELOCITIES)
@@ -48,8 +48,8 @@ def test_odd_settings(text, words, tmp_path):
     path.write_text(SWEEP % "[1]" + text + "\n", encoding="utf-8")
     if words is None:
         key, value = next(iter(yaml.safe_load(text).items()))
-        found = getattr(load.load(path), key)
-        assert found == value or set(found.values()) == {value}
+        result = getattr(load.load(path), key)
+        assert result == value or set(result.values()) == {value}
         return
     with pytest.raises(ConfigError) as caught:
         load.load(path)
@@ -106,15 +106,15 @@ def test_damaged_pressures_are_refused_and_do_not_hang(tmp_path):
     for path, damaged in zip(paths, odd.DAMAGES.values(), strict=True):
         odd.grid().to_netcdf(path)
         path.write_bytes(damaged(path.read_bytes()))
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", OPEN_DAMAGED, *paths],
         env={**os.environ, "PYTHONPATH": SOURCE},
         capture_output=True,
         text=True,
         timeout=300,
     )
-    lines = done.stdout.splitlines()
-    assert (done.returncode, len(lines)) == (0, len(paths))
+    lines = process.stdout.splitlines()
+    assert (process.returncode, len(lines)) == (0, len(paths))
     for path, line in zip(paths, lines, strict=True):
         assert str(path) in line and "not a netCDF file" in line
 
@@ -179,14 +179,14 @@ def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, caps
 def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
     monkeypatch.chdir(tmp_path)
     (tmp_path / "link").symlink_to(results)
-    given = [str(tmp_path / "first.yaml")]
+    paths = [str(tmp_path / "first.yaml")]
     for number, place in enumerate(("./results/", "x/../results", "link")):
         (tmp_path / "x").mkdir(exist_ok=True)
         path = configured(tmp_path, f"other{number}")
         settings = yaml.safe_load(path.read_text()) | {"results": place}
         path.write_text(yaml.safe_dump(settings))
-        given.append(str(path))
-    assert cli.main(["gc", "--configfile", *given]) == 0
+        paths.append(str(path))
+    assert cli.main(["gc", "--configfile", *paths]) == 0
 
 
 @pytest.mark.slow
@@ -216,16 +216,16 @@ def sweep(folder, *arguments, **environment):
 
 @pytest.mark.long
 def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
-    done = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "--configfile" in done.stderr and "--configfile A B" in done.stderr
+    process = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
+    assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
+    assert "--configfile" in process.stderr and "--configfile A B" in process.stderr
 
 
 @pytest.mark.long
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
     more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
-    done = sweep(tmp_path, "tiny.yaml", **more)
-    assert done.returncode == 0, done.stderr
-    assert "Traceback" not in done.stderr
-    assert done.stderr.count("cannot be written to: Snakemake's own files are in") == 1
+    process = sweep(tmp_path, "tiny.yaml", **more)
+    assert process.returncode == 0, process.stderr
+    assert "Traceback" not in process.stderr
+    assert process.stderr.count("cannot be written to: Snakemake's own files are in") == 1

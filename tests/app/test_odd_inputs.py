@@ -41,18 +41,18 @@ BALL |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
 def test_the_same_contact_in_other_words(changed, same, monkeypatch):
     """The arguments of the solver are equal to the last digits."""
 
-    def asked(words):
-        seen = []
+    def request(words):
+        calls = []
 
         def solve(motion, velocity, amplitude, **settings):
-            seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
+            calls.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
             return RIGID
 
         monkeypatch.setattr("microslip.si.request.solve", solve)
-        found = predict("transverse", **BALL | words)
-        return [*seen[0], found.contact_radius_m, found.u_lim_m]
+        result = predict("transverse", **BALL | words)
+        return [*calls[0], result.contact_radius_m, result.u_lim_m]
 
-    assert asked(changed) == pytest.approx(asked(same), rel=4 * LAST_DIGITS, abs=0.0)
+    assert request(changed) == pytest.approx(request(same), rel=4 * LAST_DIGITS, abs=0.0)
 
 
 RIGID = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
@@ -125,5 +125,5 @@ def test_a_question_to_a_map_is_refused_in_one_line(changed, part, friction):
 @pytest.mark.parametrize("velocity", NUMBERS, ids=short)
 def test_numbers_of_other_types_are_numbers(velocity, friction):
     """The value at a node of the map is 0.3 / (0.5 + 0.3)."""
-    found = friction.at(velocity, 0.5).mu_macro
-    assert float(found.squeeze()) == pytest.approx(0.375, abs=1e-6)
+    result = friction.at(velocity, 0.5).mu_macro
+    assert float(result.squeeze()) == pytest.approx(0.375, abs=1e-6)

@@ -27,37 +27,37 @@ def folder(tmp_path, monkeypatch):
 def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
     assert cli.main([*COMMAND, "--json", "--output", "found.nc"]) == 0
     first, second = json.loads(capsys.readouterr().out)
-    asked = SHARED | {"tolerance": 0.01, "load": "20 N", "amplitude": "0.1 um", "speed": "1 cm/s"}
-    alone = microslip.predict("transverse", **asked)
+    request = SHARED | {"tolerance": 0.01, "load": "20 N", "amplitude": "0.1 um", "speed": "1 cm/s"}
+    alone = microslip.predict("transverse", **request)
     assert (second["mu_apparent"], second["u_lim_m"]) == (alone.mu_apparent, alone.u_lim_m)
-    kept = xr.load_dataset(folder / "found.nc")
-    assert kept.friction_force_N.values.tolist() == [
+    dataset = xr.load_dataset(folder / "found.nc")
+    assert dataset.friction_force_N.values.tolist() == [
         one["friction_force_N"] for one in (first, second)
     ]
-    assert kept.amplitude_si.attrs["units"] == "m" and kept.load_N.attrs["units"] == "N"
+    assert dataset.amplitude_si.attrs["units"] == "m" and dataset.load_N.attrs["units"] == "N"
     assert cli.main([*COMMAND, "--output", "found.csv"]) == 0
     heading, *rows = (folder / "found.csv").read_text().splitlines()
     assert heading.startswith("case,") and len(rows) == 2
-    assert kept.line.values.tolist() == [2, 3]
+    assert dataset.line.values.tolist() == [2, 3]
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split()[:4] == ["line", "mu_apparent", "+-", "force"]
     assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("load [mm]\n5\n", "--table = 'contacts.csv': load = '5 mm': in line 2: the unit is"),
         ("amplitude,load [N]\n,5\n", "'contacts.csv': amplitude: in line 2: transverse needs it"),
         ('load\n"1,5 N"\n', "or --decimal ','"),
     ],
 )
-def test_a_bad_cell_is_named_by_its_column(text, said, folder, capsys):
+def test_a_bad_cell_is_named_by_its_column(text, message, folder, capsys):
     (folder / "contacts.csv").write_text(text)
     extra = ["--speed", "1 mm/s"]
     extra += [] if "amplitude" in text else ["--amplitude", "0.1 um"]
     assert cli.main([*COMMAND, *extra]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.long
@@ -68,17 +68,17 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     words = ["--amplitude", "0.3 um", "--reduction", "40 %", "--output", "found.nc"]
     words = [word for word in COMMAND if word not in ("--mu", "0.3")] + words
     assert cli.main(words) == 1
-    heading, first, second, *said = capsys.readouterr().out.splitlines()
+    heading, first, second, *message = capsys.readouterr().out.splitlines()
     assert heading.split()[0] == "line" and heading.rstrip().endswith("spread N")
     assert [first.split()[0], second.split()[0]] == ["3", "4"]
-    told = [line for line in said if "warning" not in line]
-    assert len(told) == 1 and told[0].startswith(
+    lines = [line for line in message if "warning" not in line]
+    assert len(lines) == 1 and lines[0].startswith(
         "line 4: NOT CONVERGED: load: no load of the search, down to"
     )
-    kept = xr.load_dataset(folder / "found.nc")
-    assert kept.converged.values.tolist() == [True, False]
-    (load, none), (spread, _) = kept.load_N.values, kept.sought_spread.values
-    assert math.isnan(none) and kept.sought_spread.attrs["units"] == "N"
+    dataset = xr.load_dataset(folder / "found.nc")
+    assert dataset.converged.values.tolist() == [True, False]
+    (load, none), (spread, _) = dataset.load_N.values, dataset.sought_spread.values
+    assert math.isnan(none) and dataset.sought_spread.attrs["units"] == "N"
     assert float(first.split()[-3]) == pytest.approx(load, rel=1e-3)
     # The amplitude over u_lim depends on mu times the load to the power 2/3.  So the relative
     # uncertainty of the load is 3/2 times that of mu.
@@ -96,15 +96,15 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
     first, *others = json.loads(out)
     assert (first["line"], first["label"], first["error"]) == (2, "first", None)
     assert first["amplitude_si"] == pytest.approx(3e-7) and first["mu_apparent"] > 0.0
-    said = ["amplitude = '-0.1 um'", "speed: needed", "line 5: 3 cells; allowed: 4"]
-    assert [part in one["error"] for part, one in zip(said, others, strict=True)] == [True] * 3
+    message = ["amplitude = '-0.1 um'", "speed: needed", "line 5: 3 cells; allowed: 4"]
+    assert [part in one["error"] for part, one in zip(message, others, strict=True)] == [True] * 3
     lines = [line for line in complaints.splitlines() if line.startswith("microslip predict: ")]
     assert [line.split(": ")[1] for line in lines] == ["line 3", "line 4", "line 5"]
-    kept = pd.read_csv(folder / "found.csv")
-    assert kept.label.tolist()[:3] == ["first", "second", "third"]
-    assert kept.error.isna().tolist() == [True, False, False, False]
-    assert kept.mu_macro.isna().tolist() == [False, True, True, True]
-    assert kept.converged.tolist() == [True, False, False, False]
+    dataset = pd.read_csv(folder / "found.csv")
+    assert dataset.label.tolist()[:3] == ["first", "second", "third"]
+    assert dataset.error.isna().tolist() == [True, False, False, False]
+    assert dataset.mu_macro.isna().tolist() == [False, True, True, True]
+    assert dataset.converged.tolist() == [True, False, False, False]
     assert cli.main(words) == 1
     heading, row, *rest = capsys.readouterr().out.splitlines()
     assert heading.split()[:2] == ["line", "label"] and row.split()[:2] == ["2", "first"]
@@ -148,14 +148,14 @@ def test_each_line_may_look_for_something_else(folder, capsys):
     heading, first, second, third, *_ = capsys.readouterr().out.splitlines()
     assert heading.split()[-8:] == ["amplitude", "m", "+-", "m", "load", "N", "+-", "N"]
     assert [len(row.split()) for row in (first, second, third)] == [8, 8, 6]
-    kept = xr.load_dataset(folder / "found.nc")
-    assert kept.sought.values.tolist() == ["amplitude", "load", ""]
-    assert "sought" in kept.sought_error.attrs["units"]
-    assert float(second.split()[-2]) == pytest.approx(kept.load_N.values[1], rel=1e-3)
+    dataset = xr.load_dataset(folder / "found.nc")
+    assert dataset.sought.values.tolist() == ["amplitude", "load", ""]
+    assert "sought" in dataset.sought_error.attrs["units"]
+    assert float(second.split()[-2]) == pytest.approx(dataset.load_N.values[1], rel=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--load", "1 N"], "--load = '1 N': not allowed"),
         (["--output", "found.txt"], "a name that ends in .csv or .nc"),
@@ -164,10 +164,10 @@ def test_each_line_may_look_for_something_else(folder, capsys):
         (["--propulsion"], "--table = 'contacts.csv': allowed without --propulsion"),
     ],
 )
-def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, words, said):
+def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, words, message):
     assert cli.main([*COMMAND, *words]) == 2
     out, line = capsys.readouterr()
-    assert out == "" and line.startswith("microslip predict: ") and said in line
+    assert out == "" and line.startswith("microslip predict: ") and message in line
     assert len(line.splitlines()) == 1 and sorted(p.name for p in folder.iterdir()) == [
         "contacts.csv"
     ]

@@ -48,15 +48,15 @@ def test_a_path_with_units_needs_a_contact_and_gets_newtons(tmp_path, capsys):
 
 def test_json_and_files_have_the_same_columns(tmp_path, capsys):
     text = "forward [um]\n0\n0.1\n"
-    kept = [tmp_path / name for name in ("a.nc", "b.csv")]
-    for path in kept:
+    paths = [tmp_path / name for name in ("a.nc", "b.csv")]
+    for path in paths:
         code, out, _ = run(capsys, tmp_path / "a.csv", text, f"{CONTACT} --json --output {path}")
         assert code == 0
     answer = json.loads(out)
     assert answer["converged"] is True and answer["stick_fraction"][0] is None
-    with xr.open_dataset(kept[0]) as dataset:
+    with xr.open_dataset(paths[0]) as dataset:
         assert dataset.force_forward.values == pytest.approx(answer["force_forward"])
-    assert columns_of(kept[1].read_text())["force_forward [N]"] == pytest.approx(
+    assert columns_of(paths[1].read_text())["force_forward [N]"] == pytest.approx(
         answer["force_forward"]
     )
 

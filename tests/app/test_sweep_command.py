@@ -108,8 +108,8 @@ def test_a_figure_is_handed_to_snakemake_as_a_target(target, here, monkeypatch):
 def test_a_file_that_is_no_configuration_is_one_line(case, here):
     content, *parts = FILES[case]
     (here / "given.yaml").write_bytes(content)
-    done = in_process.run("sweep", "-n", "--configfile", "given.yaml")
-    refused(done, ["given.yaml: ", *parts])
+    process = in_process.run("sweep", "-n", "--configfile", "given.yaml")
+    refused(process, ["given.yaml: ", *parts])
     assert [path.name for path in here.iterdir()] == ["given.yaml"]
 
 
@@ -143,17 +143,17 @@ def test_the_same_lines_come_from_a_process(row, tmp_path):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def refused(done, parts):
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert done.stderr.startswith("microslip sweep: ")
-    assert [part for part in parts if part not in done.stderr] == []
+def refused(process, parts):
+    assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
+    assert process.stderr.startswith("microslip sweep: ")
+    assert [part for part in parts if part not in process.stderr] == []
 
 
 def test_a_folder_that_is_gone_is_one_line(tmp_path):
     line = f"rmdir {tmp_path}; exec {' '.join(SWEEP)} -n"
-    done = run(["bash", "-c", line], tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
+    process = run(["bash", "-c", line], tmp_path)
+    assert (process.returncode, process.stdout) == (2, "")
+    assert process.stderr == "microslip sweep: the current folder: No such file or directory\n"
 
 
 # The end of a run
@@ -168,13 +168,13 @@ points_per_job: 2
 
 def session(leader):
     """Running processes of a session, according to /proc."""
-    found = []
+    result = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
             state, _, _, of = stat.read_text().rpartition(")")[2].split()[:4]
             if int(of) == leader and state not in "ZX":
-                found.append(stat.parent)
-    return found
+                result.append(stat.parent)
+    return result
 
 
 def is_job(process):

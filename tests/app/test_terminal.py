@@ -119,8 +119,8 @@ terminal.run(command)
 def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, tmp_path):
     ready = tmp_path / "ready"
     command = [sys.executable, "-c", KERNEL.format(ready=str(ready))]
-    found = stopped(command, lambda _: ready.exists(), number)
-    assert found == (code, "", f"microslip: {word}\n")
+    result = stopped(command, lambda _: ready.exists(), number)
+    assert result == (code, "", f"microslip: {word}\n")
 
 
 def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
@@ -214,11 +214,11 @@ ENDINGS = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("line", "code", "said"), ENDINGS)
-def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, said):
-    done = shell(f"{line}; exit ${{PIPESTATUS[{int(line.startswith('sleep'))}]}}")
-    assert (done.returncode, done.stdout) == (code, "")
-    assert done.stderr.startswith(said) and done.stderr.count("\n") == bool(said)
+@pytest.mark.parametrize(("line", "code", "message"), ENDINGS)
+def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, message):
+    process = shell(f"{line}; exit ${{PIPESTATUS[{int(line.startswith('sleep'))}]}}")
+    assert (process.returncode, process.stdout) == (code, "")
+    assert process.stderr.startswith(message) and process.stderr.count("\n") == bool(message)
 
 
 @pytest.mark.slow
@@ -232,9 +232,9 @@ def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, said):
 )
 def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
     (tmp_path / "gone").mkdir()
-    done = shell(line, FOLDER=str(tmp_path / "gone"))
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
+    process = shell(line, FOLDER=str(tmp_path / "gone"))
+    assert (process.returncode, process.stderr) == (0, "")
+    assert process.stdout.startswith("mu_macro = 0.883573\n")  # Eq 21 at 1: 0.88357
 
 
 @pytest.mark.slow
@@ -242,5 +242,5 @@ def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
 @pytest.mark.parametrize("words", ["", "point", "point bore", "predict", "sweep"])
 def test_help_fits_into_any_width(words, columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
-    done = in_process.run(*words.split(), "--help")
-    assert (done.returncode, done.stderr) == (0, "") and "usage:" in done.stdout
+    process = in_process.run(*words.split(), "--help")
+    assert (process.returncode, process.stderr) == (0, "") and "usage:" in process.stdout

@@ -72,15 +72,15 @@ def test_every_option_is_given_a_bad_value():
 @pytest.mark.slow
 def test_the_same_lines_come_from_a_process(there):
     for arguments, *parts in (NUMBERS[0], RESULTS[3]):
-        done = subprocess.run(
+        process = subprocess.run(
             [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
             env={**os.environ, "PYTHONPATH": SOURCE},
             capture_output=True,
             text=True,
             timeout=60,
         )
-        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-        assert [part for part in parts if part not in done.stderr] == []
+        assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
+        assert [part for part in parts if part not in process.stderr] == []
 
 
 # Configurations

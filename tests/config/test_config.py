@@ -98,7 +98,7 @@ def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):
 def test_shipped_configurations_are_good_and_filled_ones_are_the_same(name):
     settings, folders = config.read_yaml(ROOT / "config" / f"{name}.yaml"), [ROOT / "config"]
     result = config.from_mapping(settings, folders=folders)
-    filled = config.with_files_found(settings, folders=folders)
+    filled = config.with_defaults_and_paths(settings, folders=folders)
     assert config.from_mapping(json.loads(json.dumps(filled))) == result
 
 

@@ -95,8 +95,10 @@ print("numpy" in sys.modules)
 
 
 def test_jobs_of_other_sweeps_do_not_import_the_solver():
-    done = subprocess.run([sys.executable, "-c", ALONE], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    process = subprocess.run(
+        [sys.executable, "-c", ALONE], capture_output=True, text=True, check=True
+    )
+    assert process.stdout == "False\n"
 
 
 def test_a_static_limit_is_allowed_where_the_solver_knows_it():
@@ -199,12 +201,12 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     assert batches[0][0]["pressure"].startswith("file:sha256=")
     # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
-    handed = load.with_files_found(mapping, folders=[tmp_path])
+    handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
     result = load.from_mapping(handed, ask_solver=False)
     assert [*sweep.PointRequests(result.extended["pad"])] == batches[0]
-    assert load.with_files_found(handed) == handed
+    assert load.with_defaults_and_paths(handed) == handed
 
 
 def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):

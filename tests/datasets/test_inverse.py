@@ -21,21 +21,21 @@ def peaked(error=0.0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sought", ["velocity", "amplitude"])
-def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
+@pytest.mark.parametrize("target", ["velocity", "amplitude"])
+def test_the_answer_put_into_the_map_gives_what_was_wanted(target):
     dataset = eq6_map(1e-3)
-    reference = {"amplitude": 1.2} if sought == "velocity" else {"velocity": 0.5}
+    reference = {"amplitude": 1.2} if target == "velocity" else {"velocity": 0.5}
     wanted = np.array([0.5, 0.7, 0.9])
     answer = dataset.microslip.solve_for(wanted, **reference)
-    assert answer[sought].dims == ("wanted", "root") and outcome(answer) == ["found"] * 3
-    at = answer[sought].isel(root=0)
-    back = dataset.microslip.at(**{sought: at}, **reference)
+    assert answer[target].dims == ("wanted", "root") and outcome(answer) == ["found"] * 3
+    at = answer[target].isel(root=0)
+    back = dataset.microslip.at(**{target: at}, **reference)
     assert back.mu_macro.values == pytest.approx(wanted, abs=1e-9)
     # At the ends friction differs from the wanted value by its error.
-    sign = 1.0 if sought == "velocity" else -1.0
+    sign = 1.0 if target == "velocity" else -1.0
     for end, side in (("low", -sign), ("high", sign)):
         there = dataset.microslip.at(
-            **{sought: answer[f"{sought}_{end}"].isel(root=0)}, **reference
+            **{target: answer[f"{target}_{end}"].isel(root=0)}, **reference
         )
         off = there.mu_macro - wanted
         assert off.values == pytest.approx(side * there.mu_macro_error.values, rel=1e-6)

@@ -46,8 +46,10 @@ with xr.open_dataset({path!r}) as data:
 def test_importing_the_package_is_enough_to_ask_a_dataset(imports, tmp_path):
     made_up().to_netcdf(tmp_path / "map.nc")
     code = OPENED.format(imports=imports, path=str(tmp_path / "map.nc"))
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert float(done.stdout) == float(made_up().microslip.at(0.3, 1.1).mu_macro)
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert float(process.stdout) == float(made_up().microslip.at(0.3, 1.1).mu_macro)
 
 
 def test_a_dataset_can_be_pickled_after_it_was_asked():

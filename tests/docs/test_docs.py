@@ -1,10 +1,10 @@
 """The documentation: its code runs and prints the text of the pages, and its links exist.
 
 Blocks of a page run in their order, in a folder that contains the files of a clone and results.
-Python blocks share one namespace, sh blocks are run by bash, and yaml blocks are checked as a
-configuration or a part of one. A block whose first line is a comment with a file name is written to
-this file. A text block is the output of the block before it: equal words, and numbers equal to the
-printed digits.
+Python blocks and the cells of notebooks share one namespace, sh blocks are run by bash, and yaml
+blocks are checked as a configuration or a part of one. A block whose first line is a comment with a
+file name is written to this file. A text block is the output of the block before it: equal words,
+and numbers equal to the printed digits.
 
 `pytest -n 0 tests/docs/test_docs.py --rewrite` replaces the text blocks that differ; check the
 changes with `git diff docs`.
@@ -58,6 +58,7 @@ LONG_PAGES = (
     "docs/how-to/fit.md",
     "docs/how-to/force_and_spring.md",
     "docs/tutorials/datasets.md",
+    "docs/tutorials/real_contact.md",
 )
 """Pages whose code takes several seconds, except those for newcomers."""
 OPEN_A_SWEEP = ("README.md", "docs/how-to/workflow.md")
@@ -82,10 +83,6 @@ NOT_RUN = {
     ("docs/tutorials/quickstart.md", "python3 -m venv .venv && "): INSTALLS,
     ("docs/reference/gallery.md", ".venv/bin/snakemake -j2"): FULL,
     ("docs/how-to/workflow.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/tutorials/datasets.md", ".venv/bin/microslip sweep --cores 2"): (
-        "the points are computed, and the datasets written, by the fixture below, without the "
-        "processes of a workflow; a sweep is run as it stands by docs/tutorials/quickstart.md"
-    ),
     ("docs/explanation/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
     ("docs/explanation/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
     ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
@@ -141,8 +138,8 @@ def reason_not_to_run(page, block):
 
 
 def tutorial_configuration():
-    (block,) = (b for b in blocks("docs/tutorials/datasets.md") if file_of(b) == "tutorial.yaml")
-    return load.from_mapping(yaml.safe_load(block.text))
+    (block,) = (b for b in blocks("docs/tutorials/datasets.md") if "write_text" in b.text)
+    return load.from_mapping(yaml.safe_load(block.text.split('"""')[1]))
 
 
 def write_sweeps(folder, names):
@@ -237,17 +234,17 @@ def run_python(block, page, namespace, environment):
     # This process has not imported the copy of the package in src.
     if environment.get("PYTHONPATH") == "src":
         return run_command([sys.executable, "-c", block.text], page, block, environment)
-    said = io.StringIO()
+    message = io.StringIO()
     code = compile("\n" * block.line + block.text, page, "exec")
-    with contextlib.redirect_stdout(said):
+    with contextlib.redirect_stdout(message):
         exec(code, namespace)
-    return said.getvalue()
+    return message.getvalue()
 
 
 def run_command(command, page, block, environment):
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
-    assert done.returncode == 0, f"{page}:{block.line}: {done.stdout}{done.stderr}"
-    return done.stdout
+    process = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
+    assert process.returncode == 0, f"{page}:{block.line}: {process.stdout}{process.stderr}"
+    return process.stdout
 
 
 def run_snakefile(block, page, environment):
@@ -278,15 +275,17 @@ def check_yaml(block):
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
-def assert_said(said, expected, where):
+def assert_said(message, expected, where):
     """Assert equal words, and numbers within 1 % or 1.5 units of the last printed digit."""
-    assert NUMBER.sub("#", said).split() == NUMBER.sub("#", expected).split(), f"{where}: {said}"
-    for new, old in zip(NUMBER.findall(said), NUMBER.findall(expected), strict=True):
+    assert NUMBER.sub("#", message).split() == NUMBER.sub("#", expected).split(), (
+        f"{where}: {message}"
+    )
+    for new, old in zip(NUMBER.findall(message), NUMBER.findall(expected), strict=True):
         digits = re.sub(r"e.*", "", old)
         scale = 10.0 ** float(old.split("e")[1]) if "e" in old else 1.0
         last = scale * 10.0 ** -len(digits.partition(".")[2])
         near = max(0.01 * abs(float(old)), 1.5 * last if "." in digits else 0.0)
-        assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {said}"
+        assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {message}"
 
 
 def rewrite(page, printed):
@@ -312,13 +311,14 @@ def opens(page):
 def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
-    namespace, said, printed = {"__name__": "__main__"}, None, {}
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    namespace, message, printed = {"__name__": "__main__"}, None, {}
     for block in blocks(page):
         where = f"{page}:{block.line}"
         if reason_not_to_run(page, block):
             assert block.kind == "sh", where
             run_command(["bash", "-n", "-c", block.text], page, block, environment)
-            said = None
+            message = None
             continue
         file = file_of(block)
         if file:
@@ -326,22 +326,23 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
             Path(file).write_text(block.text, encoding="utf-8")
         if block.kind == "yaml":
             check_yaml(block)
-        elif block.kind == "python" and not file:
-            said = run_python(block, page, namespace, environment)
+        elif block.kind in ("python", "{code-cell}") and not file:
+            message = run_python(block, page, namespace, environment)
         elif block.kind == "sh":
-            said = run_command(["bash", "-euc", block.text], page, block, environment)
+            message = run_command(["bash", "-euc", block.text], page, block, environment)
         elif block.kind == "snakemake":
-            said = run_snakefile(block, page, environment)
+            message = run_snakefile(block, page, environment)
         elif block.kind == "text":
-            assert said is not None, f"{where}: no block before it prints text"
+            assert message is not None, f"{where}: no block before it prints text"
             try:
-                assert_said(said, block.text, where)
+                assert_said(message, block.text, where)
             except AssertionError:
                 if not request.config.getoption("rewrite", False):
                     raise
-                printed[block.line] = said
+                printed[block.line] = message
         else:
-            assert file or block.kind.startswith("{"), f"{where}: unknown kind of block"
+            allowed = file or block.kind == "bibtex" or block.kind.startswith("{")
+            assert allowed, f"{where}: unknown kind of block"
     if printed:
         rewrite(page, printed)
 
@@ -454,12 +455,12 @@ class Loaded(HTMLParser):
 
 @pytest.mark.long
 @pytest.mark.skipif(
-    not all(map(find_spec, ("sphinx", "myst_parser", "furo"))),
+    not all(map(find_spec, ("sphinx", "myst_nb", "furo"))),
     reason="the extra docs is not installed: pip install -e '.[docs]'",
 )
 def test_the_site_is_built_without_a_warning_and_without_a_network(tmp_path):
     refused = {f"{kind}_proxy": "http://127.0.0.1:9" for kind in ("http", "https", "all")}
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-m", "sphinx", "-W", "-n", "-q", "docs", tmp_path / "html"],
         cwd=ROOT,
         env=os.environ | refused,
@@ -467,7 +468,7 @@ def test_the_site_is_built_without_a_warning_and_without_a_network(tmp_path):
         text=True,
         timeout=300,
     )
-    assert done.returncode == 0, done.stderr
+    assert process.returncode == 0, process.stderr
     pages = {str(p.relative_to(tmp_path / "html")): p for p in tmp_path.rglob("*.html")}
     for page in PAGES:
         if page.startswith("docs/"):

@@ -46,10 +46,10 @@ def test_every_second_level_doubles():
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(points)
 def test_a_ladder_refines_what_the_motion_and_the_model_have(point):
-    found = planned(point)
-    if found is None:
+    result = planned(point)
+    if result is None:
         return
-    problem, model, ladder = found
+    problem, model, ladder = result
     refined = MODELS[model].axes(problem)
     assert (ladder.cells > 0, ladder.angles > 0) == ("cells" in refined, "angles" in refined)
     marched = problem.velocity > 0.0 or not at_turning_points(problem)
@@ -66,10 +66,10 @@ def test_a_ladder_refines_what_the_motion_and_the_model_have(point):
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(points, st.integers(2, 64).map(lambda n: 2 * n), st.integers(4, 64).map(lambda n: 2 * n))
 def test_imposed_numbers_are_those_of_the_level_that_is_the_answer(point, cells, steps):
-    found = planned(point, cells=cells, steps=steps)
-    if found is None:
+    result = planned(point, cells=cells, steps=steps)
+    if result is None:
         return
-    ladder = found[2]
+    ladder = result[2]
     resolution = ladder.resolution(ladder.start)
     assert resolution.cells == (cells if ladder.cells else 1)
     assert resolution.steps == (steps // 2 if ladder.steps else 4)

@@ -49,34 +49,34 @@ class FakeRun:
 
 def test_three_levels_are_run_each_from_the_one_before():
     fake = FakeRun(0.1)
-    found = refine(fake, LADDER, 1e-3)
-    assert found.converged and found.reason == "" and found.periodic
+    result = refine(fake, LADDER, 1e-3)
+    assert result.converged and result.reason == "" and result.periodic
     assert fake.asked == [LADDER.resolution(level) for level in (4, 8, 16)]
     assert fake.guesses == [None, *fake.runs[:2]]
-    assert found.value.value == pytest.approx(EXACT, abs=1e-14)
-    assert found.torque.value == pytest.approx(EXACT_TORQUE, abs=1e-14)
-    assert found.order == pytest.approx(2.0) and found.finest == fake.asked[-1]
-    assert (found.periods, found.effort) == (3, Effort(3, 30, 300, 60))
+    assert result.value.value == pytest.approx(EXACT, abs=1e-14)
+    assert result.torque.value == pytest.approx(EXACT_TORQUE, abs=1e-14)
+    assert result.order == pytest.approx(2.0) and result.finest == fake.asked[-1]
+    assert (result.periods, result.effort) == (3, Effort(3, 30, 300, 60))
 
 
 def test_the_error_is_the_sum_of_its_sources():
-    found = refine(FakeRun(0.14), LADDER, 1e-3)
-    assert found.value.by_source.keys() == {"resolution", "periodicity", "solver"}
-    assert found.value.error == sum(found.value.by_source.values())
-    assert found.value.by_source["resolution"] == pytest.approx(
-        SAFETY * 0.14 / found.finest.cells**2
+    result = refine(FakeRun(0.14), LADDER, 1e-3)
+    assert result.value.by_source.keys() == {"resolution", "periodicity", "solver"}
+    assert result.value.error == sum(result.value.by_source.values())
+    assert result.value.by_source["resolution"] == pytest.approx(
+        SAFETY * 0.14 / result.finest.cells**2
     )
 
 
 def test_no_error_is_estimated_below_a_share_of_the_tolerance():
-    found = refine(FakeRun(0.0), LADDER, 1e-3)
-    assert found.value.by_source["resolution"] == SMALLEST_SHARE * 1e-3
+    result = refine(FakeRun(0.0), LADDER, 1e-3)
+    assert result.value.by_source["resolution"] == SMALLEST_SHARE * 1e-3
 
 
 def test_levels_are_added_until_the_error_is_within_the_tolerance():
     fake = FakeRun(3.0)
-    found = refine(fake, LADDER, 1e-3)
-    assert found.converged and found.value.error <= 1e-3
+    result = refine(fake, LADDER, 1e-3)
+    assert result.converged and result.value.error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
     assert len(set(cells)) == len(cells) and max(cells) > 64
     # each run starts from the run at half its level, if there is one
@@ -88,7 +88,7 @@ def test_levels_are_added_until_the_error_is_within_the_tolerance():
 def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
     """The weight of a run is the change of the value by a change of the run."""
     fake = FakeRun(0.3)
-    found = refine(fake, LADDER, 1e-3)
+    result = refine(fake, LADDER, 1e-3)
     step = 1e-7
 
     def response(resolution):
@@ -98,12 +98,12 @@ def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
             one = again(at, guess)
             return replace(one, mu=one.mu + step) if at == resolution else one
 
-        return abs(refine(run, LADDER, 1e-3).value.value - found.value.value) / step
+        return abs(refine(run, LADDER, 1e-3).value.value - result.value.value) / step
 
     weights = np.array([response(resolution) for resolution in fake.asked])
     for source, name in (("periodicity", "distance"), ("solver", "solver_residual")):
         expected = weights @ [getattr(run, name) for run in fake.runs]
-        assert found.value.by_source[source] == pytest.approx(expected, rel=1e-6)
+        assert result.value.by_source[source] == pytest.approx(expected, rel=1e-6)
 
 
 def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
@@ -112,8 +112,8 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
     def run(resolution, guess):
         return replace(fake(resolution, guess), distance=run_tolerance(1e-3))
 
-    found = refine(run, LADDER, 1e-3)
-    assert found.converged and found.value.by_source["periodicity"] == pytest.approx(1e-3 / 12.0)
+    result = refine(run, LADDER, 1e-3)
+    assert result.converged and result.value.by_source["periodicity"] == pytest.approx(1e-3 / 12.0)
     assert run_tolerance(1e-3) == RUN_SHARE * 1e-3
 
 
@@ -125,18 +125,18 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
     st.floats(-4.0, -1.0).map(lambda x: 10**x),
 )
 def test_smooth_errors_are_covered(size, sign, power, tolerance):
-    found = refine(FakeRun(sign * size, power), LADDER, tolerance)
-    assert not found.converged or found.value.error <= tolerance
-    assert abs(found.value.value - EXACT) <= found.value.error
-    assert abs(found.torque.value - EXACT_TORQUE) <= 2.0 * found.value.error
+    result = refine(FakeRun(sign * size, power), LADDER, tolerance)
+    assert not result.converged or result.value.error <= tolerance
+    assert abs(result.value.value - EXACT) <= result.value.error
+    assert abs(result.torque.value - EXACT_TORQUE) <= 2.0 * result.value.error
 
 
 def test_scattered_errors_are_covered_nearly_always():
     draw, held = np.random.default_rng(7), []
     for seed in range(300):
         size, tolerance = 10 ** draw.uniform(-2.0, 0.5), 10 ** draw.uniform(-4.0, -2.0)
-        found = refine(FakeRun(size, scatter=0.3, seed=seed), LADDER, tolerance)
-        held.append(abs(found.value.value - EXACT) <= found.value.error)
+        result = refine(FakeRun(size, scatter=0.3, seed=seed), LADDER, tolerance)
+        held.append(abs(result.value.value - EXACT) <= result.value.error)
     assert np.mean(held) > 0.99
 
 
@@ -146,18 +146,18 @@ def test_scattered_errors_are_covered_nearly_always():
 def test_an_imposed_resolution_is_the_answer_and_not_its_limit():
     fake = FakeRun(3.0)
     ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=True)
-    found = refine(fake, ladder, 1e-3)
-    assert found.value.value == fake.runs[-1].mu == EXACT + 3.0 / 144
-    assert found.finest.cells == 12 and len(fake.asked) == 3
-    assert found.value.by_source["resolution"] == pytest.approx(3.0 / 36 - 3.0 / 144)
-    assert found.value.by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
-    assert found.converged and found.reason == ""
+    result = refine(fake, ladder, 1e-3)
+    assert result.value.value == fake.runs[-1].mu == EXACT + 3.0 / 144
+    assert result.finest.cells == 12 and len(fake.asked) == 3
+    assert result.value.by_source["resolution"] == pytest.approx(3.0 / 36 - 3.0 / 144)
+    assert result.value.by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
+    assert result.converged and result.reason == ""
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0])
 def test_the_error_of_an_imposed_resolution_is_covered(power):
-    found = refine(FakeRun(0.3, power), replace(LADDER, imposed=True), 1e-3)
-    assert abs(found.value.value - EXACT) <= found.value.error
+    result = refine(FakeRun(0.3, power), replace(LADDER, imposed=True), 1e-3)
+    assert abs(result.value.value - EXACT) <= result.value.error
 
 
 # End of the refinement
@@ -173,18 +173,18 @@ def test_a_run_that_does_not_converge_ends_it(cells):
             return replace(one, converged=False, reason="lost its way", distance=np.inf)
         return one
 
-    found = refine(run, LADDER, 1e-3)
-    assert not found.converged and not found.periodic and found.reason == "lost its way"
+    result = refine(run, LADDER, 1e-3)
+    assert not result.converged and not result.periodic and result.reason == "lost its way"
     assert len(fake.asked) == 3
-    assert found.value.error == np.inf
+    assert result.value.error == np.inf
 
 
 def test_the_finest_level_is_named():
     fake = FakeRun(1e3)
-    found = refine(fake, LADDER, 1e-4)
-    assert not found.converged and found.periodic and fake.asked[-1].cells == 12 * 16
-    assert found.reason == f"the error is still {found.value.error:.1e} with 192 cells"
-    assert abs(found.value.value - EXACT) <= found.value.error
+    result = refine(fake, LADDER, 1e-4)
+    assert not result.converged and result.periodic and fake.asked[-1].cells == 12 * 16
+    assert result.reason == f"the error is still {result.value.error:.1e} with 192 cells"
+    assert abs(result.value.value - EXACT) <= result.value.error
 
 
 def test_errors_that_no_finer_level_cures_are_reported():
@@ -194,22 +194,22 @@ def test_errors_that_no_finer_level_cures_are_reported():
         def run(resolution, guess, fake=fake, spoilt=spoilt):
             return replace(fake(resolution, guess), **spoilt)
 
-        found = refine(run, LADDER, 1e-3)
-        assert found.value.error > 1e-3 and found.converged and len(fake.asked) == 3
+        result = refine(run, LADDER, 1e-3)
+        assert result.value.error > 1e-3 and result.converged and len(fake.asked) == 3
 
 
 def test_what_was_known_before_the_budget_was_spent_is_the_answer():
     enough = refine(FakeRun(3.0), LADDER, 0.01)
-    found = refine(FakeRun(3.0, most=4), LADDER, 1e-3)
-    assert not found.converged and found.finest.cells == 16
-    assert found.reason == f"all is spent: the error is still {found.value.error:.1e}"
-    assert abs(found.value.value - EXACT) <= found.value.error and enough.converged
+    result = refine(FakeRun(3.0, most=4), LADDER, 1e-3)
+    assert not result.converged and result.finest.cells == 16
+    assert result.reason == f"all is spent: the error is still {result.value.error:.1e}"
+    assert abs(result.value.value - EXACT) <= result.value.error and enough.converged
 
 
 def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
-    found = refine(FakeRun(most=2), LADDER, 1e-3)
-    assert not found.converged and np.isnan(found.value.value) and found.value.error == np.inf
-    assert found.reason == "all is spent: no error is known yet"
+    result = refine(FakeRun(most=2), LADDER, 1e-3)
+    assert not result.converged and np.isnan(result.value.value) and result.value.error == np.inf
+    assert result.reason == "all is spent: there is no error estimate yet"
 
 
 # Readings of a pressure
@@ -221,20 +221,20 @@ def shifted(fake, by):
 
 def test_readings_are_run_at_the_finest_level_and_their_differences_are_an_error():
     fake, other = FakeRun(), FakeRun()
-    found = refine(fake, LADDER, 1e-3, [shifted(other, 4e-5), shifted(other, -3e-5)])
-    assert found.value.by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
+    result = refine(fake, LADDER, 1e-3, [shifted(other, 4e-5), shifted(other, -3e-5)])
+    assert result.value.by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
     assert other.asked == 2 * [fake.asked[-1]] and other.guesses == 2 * [fake.runs[-1]]
-    assert found.converged and found.value.error <= 1e-3
+    assert result.converged and result.value.error <= 1e-3
 
 
 def test_finer_runs_make_room_for_readings_that_are_apart():
-    found = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 1.6e-4)])
-    assert found.converged and found.value.error <= 1e-3 and found.finest.cells == 24
+    result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 1.6e-4)])
+    assert result.converged and result.value.error <= 1e-3 and result.finest.cells == 24
 
 
 def test_readings_that_are_too_far_apart_end_it():
-    found = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
-    assert found.value.error > 1e-3 and found.finest.cells == 16
+    result = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
+    assert result.value.error > 1e-3 and result.finest.cells == 16
 
 
 def test_a_coarse_run_that_does_not_converge_counts_in_full():
@@ -246,5 +246,5 @@ def test_a_coarse_run_that_does_not_converge_counts_in_full():
         made = fake(resolution, guess)
         return replace(made, converged=False, reason="lost", distance=0.01) if not guess else made
 
-    found = refine(run, LADDER, 1e-3)
-    assert not found.converged and found.value.by_source["periodicity"] > 0.01
+    result = refine(run, LADDER, 1e-3)
+    assert not result.converged and result.value.by_source["periodicity"] > 0.01

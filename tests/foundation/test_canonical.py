@@ -58,11 +58,11 @@ def test_the_workflow_reads_this_without_loading_anything_heavy():
         "source_digest.of_solver();"
         f"print([m for m in {heavy} if m in sys.modules])"
     )
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", program],
         capture_output=True,
         text=True,
         check=True,
         env={"PYTHONPATH": str(PACKAGE.parent)},
     )
-    assert done.stdout.strip() == "[]"
+    assert process.stdout.strip() == "[]"

@@ -30,14 +30,14 @@ def copy(tmp_path):
 
 
 def run(program, package, **environment):
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", program],
         env={**os.environ, "PYTHONPATH": str(package.parent), **environment},
         capture_output=True,
         text=True,
     )
-    assert done.returncode == 0, done.stderr
-    return done
+    assert process.returncode == 0, process.stderr
+    return process
 
 
 def of_kernels(package):
@@ -93,14 +93,14 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
 @pytest.mark.slow
 def test_the_folder_that_the_user_names_comes_first(copy, tmp_path):
     place = tmp_path / "mine"
-    said = run(FOLDER, copy, NUMBA_CACHE_DIR=str(place)).stdout.strip()
-    assert Path(said).parent == place and Path(said).is_dir()
+    message = run(FOLDER, copy, NUMBA_CACHE_DIR=str(place)).stdout.strip()
+    assert Path(message).parent == place and Path(message).is_dir()
 
 
 @pytest.mark.slow
 def test_the_package_comes_next(copy):
-    said = run(FOLDER, copy).stdout.strip()
-    assert Path(said).parent == copy / "__pycache__"
+    message = run(FOLDER, copy).stdout.strip()
+    assert Path(message).parent == copy / "__pycache__"
 
 
 # A file with the name of the folder makes writing fail, even for root.
@@ -118,23 +118,23 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     program = (
         f"{FOLDER}; from microslip.contacts.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
     )
-    done = run(program, copy, **environment)
-    folder, number = done.stdout.split()
+    process = run(program, copy, **environment)
+    folder, number = process.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")
     assert float(number) == 0.25
     assert list(Path(folder).rglob("*.nbi"))  # the compiled code is on disk
-    (line,) = done.stderr.splitlines()
+    (line,) = process.stderr.splitlines()
     assert folder in line and "NUMBA_CACHE_DIR" in line
     again = run(program, copy, **environment)
-    assert again.stdout == done.stdout
+    assert again.stdout == process.stdout
 
 
 @pytest.mark.slow
 def test_the_home_is_used_where_the_package_cannot_be_written(copy, tmp_path):
     (copy / "__pycache__").write_text("in the way")
-    done = run(FOLDER, copy, XDG_CACHE_HOME=str(tmp_path / "caches"))
-    assert Path(done.stdout.strip()).is_relative_to(tmp_path / "caches" / "microslip")
-    assert done.stderr == ""
+    process = run(FOLDER, copy, XDG_CACHE_HOME=str(tmp_path / "caches"))
+    assert Path(process.stdout.strip()).is_relative_to(tmp_path / "caches" / "microslip")
+    assert process.stderr == ""
 
 
 BESIDE_LINEAR_ALGEBRA = """
@@ -152,8 +152,8 @@ print(scipy.linalg.cython_blas.__name__, scipy.linalg.inv(np.diag([2.0, 4.0]))[1
 
 @pytest.mark.slow
 def test_kernels_load_no_linear_algebra_and_leave_it_to_others():
-    said = run(BESIDE_LINEAR_ALGEBRA, PACKAGE).stdout.split()
-    assert said == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]
+    message = run(BESIDE_LINEAR_ALGEBRA, PACKAGE).stdout.split()
+    assert message == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]
 
 
 ANSWERS = """

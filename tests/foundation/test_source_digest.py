@@ -135,8 +135,8 @@ def test_a_result_depends_on_the_physics_rooms_and_the_files_that_its_request_na
     request_, more, package
 ):
     packages = {"solver/methods/__init__.py"}
-    found = Sources(package).of_request(request_)
-    assert found - packages == SOLVER | more
+    result = Sources(package).of_request(request_)
+    assert result - packages == SOLVER | more
 
 
 def test_a_product_depends_on_what_it_imports(package):
@@ -174,9 +174,9 @@ def test_a_scratch_file_is_no_motion(tmp_path):
         "from microslip.motions import by_name; from microslip.solver import method_names\n"
         "print(*by_name.MOTIONS, *method_names.names())"
     )
-    done = python(program, tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "copy" not in done.stdout and "checkpoint" not in done.stdout
+    process = python(program, tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "copy" not in process.stdout and "checkpoint" not in process.stdout
 
 
 def python(program, path, **settings):
@@ -221,17 +221,17 @@ NAMES = ("solver/methods/", "motions/", "pressures/")
 @pytest.mark.slow
 def test_all_that_answering_a_request_loads_counts_for_it():
     """The modules that Python loads are compared with those of the digest."""
-    asked = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
-    for request in asked:
+    requests = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
+    for request in requests:
         if request["kind"] == "field":
             del request["amplitude"]
-    done = subprocess.run(
-        [sys.executable, "-c", LOADED_BY, json.dumps(asked)], capture_output=True, text=True
+    process = subprocess.run(
+        [sys.executable, "-c", LOADED_BY, json.dumps(requests)], capture_output=True, text=True
     )
-    assert done.returncode == 0, done.stderr
+    assert process.returncode == 0, process.stderr
     naming = source_digest.NAMING | {"sweeps/__init__.py", "config/__init__.py", "config/axes.py"}
     naming |= {"config/records.py"}  # constants, and classes that do not occur in results
-    for request, line in zip(asked, done.stdout.splitlines(), strict=True):
+    for request, line in zip(requests, process.stdout.splitlines(), strict=True):
         files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(line)}
         listed = {f for f in files if f.startswith(NAMES) and "__init__" not in f}
         assert "sweeps/evaluate.py" in files
@@ -256,11 +256,11 @@ def test_a_second_process_parses_only_what_was_edited(package, monkeypatch):
 @pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"\xff" + b])
 def test_a_damaged_file_counts_as_empty_and_is_replaced(damage, package):
     first = Sources(package).digest(SOLVER)
-    (kept,) = (package / "__pycache__").glob("sources.*.json")
-    whole = kept.read_bytes()
-    kept.write_bytes(damage(whole))
+    (cache,) = (package / "__pycache__").glob("sources.*.json")
+    whole = cache.read_bytes()
+    cache.write_bytes(damage(whole))
     assert Sources(package).digest(SOLVER) == first
-    assert kept.read_bytes() == whole
+    assert cache.read_bytes() == whole
 
 
 def test_other_code_that_reads_sources_parses_them_again(package, monkeypatch):
@@ -342,14 +342,14 @@ print(json.dumps(answers))
 def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path):
     copy = tmp_path / "source" / "microslip"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", SESSION, tmp_path / "results"],
         env={**os.environ, "PYTHONPATH": str(copy.parent)},
         capture_output=True,
         text=True,
     )
-    assert done.returncode == 0, done.stderr
-    first, second = json.loads(done.stdout)
+    assert process.returncode == 0, process.stderr
+    first, second = json.loads(process.stdout)
     assert first[1:] == [1, []]
     assert second[:2] == [first[0], 0]
     assert "choice.py was edited" in second[2][0]

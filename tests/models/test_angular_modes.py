@@ -102,12 +102,12 @@ def test_operator_is_the_plain_sum_over_modes(cells, angles, rotates, nu, focus,
     for _ in range(3):
         state = rng.normal(size=(2, angles, cells))
         expected = plain_displacement(state, cells, angles, rotates, nu, focus)
-        moved = contact.displacement(state)
-        assert moved == pytest.approx(expected[:, :angles], abs=1e-12)
+        displacement = contact.displacement(state)
+        assert displacement == pytest.approx(expected[:, :angles], abs=1e-12)
         # displacements of the other half of the disc follow from symmetry
         other = whole_disc(expected[:, :angles], rotates)[angles:]
-        found = expected[1, angles:] + 1j * expected[0, angles:]
-        assert found == pytest.approx(other, abs=1e-12)
+        result = expected[1, angles:] + 1j * expected[0, angles:]
+        assert result == pytest.approx(other, abs=1e-12)
     near, _ = ring_modes(cells, angles, nu, focus)
     assert contact.compliance == pytest.approx(np.diag(near(0)), rel=1e-12)
 

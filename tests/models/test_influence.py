@@ -206,9 +206,9 @@ def test_operator_commutes_with_the_mirror(name, nu, rng):
 def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
     contact = CartesianContact(8, 0.4)
     state = rng.normal(size=(2, 8, 8))
-    moved = contact.displacement(state)
+    displacement = contact.displacement(state)
     assert contact.displacement(state[:, ::-1, ::-1]) == pytest.approx(
-        moved[:, ::-1, ::-1], abs=1e-12
+        displacement[:, ::-1, ::-1], abs=1e-12
     )
 
     def quarter_turn(field):
@@ -218,7 +218,7 @@ def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
         return np.stack([lateral.T[:, ::-1], -forward.T[:, ::-1]])
 
     assert contact.displacement(quarter_turn(state)) == pytest.approx(
-        quarter_turn(moved), abs=1e-12
+        quarter_turn(displacement), abs=1e-12
     )
 
 
@@ -249,8 +249,8 @@ def direct_displacement(coefficients, nu, z):
 def test_direct_displacement_of_the_hertz_traction():
     """The displacement at nu = 0 is u = 1 - |z|^2 / 2 in u_lim (Cattaneo)."""
     for z in (0.0 + 0j, 0.6 + 0j, 0.3 - 0.7j):
-        moved = direct_displacement(np.ones((1, 1)), 0.0, z)
-        assert moved == pytest.approx(1 - abs(z) ** 2 / 2, abs=1e-13)
+        displacement = direct_displacement(np.ones((1, 1)), 0.0, z)
+        assert displacement == pytest.approx(1 - abs(z) ** 2 / 2, abs=1e-13)
 
 
 def random_smooth_traction(rng, rotates):
@@ -299,10 +299,10 @@ def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
         mean = -np.diff(depth) / contact.rings.area  # mean traction of each ring for F = 1
         state = np.stack([np.tile(mean, (4, 1)), np.zeros((4, n))])
         assert forces(contact, state) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
-        moved = contact.displacement(state)
+        displacement = contact.displacement(state)
         inside = contact.rings.radius < 0.8
-        errors.append(np.abs(moved[0, :, inside] * 2 * hertz.G_STAR - 1).max())
-        assert np.abs(moved[1, :, inside]).max() < errors[-1]
+        errors.append(np.abs(displacement[0, :, inside] * 2 * hertz.G_STAR - 1).max())
+        assert np.abs(displacement[1, :, inside]).max() < errors[-1]
     assert errors[-1] < 1e-3
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
 
@@ -316,10 +316,10 @@ def test_mindlin_traction_displaces_the_stick_zone_uniformly(u):
         radii = np.sin(make_rings(n, float(stick)).psi)
         inner = stick**3 * hertz.load_inside(radii / stick)  # load of the inner contact
         mean = np.diff(hertz.load_inside(radii) - inner) / contact.weight
-        moved = contact.displacement(np.stack([mean, 0 * mean])[:, None])[0, 0]
+        displacement = contact.displacement(np.stack([mean, 0 * mean])[:, None])[0, 0]
         sticks = radii[1:] <= stick * (1 + 1e-12)
-        errors.append(np.abs(moved[sticks] - u).max())
-        assert np.all(moved[~sticks] < u)
+        errors.append(np.abs(displacement[sticks] - u).max())
+        assert np.all(displacement[~sticks] < u)
     assert errors[-1] < 1e-3
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
 
@@ -338,9 +338,9 @@ def test_lubkin_traction_turns_the_stick_zone_rigidly(nu):
         mean = np.sum(w * hertz.lubkin_traction(np.sin(nodes), stick), axis=1) / np.sum(w, axis=1)
         across = np.stack([contact.lateral_position, -contact.forward_position]) / radius
         state = across * mean
-        moved = contact.displacement(state)
+        displacement = contact.displacement(state)
         sticks = np.sin(psi[1:]) <= stick * (1 + 1e-12)
-        errors.append(np.abs(moved - angle * across * radius)[:, :, sticks].max() / angle)
+        errors.append(np.abs(displacement - angle * across * radius)[:, :, sticks].max() / angle)
     assert errors[-1] < 1e-3
     assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
 
@@ -390,8 +390,8 @@ def test_square_coefficients_are_the_integral_over_a_square(nu):
         for k, component in enumerate([1, 0]):  # lateral, then forward unit traction
             state = np.zeros((2, cells, cells))
             state[component][source] = 1.0
-            moved = contact.displacement(state)
-            assert moved[1] + 1j * moved[0] == pytest.approx(exact[:, :, k], abs=1e-9)
+            displacement = contact.displacement(state)
+            assert displacement[1] + 1j * displacement[0] == pytest.approx(exact[:, :, k], abs=1e-9)
     assert contact.compliance[0, 0] == pytest.approx(
         square_displacement(0.0, 2 / cells, 0j)[0].real, rel=1e-12
     )

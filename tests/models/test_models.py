@@ -504,9 +504,9 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
     def mean(steps, integrator):
         path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
         start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
-        found = find_periodic_state(PeriodMap(contact, path), start, goal)
-        assert found.converged
-        return path.mean(found.forces)[0]
+        result = find_periodic_state(PeriodMap(contact, path), start, goal)
+        assert result.converged
+        return path.mean(result.forces)[0]
 
     reference = mean(512, SDIRK2)
     steps = [16, 32, 64]

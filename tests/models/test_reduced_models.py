@@ -50,11 +50,11 @@ def test_springs_in_a_row_unload_by_masings_rule():
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_static_limit_of_springs_in_a_row(amplitude):
     """The forward force of each spring is sqrt(bound^2 - (G* y)^2)."""
-    found = microslip.solve("transverse", 0.0, amplitude, model="mdr")
+    result = microslip.solve("transverse", 0.0, amplitude, model="mdr")
     stick = np.sqrt(1.0 - amplitude)
     expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
-    assert found.converged
-    assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
+    assert result.converged
+    assert abs(result.mu_macro - expected) <= result.mu_macro_error + 1e-9
     assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # another limit
 
 
@@ -84,7 +84,7 @@ def test_a_bristle_loads_exponentially():
 @pytest.mark.slow
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.5), (0.5, 2.0), (2.0, 1.0)])
 def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
-    found = microslip.solve("transverse", velocity, amplitude, model="dahl", tolerance=1e-4)
+    result = microslip.solve("transverse", velocity, amplitude, model="dahl", tolerance=1e-4)
 
     def rate(phase, force):
         motion = np.array([velocity, amplitude * np.cos(phase)])
@@ -94,7 +94,7 @@ def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
     times = np.linspace(0.0, 2 * np.pi, 4001) + 2 * np.pi * periods
     solved = solve_ivp(rate, (0.0, times[-1]), [1.0, 0.0], t_eval=times, rtol=1e-9, atol=1e-11)
     expected = np.trapezoid(solved.y[0], times) / (2 * np.pi)
-    assert found.converged and abs(found.mu_macro - expected) <= found.mu_macro_error
+    assert result.converged and abs(result.mu_macro - expected) <= result.mu_macro_error
 
 
 def test_a_bristle_resists_no_infinitely_slow_motion():
@@ -105,9 +105,9 @@ def test_a_bristle_resists_no_infinitely_slow_motion():
 
 @pytest.mark.parametrize("model", ["slider", "dahl", "mdr"])
 def test_long_strokes_make_all_models_rigid(model):
-    found = microslip.solve("transverse", 20.0, 60.0, model=model)
+    result = microslip.solve("transverse", 20.0, 60.0, model=model)
     expected = paper.large_amplitude_transverse(20.0, 60.0)
-    assert found.converged and found.mu_macro == pytest.approx(expected, abs=0.02)
+    assert result.converged and result.mu_macro == pytest.approx(expected, abs=0.02)
 
 
 @pytest.mark.parametrize("model", ["dahl", "mdr"])

@@ -44,11 +44,11 @@ def test_a_march_is_the_plain_one(name, integrator):
     path = make_path(
         lambda phase: label.displacement(phase, VELOCITY, AMPLITUDE, poisson), phases, integrator
     )
-    found = contact.march(path, start, 1e-13)
-    assert found.state == pytest.approx(expected[-1], abs=1e-9)
+    result = contact.march(path, start, 1e-13)
+    assert result.state == pytest.approx(expected[-1], abs=1e-9)
     sums = (contact.weight * expected).sum(axis=(2, 3))
-    kept = [0] if name.startswith("angular") else [0, 1]  # by symmetry
-    assert found.forces[:, kept] == pytest.approx(sums[:, kept], abs=1e-9)
+    rows = [0] if name.startswith("angular") else [0, 1]  # by symmetry
+    assert result.forces[:, rows] == pytest.approx(sums[:, rows], abs=1e-9)
 
 
 @pytest.mark.slow
@@ -58,8 +58,8 @@ def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
     phases, start = half_period_phases(8), forward_slip(contact)
     expected = periodic(matrix, contact.bound, displacement, phases, start, contact.mirrored)
     path = make_path(lambda phase: motion.displacement(phase, VELOCITY, AMPLITUDE, 0.0), phases)
-    found = find_periodic_state(PeriodMap(contact, path), start, Goal(1e-10, 1e-13))
-    assert found.converged
-    assert found.start == pytest.approx(expected[0], abs=1e-9)
+    result = find_periodic_state(PeriodMap(contact, path), start, Goal(1e-10, 1e-13))
+    assert result.converged
+    assert result.start == pytest.approx(expected[0], abs=1e-9)
     forces = (contact.weight * expected[:, 0]).sum(axis=(1, 2))
-    assert found.forces[:, 0] == pytest.approx(forces, abs=1e-9)
+    assert result.forces[:, 0] == pytest.approx(forces, abs=1e-9)

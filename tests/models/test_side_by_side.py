@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from models.test_pulled import BODIES, START, plain
+from models.test_force_and_spring import BODIES, START, plain
 from reference_pull import pulled_march
 
 from microslip.models.contact import forward_slip
@@ -108,11 +108,11 @@ def test_a_march_of_two_contacts_is_the_plain_one(kind, body, integrator):
         plain_of_all(contacts), of_points, phases, start, numbers, START, stages
     )
     path = path_of(phases, WAYS, integrator, turns)
-    found = joined.march(path, start, 1e-12, body=Body(*numbers), start=START)
-    assert found.state == pytest.approx(expected[-1], abs=2e-8)
-    assert found.body[:, 0] == pytest.approx(places, abs=2e-8)
-    again = joined.march(path, start, 1e-12, previous=found, body=Body(*numbers), start=START)
-    assert again.state == pytest.approx(found.state, abs=1e-9)
+    result = joined.march(path, start, 1e-12, body=Body(*numbers), start=START)
+    assert result.state == pytest.approx(expected[-1], abs=2e-8)
+    assert result.body[:, 0] == pytest.approx(places, abs=2e-8)
+    again = joined.march(path, start, 1e-12, previous=result, body=Body(*numbers), start=START)
+    assert again.state == pytest.approx(result.state, abs=1e-9)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -45,12 +45,15 @@ def force_between(contact, one, other):
 def direct_sum(cells, nu, state):
     """Displacement as a sum over the tractions of all cells."""
     direct, cross = influence(cells, 2 * cells, nu)  # negative offsets at the end: index -1, -2, ..
-    given = state[1] + 1j * state[0]
+    tractions = state[1] + 1j * state[0]
     out = np.zeros((cells, cells), complex)
     for i in range(cells):
         for j in range(cells):
             rows, columns = np.arange(cells)[:, None] - i, np.arange(cells)[None, :] - j
-            out += direct[rows, columns] * given[i, j] + cross[rows, columns] * given[i, j].conj()
+            out += (
+                direct[rows, columns] * tractions[i, j]
+                + cross[rows, columns] * tractions[i, j].conj()
+            )
     return np.stack([out.imag, out.real])
 
 

@@ -118,8 +118,8 @@ def test_squares_count_for_their_images(kind, rng):
     even = whole(kind, np.stack([fewer.bound, fewer.bound]))[0]
     assert even == pytest.approx(every.bound, rel=1e-14)
     assert (fewer.forward_position > 0.0).all()
-    kept = [0, LATERAL] if KINDS[kind][1] == TURN else [0, TORQUE]
-    assert forces(fewer, state)[kept] == pytest.approx(forces(every, full)[kept], abs=1e-13)
+    rows = [0, LATERAL] if KINDS[kind][1] == TURN else [0, TORQUE]
+    assert forces(fewer, state)[rows] == pytest.approx(forces(every, full)[rows], abs=1e-13)
     energies = energy_norm(every, full), energy_norm(fewer, state)
     assert energies[1] == pytest.approx(energies[0], rel=1e-13)
     assert np.array_equal(whole(kind, fewer.mirrored(state)), every.mirrored(full))
@@ -182,7 +182,7 @@ def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, 
     run_of = simulate if velocity else simulate_static
     resolution, tolerance = Resolution(12, 1, 12), 1e-9
     other = run_of(problem, "cartesian", resolution, tolerance)
-    monkeypatch.setattr(squares_contact, "_images", lambda *given: 1)
+    monkeypatch.setattr(squares_contact, "_images", lambda *tractions: 1)
     one = run_of(problem, "cartesian", resolution, tolerance)
     assert one.converged and other.converged
     assert other.effort.work * one.effort.solves * images == one.effort.work * other.effort.solves

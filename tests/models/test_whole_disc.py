@@ -52,11 +52,11 @@ def test_the_operator_knows_no_direction(nu, rng):
 @pytest.mark.parametrize("nu", RATIOS)
 def test_what_a_mirror_leaves_is_half_of_the_disc(nu, rng):
     half, disc = PolarContact(RINGS, ANGLES, True, nu), whole(nu)
-    given = rng.normal(size=(2, ANGLES, RINGS))
-    both = np.concatenate([given, given[:, ::-1] * SIGNS], axis=1)
-    found = disc.displacement(both)
-    assert found[:, :ANGLES] == pytest.approx(half.displacement(given), abs=1e-14)
-    assert np.array_equal(disc.mirrored(both)[:, :ANGLES], half.mirrored(given))
+    tractions = rng.normal(size=(2, ANGLES, RINGS))
+    both = np.concatenate([tractions, tractions[:, ::-1] * SIGNS], axis=1)
+    result = disc.displacement(both)
+    assert result[:, :ANGLES] == pytest.approx(half.displacement(tractions), abs=1e-14)
+    assert np.array_equal(disc.mirrored(both)[:, :ANGLES], half.mirrored(tractions))
 
 
 @pytest.mark.parametrize("nu", RATIOS)

@@ -97,8 +97,8 @@ def test_the_command_line_takes_the_numbers_of_a_motion(capsys):
     place = ["--velocity", "0.5", "--amplitude", "0.5"]
     words = ["point", "elliptic:forward=0.5,phase=30", *place]
     assert cli.main([*words, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["motion"] == "elliptic:forward=0.5,phase=30"
+    result = json.loads(capsys.readouterr().out)
+    assert result["motion"] == "elliptic:forward=0.5,phase=30"
     words[1] = "elliptic:width=3"
     assert cli.main(words) == 2
     assert capsys.readouterr().err.startswith(
@@ -107,9 +107,9 @@ def test_the_command_line_takes_the_numbers_of_a_motion(capsys):
 
 
 def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
-    found = microslip.period(CIRCLE, 0.1, 0.6)
-    assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.2 * np.pi, rel=2e-3)
-    assert found.slip_lateral[1:].sum(axis=0) == pytest.approx(0.0, abs=2e-3)
+    result = microslip.period(CIRCLE, 0.1, 0.6)
+    assert result.slip_forward[1:].sum(axis=0) == pytest.approx(0.2 * np.pi, rel=2e-3)
+    assert result.slip_lateral[1:].sum(axis=0) == pytest.approx(0.0, abs=2e-3)
 
 
 def test_a_figure_of_eight_may_drive_the_contact_forward():
@@ -127,8 +127,8 @@ def test_a_figure_of_eight_may_drive_the_contact_forward():
 
 @pytest.mark.parametrize("motion", ["elliptic", "elliptic:forward_cycles=2,phase=20"])
 def test_friction_never_falls_with_velocity(motion):
-    found = [microslip.solve(motion, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
-    for slow, fast in zip(found, found[1:], strict=False):
+    result = [microslip.solve(motion, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
+    for slow, fast in zip(result, result[1:], strict=False):
         assert fast.mu_macro >= slow.mu_macro - slow.mu_macro_error - fast.mu_macro_error
 
 

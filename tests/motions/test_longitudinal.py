@@ -128,9 +128,9 @@ def test_bad_numbers_are_refused(bad):
 
 
 def test_a_period_from_inside():
-    found = microslip.period("longitudinal", 0.1, 0.7)
-    assert found.phase[-1] - found.phase[0] == pytest.approx(2 * np.pi)
-    mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
+    result = microslip.period("longitudinal", 0.1, 0.7)
+    assert result.phase[-1] - result.phase[0] == pytest.approx(2 * np.pi)
+    mean = np.trapezoid(result.force_forward, result.phase) / (2 * np.pi)
     assert mean == pytest.approx(longitudinal(0.1, 0.7), abs=2e-3)
-    assert np.abs(found.traction_lateral).max() < 1e-6
-    assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.1 * 2 * np.pi, rel=1e-3)
+    assert np.abs(result.traction_lateral).max() < 1e-6
+    assert result.slip_forward[1:].sum(axis=0) == pytest.approx(0.1 * 2 * np.pi, rel=1e-3)

@@ -39,8 +39,10 @@ def test_half_a_period_later_a_motion_is_its_own_mirror_image(name):
     """The search for the periodic state relies on this symmetry, up to the drift."""
     motion = Problem(name, 0.3, 0.7, 0.2)
     now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
-    moved = np.pi * motion.drift
-    for one, other, sign, way in zip(now, later, (1, -1, -1), (moved, 0.0, 0.0), strict=True):
+    displacement = np.pi * motion.drift
+    for one, other, sign, way in zip(
+        now, later, (1, -1, -1), (displacement, 0.0, 0.0), strict=True
+    ):
         assert other == pytest.approx(sign * one + way, abs=1e-12)
 
 
@@ -122,12 +124,12 @@ class SineCubed(Transverse):
 @pytest.fixture
 def cube(tmp_path):
     """A user-defined motion in a file; the registry is restored afterwards."""
-    known, path = dict(by_name.MOTIONS), list(motions.__path__)
+    registry, path = dict(by_name.MOTIONS), list(motions.__path__)
     (tmp_path / "sine_cubed.py").write_text(CUBE)
     by_name.find(tmp_path)
     yield "sine-cubed"
     by_name.MOTIONS.clear()
-    by_name.MOTIONS.update(known)
+    by_name.MOTIONS.update(registry)
     motions.__path__[:] = path
     del sys.modules["microslip.motions.sine_cubed"]
 
@@ -143,9 +145,9 @@ def test_a_motion_is_one_file(cube, capsys):
     assert 0.0 < answer["mu_macro_error"] <= answer["tolerance"]
     squares = microslip.solve(cube, 0.1, 0.5, model="cartesian", tolerance=3e-3)
     assert abs(squares.mu_macro - answer["mu_macro"]) <= squares.mu_macro_error + 1e-3
-    found = microslip.solve(cube, 0.0, 0.5)
-    assert found.mu_macro == pytest.approx(
-        paper.static_limit_transverse(0.5), abs=found.mu_macro_error
+    result = microslip.solve(cube, 0.0, 0.5)
+    assert result.mu_macro == pytest.approx(
+        paper.static_limit_transverse(0.5), abs=result.mu_macro_error
     )
     with pytest.raises(ValueError, match="allowed is one of transverse, .*, sine-cubed"):
         microslip.solve("cubed", 0.1, 0.5)
@@ -226,13 +228,13 @@ def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
     command = [sys.executable, "-m", "microslip", "point", "longitudinal", "--velocity", "0.1"]
     command += ["--amplitude", "0.5", "--results", "results"]
     place = os.environ | {"PYTHONPATH": str(tmp_path)}
-    done = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
+    assert (process.returncode, process.stderr) == (0, "")
     command[command.index("--results") :] = ["--method", "unfinished"]
-    done = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert "unfinished.py cannot be imported: SyntaxError in line 1" in done.stderr
-    assert done.stderr.count("\n") == 1
+    process = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
+    assert process.returncode == 2
+    assert "unfinished.py cannot be imported: SyntaxError in line 1" in process.stderr
+    assert process.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("kind", [Force, Spring])

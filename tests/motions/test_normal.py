@@ -188,10 +188,10 @@ def test_work_is_dissipated(place):
     name, velocity, amplitude = place
     motion = Problem(motion_named(name), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
-    contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
+    contact, result = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
     phase = path_of(motion, contact, 256).phase
     path = make_path(motion.displacement, phase, EULER, motion.depth)
-    before = found.state
+    before = result.state
     march = contact.march(path, before, 1e-11)
     moves = np.diff(path.positions[:, :2], axis=0)
     work = np.sum(moves * march.forces[1:, :2])
@@ -333,9 +333,9 @@ def test_a_method_with_another_integrator_finds_the_same():
 
 def test_a_history_follows_the_load():
     """The force of a fast sliding contact is proportional to the load."""
-    found = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
-    expected = 1.0 + 0.7 * np.sin(found.phase)
-    assert found.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
+    result = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
+    expected = 1.0 + 0.7 * np.sin(result.phase)
+    assert result.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
 
 
 # Other indenters
@@ -357,9 +357,9 @@ def test_closed_form_springs_and_rings_agree_for_other_indenters(
     assert exact.model == "closed-form"
     for model in ("mdr", "radial"):
         settings = {"pressure": pressure, "model": model, "tolerance": 5e-3}
-        found = microslip.solve(motion, velocity, amplitude, **settings)
-        assert found.converged
-        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error
+        result = microslip.solve(motion, velocity, amplitude, **settings)
+        assert result.converged
+        assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error
 
 
 @pytest.mark.parametrize("exponent", [1.0, 8.0])

@@ -21,10 +21,10 @@ def run(motion, velocity, amplitude, model="polar", poisson=0.0, resolution=(24,
     return simulate(problem, model, Resolution(*resolution), 1e-6)
 
 
-def within(found, other, slack=0.0):
-    assert found.converged and other.converged
-    gap = abs(found.mu_macro - other.mu_macro)
-    assert gap <= found.mu_macro_error + other.mu_macro_error + slack
+def within(result, other, slack=0.0):
+    assert result.converged and other.converged
+    gap = abs(result.mu_macro - other.mu_macro)
+    assert gap <= result.mu_macro_error + other.mu_macro_error + slack
 
 
 @pytest.mark.slow
@@ -59,7 +59,7 @@ def test_a_small_part_changes_little():
 def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     """The mean is Eq 21 at the current contact radius and rotation rate, weighted with the load."""
     amplitude, share = 60.0, 0.5 / 60.0
-    found = microslip.solve(
+    result = microslip.solve(
         f"normal:load={share!r},angle=1,phase=90", velocity, amplitude, tolerance=5e-3
     )
     phase = (np.arange(4000) + 0.5) * np.pi / 2000.0
@@ -67,9 +67,9 @@ def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     rate = np.abs(float(hertz.bore_angle(amplitude)) * np.sin(phase))
     radius = HERTZ.radius(HERTZ.of_load(load))
     steady = paper.bore_forward(velocity / (rate * radius))
-    assert found.converged
+    assert result.converged
     # the force follows with a delay of about u_lim, which is a small part of this path
-    assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
+    assert result.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
 
 
 @pytest.mark.long
@@ -83,15 +83,15 @@ def test_which_way_it_turns_does_not_matter():
 @pytest.mark.slow
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_the_least_load_is_what_is_left_at_any_nu(poisson):
-    found = microslip.solve("normal", 0.0, 0.6, poisson=poisson, model="polar")
-    assert found.converged
-    assert found.mu_macro == pytest.approx(0.4, abs=found.mu_macro_error)
+    result = microslip.solve("normal", 0.0, 0.6, poisson=poisson, model="polar")
+    assert result.converged
+    assert result.mu_macro == pytest.approx(0.4, abs=result.mu_macro_error)
 
 
 @pytest.mark.slow
 def test_a_turning_contact_that_lifts_off_has_no_static_friction():
-    found = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
-    assert found.converged and found.mu_macro <= found.mu_macro_error
+    result = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
+    assert result.converged and result.mu_macro <= result.mu_macro_error
 
 
 @pytest.mark.long

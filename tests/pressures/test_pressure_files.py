@@ -162,13 +162,13 @@ def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     axis = (np.arange(count) + 0.5) * 2.0 / count - 1.0
     file = csv(tmp_path / "p.csv", axis, axis, shape(axis[:, None], axis[None, :]))
     truth = microslip.solve("transverse", 0.1, 0.5, pressure=name)
-    found = microslip.solve(
+    result = microslip.solve(
         "transverse", 0.1, 0.5, pressure=f"{file},grid={reading}", tolerance=2e-2
     )
     assert truth.model == "radial"
-    assert found.friction.by_source["model"] > 0.0
-    assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
-    assert found.converged == (found.mu_macro_error <= 2e-2)
+    assert result.friction.by_source["model"] > 0.0
+    assert abs(result.mu_macro - truth.mu_macro) <= result.mu_macro_error + truth.mu_macro_error
+    assert result.converged == (result.mu_macro_error <= 2e-2)
 
 
 @pytest.mark.slow
@@ -180,29 +180,29 @@ def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shif
     axis = (np.arange(-count // 2 - 2, count // 2 + 3) + shift) * 2.0 / count
     file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
     truth = microslip.solve("bore", 0.5, 1.0, tolerance=5e-3)
-    found = microslip.solve("bore", 0.5, 1.0, pressure=f"{file},grid={reading}", tolerance=3e-2)
-    assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
+    result = microslip.solve("bore", 0.5, 1.0, pressure=f"{file},grid={reading}", tolerance=3e-2)
+    assert abs(result.mu_macro - truth.mu_macro) <= result.mu_macro_error + truth.mu_macro_error
 
 
 @pytest.mark.slow
 def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
     axis = np.linspace(-0.75, 0.75, 4)
     file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
-    found = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=1e-2)
-    assert not found.converged
-    assert found.mu_macro_error > 1e-2
+    result = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=1e-2)
+    assert not result.converged
+    assert result.mu_macro_error > 1e-2
     assert (
-        f"the file's own resolution leaves {found.friction.by_source['model']:.1e} open"
-        in found.reason
+        f"the file's own resolution leaves {result.friction.by_source['model']:.1e} open"
+        in result.reason
     )
 
 
 def test_sliding_fast_needs_no_resolution(tmp_path):
     """A fast sliding contact is rigid for any pressure."""
     file = csv(tmp_path / "p.csv", *2 * [np.array([-0.5, 0.5])], np.array([[1.0, 2.0], [3.0, 4.0]]))
-    found = microslip.solve("transverse", 1e3, 0.5, pressure=file, tolerance=1e-3)
-    assert found.converged
-    assert found.mu_macro == pytest.approx(1.0, abs=1e-3)
+    result = microslip.solve("transverse", 1e3, 0.5, pressure=file, tolerance=1e-3)
+    assert result.converged
+    assert result.mu_macro == pytest.approx(1.0, abs=1e-3)
     marched = microslip.solve(
         "transverse", 20.0, 0.5, pressure=file, tolerance=1e-2, cells=8, steps=32
     )
@@ -220,12 +220,12 @@ def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_p
     problem = Problem(motion_named("bore"), 0.1, 1.0, pressure=pressure_named(name))
     assert not problem.half_period_mirror
     assert problem.turns == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
-    found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)
+    result = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)
     mirrored = csv(tmp_path / "m.csv", values=values[:, ::-1])
     other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=4e-2)
-    assert found.converged
+    assert result.converged
     # the mirror image of the motion is the motion half a period later
-    assert found.mu_macro == pytest.approx(other.mu_macro, abs=1e-3)
+    assert result.mu_macro == pytest.approx(other.mu_macro, abs=1e-3)
 
 
 PLAIN = "forward,lateral,pressure\n0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
@@ -317,10 +317,10 @@ def test_a_spreadsheet_with_decimal_commas_in_windows_1252_is_read_if_declared(t
 def test_what_csv_must_not_hold_is_told_in_one_line(tmp_path, capsys, content, problem):
     name = text(tmp_path / "p.csv", content)
     assert main([*POINT, "--pressure", name]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert problem in said
-    assert "p.csv" in said
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert problem in message
+    assert "p.csv" in message
 
 
 def test_huge_files_folders_and_pipes_are_refused_unread(tmp_path, monkeypatch):
@@ -364,10 +364,10 @@ def test_sizes_that_netcdf_declares_are_checked_before_they_are_read(tmp_path):
         assert path.stat().st_size < 20_000
         return f"file:{path}"
 
-    said = refusal(declared(10**12, (1024, 4)))
-    assert "the dimension forward has 1000000000000 points; allowed: at most 1000000" in said
-    said = refusal(declared(None, (10**8, 4)))
-    assert "forward is stored in chunks of 100000000; allowed" in said
+    message = refusal(declared(10**12, (1024, 4)))
+    assert "the dimension forward has 1000000000000 points; allowed: at most 1000000" in message
+    message = refusal(declared(None, (10**8, 4)))
+    assert "forward is stored in chunks of 100000000; allowed" in message
 
 
 def test_scattered_points_do_not_make_a_huge_grid(tmp_path, monkeypatch):
@@ -375,32 +375,36 @@ def test_scattered_points_do_not_make_a_huge_grid(tmp_path, monkeypatch):
     monkeypatch.setattr("microslip.pressures.grid_csv.MOST_POINTS", 10)
     monkeypatch.setattr(np, "full", lambda *args: pytest.fail("it was allocated"))
     lines = "".join(f"{i},{i},1\n" for i in range(5))
-    said = refusal(text(tmp_path / "p.csv", f"forward,lateral,pressure\n{lines}"))
-    assert "5 points do not fill a grid of 5 x 5" in said
+    message = refusal(text(tmp_path / "p.csv", f"forward,lateral,pressure\n{lines}"))
+    assert "5 points do not fill a grid of 5 x 5" in message
 
 
 @pytest.mark.slow
 def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
     axis, one = [0.0, 1.0], np.ones((2, 2))
 
-    def said(variables, **coordinates):
+    def message(variables, **coordinates):
         xr.Dataset(variables, coordinates).to_netcdf(tmp_path / "p.nc")
         return refusal(f"file:{tmp_path / 'p.nc'}")
 
     dims = ("forward", "lateral")
     both = {"forward": axis, "lateral": axis}
     holed = np.array([[1.0, np.nan], [1.0, 1.0]])
-    assert "nan: at forward 0, lateral 1" in said({"pressure": (dims, holed)}, **both)
-    assert "pressure = -1.0: at forward 0" in said({"pressure": (dims, -one)}, **both)
-    assert "no variable lateral" in said({"pressure": (dims, one)}, forward=axis)
-    assert "no variable pressure" in said({"load": (dims, one)}, **both)
-    assert "pressure has the dimensions time, forward, lateral" in said(
+    assert "nan: at forward 0, lateral 1" in message({"pressure": (dims, holed)}, **both)
+    assert "pressure = -1.0: at forward 0" in message({"pressure": (dims, -one)}, **both)
+    assert "no variable lateral" in message({"pressure": (dims, one)}, forward=axis)
+    assert "no variable pressure" in message({"load": (dims, one)}, **both)
+    assert "pressure has the dimensions time, forward, lateral" in message(
         {"pressure": (("time", *dims), one[None])}, **both
     )
-    assert "forward = 'nan'" in said({"pressure": (dims, one)}, forward=[0.0, np.nan], lateral=axis)
-    assert "not evenly spaced" in said({"pressure": (dims, one)}, forward=[1.0, 1.0], lateral=axis)
-    assert "pressure holds" in said({"pressure": (dims, np.full((2, 2), "a"))}, **both)
-    assert "lateral alone has a unit" in said(
+    assert "forward = 'nan'" in message(
+        {"pressure": (dims, one)}, forward=[0.0, np.nan], lateral=axis
+    )
+    assert "not evenly spaced" in message(
+        {"pressure": (dims, one)}, forward=[1.0, 1.0], lateral=axis
+    )
+    assert "pressure holds" in message({"pressure": (dims, np.full((2, 2), "a"))}, **both)
+    assert "lateral alone has a unit" in message(
         {"pressure": (dims, one)}, forward=axis, lateral=("lateral", axis, {"units": "mm"})
     )
     assert "not a netCDF file" in refusal(text(tmp_path / "q.nc", b"\x89HDF\r\n\x1a\n no netCDF"))
@@ -420,9 +424,9 @@ def test_a_file_is_found_without_any_other_import(tmp_path):
         f"problem = checked_problem('transverse', 0.5, 0.5, pressure={name!r})\n"
         "print(problem.pressure)"
     )
-    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert found.returncode == 0, found.stderr
-    assert found.stdout.startswith("file:sha256=")
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.startswith("file:sha256=")
 
 
 def test_one_file_by_many_paths_is_one_pressure(tmp_path, monkeypatch):
@@ -452,13 +456,13 @@ def test_a_stored_point_is_found_by_any_path_and_says_none(tmp_path, monkeypatch
 @pytest.mark.slow
 def test_a_file_that_changes_is_another_pressure(tmp_path):
     name = csv(tmp_path / "p.csv")
-    found = pressure_named(name)
-    digest = found.name.partition(":")[2]
-    assert pressure_named(f"{name},{digest}") is found
+    result = pressure_named(name)
+    digest = result.name.partition(":")[2]
+    assert pressure_named(f"{name},{digest}") is result
     csv(tmp_path / "p.csv", values=2.0 * HERTZIAN + HERTZIAN**2)
-    for past in (f"{name},{digest}", found.name):
+    for past in (f"{name},{digest}", result.name):
         assert "has changed: its sha256 begins with" in refusal(past)
-    assert pressure_named(name).name != found.name
+    assert pressure_named(name).name != result.name
 
 
 def test_names_that_name_no_file_are_refused(tmp_path):
@@ -475,17 +479,18 @@ def test_names_that_name_no_file_are_refused(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, motion):
-    found = []
+    result = []
     for count in (2, 41):
         axis = np.linspace(-1.0, 1.0, count)
         axis *= 1.0 - 1.0 / count  # centres of the cells of one square
         name = csv(tmp_path / f"{count}.csv", axis, axis, np.ones((count, count)))
-        found.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
-    one, other = found
+        result.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
+    one, other = result
     assert one.converged and other.converged
     # the grid itself changes nothing: what differs is what the iterations leave
     left = max(
-        each.friction.by_source["periodicity"] + each.friction.by_source["solver"] for each in found
+        each.friction.by_source["periodicity"] + each.friction.by_source["solver"]
+        for each in result
     )
     assert left < 1e-3
     assert max(one.friction.by_source["model"], other.friction.by_source["model"]) < left

@@ -96,15 +96,15 @@ def test_u_lim_is_the_largest_displacement_under_full_slip(name):
     """Displacements are sums over a fine grid, with a closed form for the influence of a cell on
     itself."""
     pressure = pressure_named(name)
-    found = []
+    result = []
     for n in (81, 161):
         distance = np.hypot(*np.meshgrid(*2 * [np.arange(1 - n, n) * 2.0 / n]))
         own = 4.0 * np.arcsinh(1.0) / (2.0 / n)
         kernel = np.where(distance > 0.0, 1.0 / np.where(distance > 0.0, distance, 1.0), own)
         loads = pressure.cell_loads(n)
         field = fftconvolve(loads, kernel)[n - 1 : 2 * n - 1, n - 1 : 2 * n - 1]
-        found.append(field[loads > 0.0].max() / (np.pi * pressure.G_star))
-    assert 2.0 * found[1] - found[0] == pytest.approx(1.0, abs=3e-3)
+        result.append(field[loads > 0.0].max() / (np.pi * pressure.G_star))
+    assert 2.0 * result[1] - result[0] == pytest.approx(1.0, abs=3e-3)
 
 
 def test_the_power_2_is_a_sphere():
@@ -193,19 +193,19 @@ def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
 def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     pressure = pressure_named(name)
     for amplitude in (1e-3, 0.25, 0.9):
-        found = indenters.static_transverse(pressure, amplitude)
-        assert found == pytest.approx(paper.static_limit_transverse(amplitude), abs=1e-9)
+        result = indenters.static_transverse(pressure, amplitude)
+        assert result == pytest.approx(paper.static_limit_transverse(amplitude), abs=1e-9)
         assert 1.0 - pressure.loading(amplitude) == pytest.approx(
             (1.0 - amplitude) ** 1.5, abs=1e-9
         )
     for amplitude in (0.1, 1.0, 3.0):
-        found = indenters.static_bore(pressure, float(hertz.bore_angle(amplitude)))
-        assert found == pytest.approx(paper.static_limit_bore(amplitude), abs=1e-9)
+        result = indenters.static_bore(pressure, float(hertz.bore_angle(amplitude)))
+        assert result == pytest.approx(paper.static_limit_bore(amplitude), abs=1e-9)
     r = np.array([0.05, 0.2, 0.399])
     angle = indenters.torsion_angle(pressure, 0.4, 0.3)
     assert angle == pytest.approx(hertz.lubkin_angle(0.4, 0.3), rel=1e-10)
-    found = indenters.torsion_traction(pressure, r, 0.4)
-    assert found == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
+    result = indenters.torsion_traction(pressure, r, 0.4)
+    assert result == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
 
 
 @pytest.mark.slow
@@ -216,9 +216,9 @@ def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
 )
 def test_static_limits_agree_with_those_point_by_point(name, motion, amplitude, model):
     exact = microslip.solve(motion, 0.0, amplitude, pressure=name)
-    found = microslip.solve(motion, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
+    result = microslip.solve(motion, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
     assert exact.model == "closed-form"
-    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
+    assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error + exact.mu_macro_error
 
 
 @pytest.mark.slow
@@ -226,20 +226,20 @@ def test_static_limits_agree_with_those_point_by_point(name, motion, amplitude, 
 @pytest.mark.parametrize("velocity", [0.01, 0.3])
 def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
     exact = microslip.solve("longitudinal", velocity, 0.6, pressure=name)
-    found = microslip.solve("longitudinal", velocity, 0.6, pressure=name, model="radial")
-    assert (exact.model, found.model) == ("closed-form", "radial")
-    assert found.converged
-    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
+    result = microslip.solve("longitudinal", velocity, 0.6, pressure=name, model="radial")
+    assert (exact.model, result.model) == ("closed-form", "radial")
+    assert result.converged
+    assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error + exact.mu_macro_error
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 def test_the_steady_bore_is_eqs_17_and_18(name):
     exact = microslip.solve("continuous-bore", 0.6, pressure=name)
-    found = microslip.solve("continuous-bore", 0.6, pressure=name, model="polar")
+    result = microslip.solve("continuous-bore", 0.6, pressure=name, model="polar")
     assert exact.model == "closed-form"
-    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-6
-    assert abs(found.mu_torque - exact.mu_torque) <= found.torque.error + 1e-3
+    assert abs(result.mu_macro - exact.mu_macro) <= result.mu_macro_error + 1e-6
+    assert abs(result.mu_torque - exact.mu_torque) <= result.torque.error + 1e-3
 
 
 # Models against each other

@@ -123,7 +123,7 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
     datasets, _, content = made
     run, transverse = "element('run').text", datasets["transverse"]
     box = "element('limits').children[0].children[0]"
-    seen = (
+    visibility = (
         "element('along-amplitude').data.find((t) => t.name === STATE.map.limits[0].label).visible"
     )
     _, certificate, _, nearest, _, still, _, rest, _, bad, _, hidden, _, drawn = page_says(
@@ -140,9 +140,9 @@ def test_unconverged_points_missing_periods_and_hidden_limits(made):
         run,
         chosen("transverse", transverse, 1, 1.2)
         + f", {box}.checked = false, {box}.fire('change'), selectAndMark(1, 1)",
-        seen,
+        visibility,
         f"{box}.checked = true, {box}.fire('change')",
-        seen,
+        visibility,
     )
     assert "not converged: made up" in certificate
     assert nearest.startswith("No period was found: none to be found Drawn below: the nearest")
@@ -212,13 +212,13 @@ LARGE = FINE | {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "gro
     [
         ({"sweeps": {"bore": SMALL}}, explorer.PAGE, None),
         ({"sweeps": {"bore": FINE | {"amplitude": [1]}}}, explorer.PAGE,
-         "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+         "sweeps: no map for the explorer; allowed: transverse or bore with two "
          "amplitudes and two velocities above 0"),
         ({"sweeps": {"bore": FINE | {"amplitude": [0, *range(1, 51)]}}}, explorer.PAGE,
-         "sweeps.bore: 5,151 points have no room in the explorer; allowed: up to 5,000"),
+         "sweeps.bore: 5,151 points do not fit into the explorer; allowed: up to 5,000"),
         ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE, None),
         ({"sweeps": {"bore": SMALL}, "extended": {"large": LARGE}}, explorer.PAGE_OF_ALL,
-         "sweeps: 20,305 points have no room in explorer_all.html; allowed: up to 20,000, "
+         "sweeps: 20,305 points do not fit into explorer_all.html; allowed: up to 20,000, "
          "at all of Poisson's ratios together"),
     ],
 )  # fmt: skip
@@ -287,9 +287,11 @@ def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(fin
 def test_without_a_map_there_is_nothing_to_explore(tmp_path):
     project = Project(tmp_path)
     project.configure({"sweeps": {"transverse": AXES | {"amplitude": [1]}}})
-    done = project.snakemake("explorer", "-j2", "--configfile", "tiny.yaml")
-    assert done.returncode != 0
+    process = project.snakemake("explorer", "-j2", "--configfile", "tiny.yaml")
+    assert process.returncode != 0
     assert (
-        done.stderr.strip().split("\n")[-1].startswith("Error in tiny.yaml: sweeps: the explorer")
+        process.stderr.strip()
+        .split("\n")[-1]
+        .startswith("Error in tiny.yaml: sweeps: the explorer")
     )
-    assert "Traceback" not in done.stderr
+    assert "Traceback" not in process.stderr

@@ -218,7 +218,8 @@ def test_a_motion_without_a_map_still_has_its_contact():
 
 
 NO_NUMBERS = {
-    "5,5": "read 5 and stopped at ',5', since decimals follow a point and nothing parts thousands",
+    "5,5": "read 5 and stopped at ',5', since decimals follow a point and thousands "
+    "have no separator",
     "−5": "its minus is no plain one (-)",
     "": "nothing: allowed is one number, such as 5",
     "5 mm": "read 5 and stopped at 'mm'",

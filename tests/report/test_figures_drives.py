@@ -59,9 +59,9 @@ def test_the_points_of_all_drives_are_drawn():
 
 def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     left, right = drawing.draw("pairs", pairs()).figure.axes
-    alone, moved = by_gid(left, "computed")
+    alone, other = by_gid(left, "computed")
     soft, stiff, force = by_gid(right, "computed")
-    assert np.array_equal(alone.get_ydata(), moved.get_ydata())
+    assert np.array_equal(alone.get_ydata(), other.get_ydata())
     assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
     assert stiff.get_label() == "constant velocity"
     (line,) = by_gid(right, "antiphase")

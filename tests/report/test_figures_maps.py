@@ -219,18 +219,18 @@ def test_points_are_drawn_neither_over_a_number_nor_close_to_its_letters():
     dense["mu_macro"][0, 0] = 1.0  # a jump, so that the points are drawn
     axes, _ = contours_of(dense)
     (points,) = artists(axes, "points")
-    seen = {}
+    images = {}
     for shows_points in (True, False):
         for shows_numbers in (True, False):
             points.set_visible(shows_points)
             for text in axes.texts:
                 text.set_visible(shows_numbers)
-            seen[shows_points, shows_numbers] = pixels(axes.figure)
+            images[shows_points, shows_numbers] = pixels(axes.figure)
 
     def differ(one, other):
-        return np.abs(seen[one] - seen[other]).max(axis=-1) > 60  # neighbouring bands: 12
+        return np.abs(images[one] - images[other]).max(axis=-1) > 60  # neighbouring bands: 12
 
-    alone = seen[False, True]
+    alone = images[False, True]
     inked = (alone < 40).all(axis=-1) | (alone > 215).all(axis=-1)  # black or white
     letters = binary_dilation(inked & differ((False, True), (False, False)), iterations=3)
     behind = (letters & differ((True, False), (False, False))).sum()
@@ -325,9 +325,9 @@ def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     figure = drawing.draw("extended_static", {"a": slow, "b": loop})
     (line,) = artists(figure, "limit")  # the second dataset has no limit
     np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
-    first, done, failed = (bars.lines[0] for bars in figure.axes[0].containers)
+    first, solved, failed = (bars.lines[0] for bars in figure.axes[0].containers)
     np.testing.assert_array_equal(first.get_ydata(), slow["mu_macro"].sel(velocity=1e-3))
-    assert len(done.get_ydata()) == 6 and failed.get_markerfacecolor() == "white"
+    assert len(solved.get_ydata()) == 6 and failed.get_markerfacecolor() == "white"
     assert "marks: velocity $0.001$" in words(figure)
 
 

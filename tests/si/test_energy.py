@@ -24,14 +24,14 @@ def test_drag_and_vibration_are_what_slip_dissipates(motion):
     velocity, amplitude = 0.3, 1.2
     power = vibration_power(motion, velocity, amplitude)
     assert power.reason == "" and power.value > 0.0
-    found = microslip.solve(motion, velocity, amplitude)
+    result = microslip.solve(motion, velocity, amplitude)
     period = microslip.period(motion, velocity, amplitude, cells=32, steps=256)
     slipped = period.traction_forward * period.slip_forward
     slipped = slipped + period.traction_lateral * period.slip_lateral
     dissipated = float(np.sum(slipped[1:] @ period.area)) / (2.0 * math.pi)
     drift = (period.forward[-1] - period.forward[0]) / (2.0 * math.pi)
     # The period has one resolution; its error is about 1e-3 mu F_z times the path.
-    put_in = power.value + found.mu_macro * drift
+    put_in = power.value + result.mu_macro * drift
     assert put_in == pytest.approx(dissipated, abs=3e-3 * (amplitude + velocity))
 
 
@@ -55,32 +55,34 @@ def test_a_steady_spin_takes_a_torque():
     """
     at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
     a = at_rest.contact_radius_m
-    asked = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
-    found = microslip.predict("continuous-bore", **asked)
+    request = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
+    result = microslip.predict("continuous-bore", **request)
     whole = 3.0 * math.pi / 16.0 * 3.0 * a
-    assert found.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
+    assert result.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
     force = 3.0 * 3.0 * math.pi / 8.0 * (0.5 - 0.125 / 4.0)
-    assert found.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
-    assert found.vibration_power_W == pytest.approx(100.0 * found.torque_N_m)
-    both = found.drag_power_W + found.vibration_power_W
-    assert found.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
+    assert result.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
+    assert result.vibration_power_W == pytest.approx(100.0 * result.torque_N_m)
+    both = result.drag_power_W + result.vibration_power_W
+    assert result.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
 
 
 @pytest.mark.slow
 def test_power_is_in_watts():
-    found = microslip.predict("transverse", **SHAKEN, power=True)
-    unit = 3.0 * found.u_lim_m * 2.0 * math.pi * 20e3
-    working = vibration_power("transverse", found.velocity, found.amplitude, poisson=found.poisson)
-    assert found.vibration_power_W == pytest.approx(unit * working.value, rel=1e-12)
-    assert found.drag_power_W == pytest.approx(found.friction_force_N * 0.01, rel=1e-12)
-    assert found.energy_per_cycle_J == pytest.approx(found.dissipated_power_W / 20e3, rel=1e-12)
+    result = microslip.predict("transverse", **SHAKEN, power=True)
+    unit = 3.0 * result.u_lim_m * 2.0 * math.pi * 20e3
+    working = vibration_power(
+        "transverse", result.velocity, result.amplitude, poisson=result.poisson
+    )
+    assert result.vibration_power_W == pytest.approx(unit * working.value, rel=1e-12)
+    assert result.drag_power_W == pytest.approx(result.friction_force_N * 0.01, rel=1e-12)
+    assert result.energy_per_cycle_J == pytest.approx(result.dissipated_power_W / 20e3, rel=1e-12)
     plain = microslip.predict("transverse", **SHAKEN)
-    assert plain.vibration_power_W is None and plain.drag_power_W == found.drag_power_W
+    assert plain.vibration_power_W is None and plain.drag_power_W == result.drag_power_W
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"power": "yes"}, "power = 'yes': allowed is True or False"),
         ({"speed": 0.0}, "speed = 0.0: allowed is above 0"),
@@ -88,6 +90,6 @@ def test_power_is_in_watts():
         ({"drive_stiffness": "1 N/um"}, "power = True: allowed only without a force and a spring"),
     ],
 )
-def test_a_power_that_nothing_can_have_is_refused(change, said):
-    with pytest.raises(InputError, match=said):
+def test_a_power_that_nothing_can_have_is_refused(change, message):
+    with pytest.raises(InputError, match=message):
         microslip.predict("transverse", **SHAKEN | {"power": True} | change)

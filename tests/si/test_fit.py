@@ -78,12 +78,12 @@ def fitted(table, **more):
 def test_the_curve_is_that_of_the_model_between_the_rows(closed):
     table = conditions(8)
     table["friction"] = force(table)
-    found = microslip.fit("transverse", table, **SHARED)
-    curve = found.curve
-    assert len(curve.fitted) > 10 * len(found.fitted)
-    for row, amplitude in enumerate(found.amplitude_si):
-        here = (curve.speed_m_s == found.speed_m_s[row]) & (curve.amplitude_si == amplitude)
-        assert curve.fitted[here] == pytest.approx([found.fitted[row]], rel=1e-12)
+    result = microslip.fit("transverse", table, **SHARED)
+    curve = result.curve
+    assert len(curve.fitted) > 10 * len(result.fitted)
+    for row, amplitude in enumerate(result.amplitude_si):
+        here = (curve.speed_m_s == result.speed_m_s[row]) & (curve.amplitude_si == amplitude)
+        assert curve.fitted[here] == pytest.approx([result.fitted[row]], rel=1e-12)
     fine = {"speed": curve.speed_m_s, "amplitude": curve.amplitude_si}
     assert curve.fitted == pytest.approx(force(fine), rel=1e-4)
 
@@ -130,12 +130,14 @@ def test_under_the_mean_load_u_lim_is_itself_and_goes_like_hertz():
 
 def test_rows_without_noise_give_the_truth(closed):
     table = conditions()
-    found = fitted(table | {"friction": force(table)})
-    assert found.told == ("mu", "u_lim") and found.reason == ""
-    assert found.mu == pytest.approx(MU, rel=1e-5)
-    assert found.u_lim_m == pytest.approx(U_LIM, rel=1e-5)
-    assert found.mu_low <= MU <= found.mu_high and found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
-    assert found.fitted == pytest.approx(force(table), rel=1e-4)
+    result = fitted(table | {"friction": force(table)})
+    assert result.told == ("mu", "u_lim") and result.reason == ""
+    assert result.mu == pytest.approx(MU, rel=1e-5)
+    assert result.u_lim_m == pytest.approx(U_LIM, rel=1e-5)
+    assert (
+        result.mu_low <= MU <= result.mu_high and result.u_lim_low_m <= U_LIM <= result.u_lim_high_m
+    )
+    assert result.fitted == pytest.approx(force(table), rel=1e-4)
 
 
 def test_a_coefficient_and_a_force_are_one_measurement(closed):
@@ -159,33 +161,33 @@ def test_rows_under_several_loads_are_brought_together(closed):
         )
         for i in range(16)
     ]
-    found = fitted(table | {"friction": np.concatenate(rows), "load": loads}, load=None)
-    assert found.load_N == 10.0
-    assert (found.mu, found.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-5)
+    result = fitted(table | {"friction": np.concatenate(rows), "load": loads}, load=None)
+    assert result.load_N == 10.0
+    assert (result.mu, result.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-5)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("known", "confidence", "seeds"),
+    ("reference", "confidence", "seeds"),
     [
         (False, 0.95, 20),
         pytest.param(False, 0.95, 100, marks=pytest.mark.long),
         pytest.param(True, 0.68, 100, marks=pytest.mark.long),
     ],
 )
-def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence, seeds):
+def test_intervals_cover_the_truth_as_often_as_they_say(closed, reference, confidence, seeds):
     """The number of intervals with the true value is in a range of probability 1 - 1e-4."""
     table, sigma = conditions(12), 0.05
     true, held = force(table), {"mu": 0, "u_lim": 0}
     for seed in range(seeds):
         noise = sigma * np.random.default_rng(seed).standard_normal(12)
-        given = table | {"friction": true + noise}
-        if known:
-            given["friction_error"] = np.full(12, sigma)
-        found = fitted(given, confidence=confidence)
-        assert found.told == ("mu", "u_lim")
-        held["mu"] += found.mu_low <= MU <= found.mu_high
-        held["u_lim"] += found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
+        data = table | {"friction": true + noise}
+        if reference:
+            data["friction_error"] = np.full(12, sigma)
+        result = fitted(data, confidence=confidence)
+        assert result.told == ("mu", "u_lim")
+        held["mu"] += result.mu_low <= MU <= result.mu_high
+        held["u_lim"] += result.u_lim_low_m <= U_LIM <= result.u_lim_high_m
     low, high = binom.interval(1.0 - 1e-4, seeds, confidence)
     assert all(low <= count <= high for count in held.values()), (held, low, high)
 
@@ -193,22 +195,22 @@ def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidenc
 def test_intervals_hold_what_the_model_is_off(closed, monkeypatch):
     """Intervals include the error estimate of the model, here a constant error of 0.01."""
     table = conditions()
-    given = table | {"friction": force(table)}
+    data = table | {"friction": force(table)}
     for off in (-0.01, 0.01):
         monkeypatch.setattr(Closed, "off", off)
-        found = fitted(given)
-        assert abs(found.mu / MU - 1.0) > 1e-3  # a constant error
-        assert found.mu_low <= MU <= found.mu_high
-        assert found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
-        assert 0.0 < found.mu_model_share < 0.1
+        result = fitted(data)
+        assert abs(result.mu / MU - 1.0) > 1e-3  # a constant error
+        assert result.mu_low <= MU <= result.mu_high
+        assert result.u_lim_low_m <= U_LIM <= result.u_lim_high_m
+        assert 0.0 < result.mu_model_share < 0.1
 
 
 def test_chi_square_tells_errors_that_are_too_small(closed):
     table = conditions()
     noise = 0.05 * np.random.default_rng(3).standard_normal(16)
-    given = table | {"friction": force(table) + noise}
-    good = fitted(given | {"friction_error": np.full(16, 0.05)})
-    bad = fitted(given | {"friction_error": np.full(16, 0.01)})
+    data = table | {"friction": force(table) + noise}
+    good = fitted(data | {"friction_error": np.full(16, 0.05)})
+    bad = fitted(data | {"friction_error": np.full(16, 0.01)})
     assert good.warnings == () and good.p_value > 1e-3
     assert bad.chi_square == pytest.approx(25.0 * good.chi_square, rel=1e-3)
     assert "larger than the errors of the rows allow" in bad.warnings[0]
@@ -224,21 +226,21 @@ def test_rows_on_the_plateau_tell_mu_alone(closed):
         "amplitude": np.full(8, 0.02 * U_LIM),
     }
     noise = 0.01 * np.random.default_rng(1).standard_normal(8)
-    found = fitted(table | {"friction": MU * LOAD + noise})
-    assert found.told == ("mu",) and found.u_lim_m is None and found.u_lim_high_m is None
-    assert found.reason.startswith("the rows determine mu alone: any u_lim above")
-    assert found.u_lim_low_m < U_LIM
-    assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.02 * found.mu_low
+    result = fitted(table | {"friction": MU * LOAD + noise})
+    assert result.told == ("mu",) and result.u_lim_m is None and result.u_lim_high_m is None
+    assert result.reason.startswith("the rows determine mu alone: any u_lim above")
+    assert result.u_lim_low_m < U_LIM
+    assert result.mu_low <= MU <= result.mu_high and result.mu_high < 1.02 * result.mu_low
 
 
 def test_large_amplitudes_tell_no_u_lim(closed):
     """At amplitudes far above u_lim, friction follows Eq 6, which does not contain u_lim."""
     table = {"amplitude": np.full(8, 1e-3), "speed": np.geomspace(0.1, 3.0, 8) * OMEGA * 1e-3}
     noise = 0.02 * np.random.default_rng(2).standard_normal(8)
-    found = fitted(table | {"friction": force(table) + noise})
-    assert found.told == ("mu",) and found.u_lim_low_m is None
-    assert "any u_lim below" in found.reason
-    assert found.mu_low <= MU <= found.mu_high
+    result = fitted(table | {"friction": force(table) + noise})
+    assert result.told == ("mu",) and result.u_lim_low_m is None
+    assert "any u_lim below" in result.reason
+    assert result.mu_low <= MU <= result.mu_high
 
 
 def test_rows_that_tell_neither_are_refused(closed):
@@ -248,7 +250,7 @@ def test_rows_that_tell_neither_are_refused(closed):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"speed": [1e-3] * 2, "amplitude": [1e-7] * 2, "friction": [1.0, 1.1]}, "at least 3"),
         ({"speed": [1e-3] * 4, "amplitude": [1e-7] * 4, "friction": [1.0] * 4}, "one condition"),
@@ -266,16 +268,16 @@ def test_rows_that_tell_neither_are_refused(closed):
     ],
     ids=str,
 )
-def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
+def test_a_table_that_cannot_be_used_is_refused(closed, change, message):
     table = conditions()
     table |= {"friction": force(table)}
     table = change if len(change) == 3 else table | change
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         fitted({name: column for name, column in table.items() if column is not None})
 
 
 @pytest.mark.parametrize(
-    ("motion", "more", "said"),
+    ("motion", "more", "message"),
     [
         ("bore", {}, "radius"),
         ("continuous-bore", {}, "allowed is one of transverse"),
@@ -286,9 +288,9 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
         ("transverse", {"map": SimpleNamespace(attrs={"motion": "bore"})}, "a sweep of transverse"),
     ],
 )
-def test_other_bad_input_is_refused(closed, motion, more, said):
+def test_other_bad_input_is_refused(closed, motion, more, message):
     table = conditions()
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         microslip.fit(motion, table | {"friction": force(table)}, **SHARED | more)
 
 
@@ -310,15 +312,15 @@ def test_the_solver_finds_the_truth_that_it_made():
     points = [v / (OMEGA * contact.u_lim) for v in table["speed"]]
     ratios = [microslip.solve("transverse", v, 1.5, tolerance=1e-4).mu_macro for v in points]
     table["friction"] = MU * LOAD * np.array(ratios)
-    found = microslip.fit("transverse", table, **SHARED, nu=0.0, radius="5 mm")
-    assert found.told == ("mu", "shear_modulus")
+    result = microslip.fit("transverse", table, **SHARED, nu=0.0, radius="5 mm")
+    assert result.told == ("mu", "shear_modulus")
     # Within the effect of an error of 1e-3 of mu_macro, which the intervals include.
-    assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.01 * found.mu_low
-    assert found.shear_modulus_low_Pa <= contact.G <= found.shear_modulus_high_Pa
-    assert found.u_lim_low_m <= contact.u_lim <= found.u_lim_high_m
-    assert found.u_lim_m == pytest.approx(contact.u_lim, rel=0.01)
+    assert result.mu_low <= MU <= result.mu_high and result.mu_high < 1.01 * result.mu_low
+    assert result.shear_modulus_low_Pa <= contact.G <= result.shear_modulus_high_Pa
+    assert result.u_lim_low_m <= contact.u_lim <= result.u_lim_high_m
+    assert result.u_lim_m == pytest.approx(contact.u_lim, rel=0.01)
     again = microslip.fit("transverse", table, **SHARED, nu=0.0)
-    assert again.u_lim_m == pytest.approx(found.u_lim_m, rel=2e-3)
+    assert again.u_lim_m == pytest.approx(result.u_lim_m, rel=2e-3)
     once_more = microslip.fit("transverse", table, **SHARED, nu=0.0)
     # Equal to the last bit; in texts NaN equals NaN.
     assert str(once_more.to_dict()) == str(again.to_dict())

@@ -21,25 +21,25 @@ def measured(tmp_path, text, motion="transverse", **more):
 
 
 def test_a_table_is_in_the_si(tmp_path):
-    found = measured(tmp_path, GOOD)
-    assert found.speed.tolist() == [1e-3, 2e-3] and found.amplitude.tolist() == [5e-7, 5e-7]
-    assert (found.value.tolist(), found.quantity) == ([1.93, 2.1], "friction")
-    assert found.load.tolist() == [10.0, 10.0] and found.frequency.tolist() == [2e4, 2e4]
-    assert found.texts == {"frequency": "20 kHz", "load": "10 N"}
-    assert not found.has_errors and found.distinct == 2
+    result = measured(tmp_path, GOOD)
+    assert result.speed.tolist() == [1e-3, 2e-3] and result.amplitude.tolist() == [5e-7, 5e-7]
+    assert (result.value.tolist(), result.quantity) == ([1.93, 2.1], "friction")
+    assert result.load.tolist() == [10.0, 10.0] and result.frequency.tolist() == [2e4, 2e4]
+    assert result.texts == {"frequency": "20 kHz", "load": "10 N"}
+    assert not result.has_errors and result.distinct == 2
 
 
 def test_angles_and_coefficients(tmp_path):
     text = "amplitude [deg],frequency [rpm],mu [%],mu_error\n180,60,30,0.01\n"
-    found = measured(tmp_path, text, "bore", speed="1 mm/s", frequency=None)
-    assert found.amplitude == pytest.approx([math.pi], rel=1e-15)
-    assert [part.tolist() for part in (found.frequency, found.value, found.error)] == [
+    result = measured(tmp_path, text, "bore", speed="1 mm/s", frequency=None)
+    assert result.amplitude == pytest.approx([math.pi], rel=1e-15)
+    assert [part.tolist() for part in (result.frequency, result.value, result.error)] == [
         *([1.0], [0.3], [0.01])
     ]
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         (("mm/s", "mm"), "line 2: speed = '1 mm': the unit is millimeter"),
         (("mm/s", "furlong"), "line 2: speed = '1 furlong'"),
@@ -49,12 +49,12 @@ def test_angles_and_coefficients(tmp_path):
         (("2,0.5", "2"), "line 3: 2 cells; allowed: 3"),
     ],
 )
-def test_a_line_that_cannot_be_read_is_left_out_with_its_reason(tmp_path, changed, said):
+def test_a_line_that_cannot_be_read_is_left_out_with_its_reason(tmp_path, changed, message):
     try:
         problem = measured(tmp_path, GOOD.replace(*changed)).left_out[0]
     except InputError as error:  # one for each line
         problem = str(error)
-    assert said in problem and "\n" not in problem
+    assert message in problem and "\n" not in problem
 
 
 def test_a_pandas_table_is_read_as_its_file(tmp_path):
@@ -81,5 +81,5 @@ def test_a_fit_without_a_line_that_cannot_be_read_says_which(tmp_path, capsys):
     assert complaint.startswith("microslip fit: line 6: speed is 'fast'")
     assert complaint.endswith("; left out\n") and complaint.count("\n") == 1
     assert "rows              4, of" in out
-    kept = xr.load_dataset(tmp_path / "fit.nc")
-    assert kept.label.values.tolist() == ["r0.2", "r0.5", "r1.0", "r2.0"]
+    columns = xr.load_dataset(tmp_path / "fit.nc")
+    assert columns.label.values.tolist() == ["r0.2", "r0.5", "r1.0", "r2.0"]

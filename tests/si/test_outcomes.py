@@ -34,20 +34,20 @@ def monte_carlo(static, mu, load, amplitude, force, radius=0.2, count=20_000):
 
 def transverse(size, _):
     """The static limit of a transverse vibration, interpolated in its closed form."""
-    known = np.linspace(0.0, 1.0, 401)
-    return np.interp(size, known, [float(paper.static_limit_transverse(one)) for one in known])
+    grid = np.linspace(0.0, 1.0, 401)
+    return np.interp(size, grid, [float(paper.static_limit_transverse(one)) for one in grid])
 
 
 def bore(angle, scale):
     """The static limit of a bore oscillation; scale: dimensionless amplitude divided by angle."""
-    known = np.geomspace(1e-3, 1e3, 601)
-    values = [float(paper.static_limit_bore(one)) for one in known]
-    return np.interp(angle * scale, known, values)
+    grid = np.geomspace(1e-3, 1e3, 601)
+    values = [float(paper.static_limit_bore(one)) for one in grid]
+    return np.interp(angle * scale, grid, values)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("given", "drawn"),
+    ("settings", "drawn"),
     [
         ({"mu": "0.15 +- 0.05"}, {"mu": (0.15, 0.05)}),
         ({"force": "90 N +- 5 %"}, {"force": (90.0, 4.5)}),
@@ -59,18 +59,18 @@ def bore(angle, scale):
     ],
     ids=lambda one: "-".join(one),
 )
-def test_outcomes_and_intervals_are_those_of_a_monte_carlo(given, drawn):
+def test_outcomes_and_intervals_are_those_of_a_monte_carlo(settings, drawn):
     """The probabilities of 20 000 draws have statistical errors below 0.004."""
-    found = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN | given)
+    result = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN | settings)
     exact = {"mu": (0.15, 0.0), "load": (1e3, 0.0), "amplitude": (0.25e-6, 0.0), "force": (90.0, 0)}
     *shares, threshold = monte_carlo(transverse, **exact | drawn)
-    several = (found.probability_stays, found.probability_moves, found.probability_runs_away)
-    assert several == pytest.approx(shares, abs=0.012 + found.probability_error)
+    several = (result.probability_stays, result.probability_moves, result.probability_runs_away)
+    assert several == pytest.approx(shares, abs=0.012 + result.probability_error)
     assert sum(several) == pytest.approx(1.0)
     low, high = np.quantile(threshold, (0.025, 0.975))
-    assert found.force_threshold_low_N == pytest.approx(low, abs=2.0)
-    assert found.force_threshold_high_N == pytest.approx(high, abs=2.0)
-    assert found.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.04, abs=0.3)
+    assert result.force_threshold_low_N == pytest.approx(low, abs=2.0)
+    assert result.force_threshold_high_N == pytest.approx(high, abs=2.0)
+    assert result.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.04, abs=0.3)
 
 
 def test_one_uncertain_input_decides_by_its_own_distribution():
@@ -79,66 +79,66 @@ def test_one_uncertain_input_decides_by_its_own_distribution():
     At mu = 0.10 +- 0.02 and 121 N this is mu < 0.121, up to 1.05 standard deviations above the
     centre: a probability of 0.8531.
     """
-    given = JOINT | {"mu": "0.1 +- 0.02", "amplitude": "0.5 um", "force": "121 N"}
-    found = microslip.predict("transverse", **given)
-    assert found.probability_runs_away == pytest.approx(0.8531, abs=1e-3)
+    settings = JOINT | {"mu": "0.1 +- 0.02", "amplitude": "0.5 um", "force": "121 N"}
+    result = microslip.predict("transverse", **settings)
+    assert result.probability_runs_away == pytest.approx(0.8531, abs=1e-3)
 
 
 def test_equal_inputs_give_equal_bits():
-    given = JOINT | {"mu": 0.15} | SHAKEN | {"force": "90 N +- 5 %"}
-    one, other = (microslip.predict("transverse", **given).to_dict() for _ in range(2))
+    settings = JOINT | {"mu": 0.15} | SHAKEN | {"force": "90 N +- 5 %"}
+    one, other = (microslip.predict("transverse", **settings).to_dict() for _ in range(2))
     assert one == other
 
 
 def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
     """The interval of the static limit follows from the interval of the load."""
-    given = SPIN | {"mu": 0.3, "load": "10 N +- 10 %", "amplitude": "0.5 deg", "speed": "1 mm/s"}
-    found = microslip.predict("bore", **given)
+    settings = SPIN | {"mu": 0.3, "load": "10 N +- 10 %", "amplitude": "0.5 deg", "speed": "1 mm/s"}
+    result = microslip.predict("bore", **settings)
     ends = [
-        microslip.predict("bore", **given | {"load": 10.0 + sign * 1.959964}).mu_static
+        microslip.predict("bore", **settings | {"load": 10.0 + sign * 1.959964}).mu_static
         for sign in (-1.0, 1.0)
     ]
-    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=2e-3)
-    assert found.probability_stays is None and found.interval_method == "quantiles"
-    assert "to first order" not in str(found)
+    assert [result.mu_static_low, result.mu_static_high] == pytest.approx(sorted(ends), rel=2e-3)
+    assert result.probability_stays is None and result.interval_method == "quantiles"
+    assert "to first order" not in str(result)
 
 
 def test_without_uncertain_inputs_there_is_no_probability():
-    found = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN)
-    assert found.probability_stays is None and found.force_threshold_spread_N is None
-    assert math.isfinite(found.safety_factor_error)
-    assert "probability" not in str(found)
+    result = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN)
+    assert result.probability_stays is None and result.force_threshold_spread_N is None
+    assert math.isfinite(result.safety_factor_error)
+    assert "probability" not in str(result)
 
 
 def test_a_contact_that_may_run_away_has_no_spread_of_its_speed():
     """Friction of 3 N +- 0.2 N is below the force of 2.9 N at one standard deviation."""
-    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "force": "2.9 N"}
-    given |= {"mu": "0.3 +- 0.02", "amplitude": 0.0, "frequency": "20 kHz"}
-    found = microslip.predict("transverse", **given)
-    assert math.isinf(found.speed_spread_m_s) and "nan" not in str(found)
-    assert found.probability_stays == pytest.approx(0.6915, abs=1e-3)  # 0.5 deviations above
+    settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "force": "2.9 N"}
+    settings |= {"mu": "0.3 +- 0.02", "amplitude": 0.0, "frequency": "20 kHz"}
+    result = microslip.predict("transverse", **settings)
+    assert math.isinf(result.speed_spread_m_s) and "nan" not in str(result)
+    assert result.probability_stays == pytest.approx(0.6915, abs=1e-3)  # 0.5 deviations above
 
 
 @pytest.mark.filterwarnings("error")
 def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
-    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    found = microslip.predict("continuous-bore", **given, rotation=10.0, force="1 N +- 0.9 N")
-    assert (found.probability_stays, found.safety_factor_high) == (0.0, 0.0)
-    assert found.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
+    settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    result = microslip.predict("continuous-bore", **settings, rotation=10.0, force="1 N +- 0.9 N")
+    assert (result.probability_stays, result.safety_factor_high) == (0.0, 0.0)
+    assert result.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
 
 
 @pytest.mark.slow
 def test_the_threshold_beside_a_reduction_has_an_interval():
-    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    given |= {"speed": "0.3 mm/s +- 5 %", "reduction": "30 %", "frequency": "20 kHz"}
-    found = microslip.predict("transverse", **given, tolerance=0.02)
-    ends = found.force_threshold_low_N, found.force_threshold_high_N
-    deviation = found.force_threshold_spread_N
-    assert deviation > 0.0 and found.interval_method == "first order"
+    settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    settings |= {"speed": "0.3 mm/s +- 5 %", "reduction": "30 %", "frequency": "20 kHz"}
+    result = microslip.predict("transverse", **settings, tolerance=0.02)
+    ends = result.force_threshold_low_N, result.force_threshold_high_N
+    deviation = result.force_threshold_spread_N
+    assert deviation > 0.0 and result.interval_method == "first order"
     assert ends == pytest.approx(
-        [found.force_threshold_N + sign * 1.959964 * deviation for sign in (-1, 1)]
+        [result.force_threshold_N + sign * 1.959964 * deviation for sign in (-1, 1)]
     )
-    (line, again) = [line for line in str(found).splitlines() if "95 % interval" in line]
+    (line, again) = [line for line in str(result).splitlines() if "95 % interval" in line]
     for text in (line, again):
         assert "from the uncertain inputs to first order" in text
 
@@ -149,20 +149,20 @@ def test_an_uncertain_ratio_of_amplitudes_has_an_interval_to_first_order():
 
     The interval is that of a normal distribution, 1.96 standard deviations on either side.
     """
-    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    given |= {"frequency": "20 kHz", "speed": "10 mm/s", "tolerance": 0.05}
-    given |= {"rotation_amplitude": "0.05 deg", "phase": "90 deg"}
-    found = microslip.predict("transverse-bore", **given | {"amplitude": "0.1 um +- 5 %"})
+    settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    settings |= {"frequency": "20 kHz", "speed": "10 mm/s", "tolerance": 0.05}
+    settings |= {"rotation_amplitude": "0.05 deg", "phase": "90 deg"}
+    result = microslip.predict("transverse-bore", **settings | {"amplitude": "0.1 um +- 5 %"})
     low, high = (
-        microslip.predict("transverse-bore", **given | {"amplitude": size}).mu_static
+        microslip.predict("transverse-bore", **settings | {"amplitude": size}).mu_static
         for size in (0.095e-6, 0.105e-6)
     )
-    assert found.interval_method == "first order"
-    assert found.mu_static_spread == pytest.approx(0.5 * abs(high - low), rel=0.02)
-    ends = [found.mu_static + 1.96 * (high - found.mu_static)]
-    ends.append(found.mu_static + 1.96 * (low - found.mu_static))
-    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=1e-3)
-    assert "to first order: static friction is assumed" in str(found)
+    assert result.interval_method == "first order"
+    assert result.mu_static_spread == pytest.approx(0.5 * abs(high - low), rel=0.02)
+    ends = [result.mu_static + 1.96 * (high - result.mu_static)]
+    ends.append(result.mu_static + 1.96 * (low - result.mu_static))
+    assert [result.mu_static_low, result.mu_static_high] == pytest.approx(sorted(ends), rel=1e-3)
+    assert "to first order: static friction is assumed" in str(result)
 
 
 @pytest.mark.slow
@@ -172,19 +172,19 @@ def test_an_amplitude_that_may_be_almost_zero_has_an_exact_interval(deviation):
 
     A negative amplitude counts as 0, where the threshold is mu F_z.
     """
-    given = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
-    given |= {"load": "200 N", "mu": 0.2, "force": "20 N", "frequency": "60 Hz"}
-    found = microslip.predict("transverse", **given, amplitude=f"0.8 um +- {deviation} um")
+    settings = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
+    settings |= {"load": "200 N", "mu": 0.2, "force": "20 N", "frequency": "60 Hz"}
+    result = microslip.predict("transverse", **settings, amplitude=f"0.8 um +- {deviation} um")
     a = (0.75 * 200.0 * 0.02 / 105e9) ** (1.0 / 3.0)
     u_lim = 0.2 * a**2 / 0.02
     least = max(0.0, 0.8e-6 - 1.959964 * deviation * 1e-6) / u_lim
     exact = 40.0 * float(paper.static_limit_transverse(least))
-    assert found.force_threshold_high_N == pytest.approx(exact, abs=5e-3)
-    assert found.safety_factor_high == pytest.approx(exact / 20.0, abs=2.5e-4)
+    assert result.force_threshold_high_N == pytest.approx(exact, abs=5e-3)
+    assert result.safety_factor_high == pytest.approx(exact / 20.0, abs=2.5e-4)
     draws = np.maximum(0.8 + deviation * np.random.default_rng(3).standard_normal(200_000), 0.0)
     threshold = 40.0 * transverse(draws * 1e-6 / u_lim, None)
-    assert found.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.02)
-    assert found.probability_stays == pytest.approx(np.mean(threshold > 20.0), abs=5e-3)
+    assert result.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.02)
+    assert result.probability_stays == pytest.approx(np.mean(threshold > 20.0), abs=5e-3)
 
 
 def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
@@ -193,37 +193,37 @@ def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
     The upper quantile of the force, 0.5 N + 1.959964 * 0.49 N, gives the lower end of the safety
     factor.
     """
-    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    found = microslip.predict(
-        "transverse", **given, amplitude=0.0, frequency="50 Hz", force="0.5 N +- 0.49 N"
+    settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    result = microslip.predict(
+        "transverse", **settings, amplitude=0.0, frequency="50 Hz", force="0.5 N +- 0.49 N"
     )
-    low, high = found.safety_factor_low, found.safety_factor_high
+    low, high = result.safety_factor_low, result.safety_factor_high
     assert low == pytest.approx(3.0 / (0.5 + 1.959964 * 0.49), rel=1e-3)
-    assert high == math.inf and "to inf" in str(found)
+    assert high == math.inf and "to inf" in str(result)
 
 
 @pytest.mark.slow
 def test_an_unlikely_outcome_has_a_bound_of_its_probability():
     """The contact stays only at an amplitude 4 standard deviations below its centre."""
-    given = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
-    given |= {"load": "200 N", "mu": 0.2, "force": "38 N", "frequency": "60 Hz"}
-    found = microslip.predict("transverse", **given, amplitude="0.3 um +- 0.05 um")
+    settings = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
+    settings |= {"load": "200 N", "mu": 0.2, "force": "38 N", "frequency": "60 Hz"}
+    result = microslip.predict("transverse", **settings, amplitude="0.3 um +- 0.05 um")
     a = (0.75 * 200.0 * 0.02 / 105e9) ** (1.0 / 3.0)
     draws = 0.3 + 0.05 * np.random.default_rng(5).standard_normal(1_000_000)
     threshold = 40.0 * transverse(draws * 1e-6 / (0.2 * a**2 / 0.02), None)
     share = np.mean(threshold > 38.0)
     assert 0.0 < share < 1e-4
-    assert abs(found.probability_stays - share) <= found.probability_error
-    said = "below 0.1 % that it stays, above 99.9 % that it moves, below 0.1 % that it runs away"
-    assert said in str(found)
+    assert abs(result.probability_stays - share) <= result.probability_error
+    message = "below 0.1 % that it stays, above 99.9 % that it moves, below 0.1 % that it runs away"
+    assert message in str(result)
 
 
 def test_draws_above_the_largest_physical_value_count_as_that_value():
     """Poisson's ratio is at most 0.5: its upper quantile, 0.59, counts as 0.5."""
-    given = SPIN | {"mu": 0.3, "load": "10 N", "amplitude": "0.5 deg", "speed": "1 mm/s"}
-    found = microslip.predict("bore", **given | {"nu": "0.3 +- 0.15"})
-    ends = [microslip.predict("bore", **given | {"nu": nu}).mu_static for nu in (0.006, 0.5)]
-    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(ends, rel=5e-3)
+    settings = SPIN | {"mu": 0.3, "load": "10 N", "amplitude": "0.5 deg", "speed": "1 mm/s"}
+    result = microslip.predict("bore", **settings | {"nu": "0.3 +- 0.15"})
+    ends = [microslip.predict("bore", **settings | {"nu": nu}).mu_static for nu in (0.006, 0.5)]
+    assert [result.mu_static_low, result.mu_static_high] == pytest.approx(ends, rel=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -244,9 +244,9 @@ def test_a_probability_is_printed_with_its_error_or_a_bound(chance, error, text)
 @pytest.mark.slow
 def test_a_contact_that_stays_one_deviation_around_its_inputs_may_move():
     """The force is 1.5 standard deviations below the threshold; 6.68 % of the draws are above."""
-    given = JOINT | {"mu": 0.15, "amplitude": "0.25 um"}
-    threshold = microslip.predict("transverse", **given, speed=0.0).force_threshold_N
-    found = microslip.predict("transverse", **given, force=f"{threshold - 3.0!r} N +- 2 N")
-    assert found.outcome == "stays" and found.speed_spread_m_s == 0.0
-    assert found.probability_moves == pytest.approx(0.0668, abs=2e-3)
-    assert "none of the speed: the contact can move" in str(found)
+    settings = JOINT | {"mu": 0.15, "amplitude": "0.25 um"}
+    threshold = microslip.predict("transverse", **settings, speed=0.0).force_threshold_N
+    result = microslip.predict("transverse", **settings, force=f"{threshold - 3.0!r} N +- 2 N")
+    assert result.outcome == "stays" and result.speed_spread_m_s == 0.0
+    assert result.probability_moves == pytest.approx(0.0668, abs=2e-3)
+    assert "none of the speed: the contact can move" in str(result)

@@ -46,23 +46,23 @@ def assert_same(one, other):
     ids=str,
 )
 def test_a_spin_is_the_same_in_any_unit(rotation):
-    found = microslip.predict("continuous-bore", rotation=rotation, **SPIN)
-    assert found.rotation_rad_s == pytest.approx(TURN * 10.0, rel=1e-15)
+    result = microslip.predict("continuous-bore", rotation=rotation, **SPIN)
+    assert result.rotation_rad_s == pytest.approx(TURN * 10.0, rel=1e-15)
     # v0 / (omega a) by hand, with Hertz's a of this ball on a rigid flat
     radius = (0.75 * 10.0 * 0.005 * (1.0 - 0.09) / 210e9) ** (1.0 / 3.0)
-    assert found.velocity == pytest.approx(1e-3 / (TURN * 10.0 * radius), rel=1e-12)
-    assert_same(found, microslip.predict("continuous-bore", rotation="600 rpm", **SPIN))
+    assert result.velocity == pytest.approx(1e-3 / (TURN * 10.0 * radius), rel=1e-12)
+    assert_same(result, microslip.predict("continuous-bore", rotation="600 rpm", **SPIN))
 
 
 # What was understood
 
 
 def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
-    asked = EXAMPLE | {"counterbody": "70 GPa, 0.22", "radius": 0.005, "frequency": "1.2e6 rpm"}
-    asked |= {"counter_radius": "-20 mm", "load": Q(10, "N"), "hardness": "7 GPa"}
-    found = microslip.predict("transverse", **asked)
-    assert found.counterbody == "E = 70 GPa, nu = 0.22"
-    assert found.understood == {
+    request = EXAMPLE | {"counterbody": "70 GPa, 0.22", "radius": 0.005, "frequency": "1.2e6 rpm"}
+    request |= {"counter_radius": "-20 mm", "load": Q(10, "N"), "hardness": "7 GPa"}
+    result = microslip.predict("transverse", **request)
+    assert result.counterbody == "E = 70 GPa, nu = 0.22"
+    assert result.understood == {
         "motion": "transverse: the sphere slides forward and oscillates sideways",
         "body": "E = 210 GPa, nu = 0.3, hardness 7 GPa",
         "counterbody": "E = 70 GPa, nu = 0.22",
@@ -77,44 +77,44 @@ def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
 
 
 def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
-    asked = BALL | {"material": "steel", "rotation": "10 Hz"}
-    for given, said in (
+    request = BALL | {"material": "steel", "rotation": "10 Hz"}
+    for settings, message in (
         ({}, "rigid (default)"),
         ({"counterbody": "rigid"}, "rigid"),
         ({"counterbody": "glass"}, "glass (E = 70 GPa, nu = 0.2, hardness 6 GPa"),
         ({"counterbody": Material(70e9, 0.22)}, "E = 70 GPa, nu = 0.22"),
     ):
-        found = microslip.predict("continuous-bore", **asked | given)
-        assert found.counterbody.startswith(said)
-        assert found.understood["counterbody"] == found.counterbody
-    assert found.understood["rotation"] == "10 Hz = 62.8319 rad/s"
-    assert found.understood["counter_radius"] == "flat (default)"
+        result = microslip.predict("continuous-bore", **request | settings)
+        assert result.counterbody.startswith(message)
+        assert result.understood["counterbody"] == result.counterbody
+    assert result.understood["rotation"] == "10 Hz = 62.8319 rad/s"
+    assert result.understood["counter_radius"] == "flat (default)"
 
 
 # Command line
 
 
-def options(**given):
-    words = [(f"--{name.replace('_', '-')}", str(value)) for name, value in given.items()]
+def options(**settings):
+    words = [(f"--{name.replace('_', '-')}", str(value)) for name, value in settings.items()]
     return [word for pair in words for word in pair]
 
 
 def test_the_command_line_answers_in_json(capsys):
-    asked = EXAMPLE | {"counterbody": "rigid"}
-    assert cli.main(["predict", "transverse", *options(**asked), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
+    request = EXAMPLE | {"counterbody": "rigid"}
+    assert cli.main(["predict", "transverse", *options(**request), "--json"]) == 0
+    message = json.loads(capsys.readouterr().out)
     expected = "contact_radius_m indentation_m u_lim_m velocity amplitude mu_macro mu_macro_error"
-    assert said.keys() >= {*expected.split(), "mu_apparent", "warnings"}
-    assert said == microslip.predict("transverse", **asked).to_dict()
+    assert message.keys() >= {*expected.split(), "mu_apparent", "warnings"}
+    assert message == microslip.predict("transverse", **request).to_dict()
 
 
 def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
     """The solver fails at the requested amplitude, and in the search for an amplitude."""
 
-    def lost(*given, **settings):
-        found = microslip.solve(*given, **settings)
+    def lost(*changes, **settings):
+        result = microslip.solve(*changes, **settings)
         return replace(
-            found, friction=Estimate(math.nan), converged=False, reason="lost on the way"
+            result, friction=Estimate(math.nan), converged=False, reason="lost on the way"
         )
 
     monkeypatch.setattr("microslip.si.request.solve", lost)
@@ -124,19 +124,19 @@ def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
     ):
         words = options(**BALL, **motion, material="steel", frequency="20 kHz")
         assert cli.main(["predict", "transverse", *words, "--json"]) == 1
-        said = json.loads(capsys.readouterr().out)
-        assert (said["mu_macro"], said["reason"]) == (None, "lost on the way")
+        message = json.loads(capsys.readouterr().out)
+        assert (message["mu_macro"], message["reason"]) == (None, "lost on the way")
         assert cli.main(["predict", "transverse", *words]) == 1
         assert f"NOT CONVERGED: {name}: lost on the way" in capsys.readouterr().out
 
 
 def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):
     words = options(material="steel", rotation="3600 \u00b0/s", **BALL | {"radius": "5000 \u03bcm"})
-    said = io.BytesIO()
-    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(said, encoding="latin-1"))
+    message = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(message, encoding="latin-1"))
     assert cli.main(["predict", "continuous-bore", *words]) == 0
     sys.stdout.flush()
-    assert b"5000 \\u03bcm" in said.getvalue() and b"3600 \xb0/s = 62.8319" in said.getvalue()
+    assert b"5000 \\u03bcm" in message.getvalue() and b"3600 \xb0/s = 62.8319" in message.getvalue()
 
 
 # Records
@@ -153,15 +153,15 @@ def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):
     ],
 )
 def test_each_question_has_a_record_of_its_own_and_all_have_the_same_columns(motion, drive, record):
-    moved = {"amplitude": "0.1 um", "frequency": "20 kHz"}
-    moved = {"rotation": "10 Hz"} if motion == "continuous-bore" else moved
+    oscillation = {"amplitude": "0.1 um", "frequency": "20 kHz"}
+    oscillation = {"rotation": "10 Hz"} if motion == "continuous-bore" else oscillation
     ball = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "material": "steel", "tolerance": 0.05}
-    found = microslip.predict(motion, **ball, **moved, **drive)
-    assert type(found) is record
-    assert tuple(found.to_dict()) == prediction.COLUMNS
-    own = {field.name for field in fields(found)}
+    result = microslip.predict(motion, **ball, **oscillation, **drive)
+    assert type(result) is record
+    assert tuple(result.to_dict()) == prediction.COLUMNS
+    own = {field.name for field in fields(result)}
     assert ("outcome" in own) == ("force" in drive)
-    assert ("mu_static" in own) == ("amplitude" in moved) != ("torque_N_m" in own)
-    assert (found.outcome is None) == ("force" not in drive)
+    assert ("mu_static" in own) == ("amplitude" in oscillation) != ("torque_N_m" in own)
+    assert (result.outcome is None) == ("force" not in drive)
     with pytest.raises(AttributeError, match="no column 'mu_marco'"):
-        _ = found.mu_marco
+        _ = result.mu_marco

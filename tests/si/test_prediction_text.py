@@ -13,21 +13,21 @@ BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "fre
 SLOW = {"amplitude": "0.1 um", "speed": "1 mm/s", "tolerance": "0.01"}
 
 
-def words(**given):
-    return [word for name, text in given.items() for word in (f"--{name}", text)]
+def words(**settings):
+    return [word for name, text in settings.items() for word in (f"--{name}", text)]
 
 
-def said(capsys, motion, code=0, **given):
-    assert cli.main(["predict", motion, *words(**given)]) == code
+def said(capsys, motion, code=0, **settings):
+    assert cli.main(["predict", motion, *words(**settings)]) == code
     return capsys.readouterr().out
 
 
 @pytest.mark.slow
 def test_print_shows_what_the_command_line_shows(capsys):
     for more in ({"speed": "1 mm/s"}, {"force": "1 N"}):
-        given = BALL | {"amplitude": "0.1 um", "tolerance": "0.01"} | more
-        found = microslip.predict("transverse", **given)
-        assert said(capsys, "transverse", **given) == f"{found}\n"
+        settings = BALL | {"amplitude": "0.1 um", "tolerance": "0.01"} | more
+        result = microslip.predict("transverse", **settings)
+        assert said(capsys, "transverse", **settings) == f"{result}\n"
 
 
 @pytest.mark.slow
@@ -54,9 +54,9 @@ def test_lengths_of_one_answer_have_one_unit(capsys):
 
 def test_an_exact_number_has_no_error_and_a_zero_none_of_rounding(capsys):
     """A steady spin has a closed form."""
-    given = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
-    del given["frequency"]
-    text = said(capsys, "continuous-bore", **given)
+    settings = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
+    del settings["frequency"]
+    text = said(capsys, "continuous-bore", **settings)
     assert "e-17" not in text and re.search(r"^mu_macro +0\.\d+: ratio", text, re.MULTILINE)
 
 
@@ -69,12 +69,12 @@ def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
     assert "not the force threshold" not in text
 
 
-def failed(motion, velocity, *given, **settings):
-    found = microslip.solve(motion, velocity, *given, **settings)
+def failed(motion, velocity, *changes, **settings):
+    result = microslip.solve(motion, velocity, *changes, **settings)
     if velocity > 0.0:
-        return found
-    friction = replace(found.friction, by_source={"resolution": 0.26})
-    return replace(found, friction=friction, converged=False, reason="lost on the way")
+        return result
+    friction = replace(result.friction, by_source={"resolution": 0.26})
+    return replace(result, friction=friction, converged=False, reason="lost on the way")
 
 
 def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
@@ -83,22 +83,22 @@ def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
     text = said(capsys, "transverse", code=0, **BALL | SLOW)
     assert "NOT CONVERGED: static friction: lost on the way" in text
     assert "NOT CONVERGED: mu_macro" not in text
-    found = microslip.predict("transverse", **BALL | SLOW)
-    assert found.converged and found.mu_static_reason == "lost on the way"
+    result = microslip.predict("transverse", **BALL | SLOW)
+    assert result.converged and result.mu_static_reason == "lost on the way"
 
 
 @pytest.mark.slow
 def test_a_vibration_that_adds_no_displacement_has_no_number_of_cycles(capsys):
     """Along the force a contact without mass moves along with the vibration."""
-    given = BALL | {"amplitude": "0.1 um", "force": "1 N", "tolerance": "0.05"}
-    text = said(capsys, "longitudinal", **given)
+    settings = BALL | {"amplitude": "0.1 um", "force": "1 N", "tolerance": "0.05"}
+    text = said(capsys, "longitudinal", **settings)
     assert "forward, then no further: the vibration adds nothing\n" in text
 
 
 @pytest.mark.slow
 def test_static_friction_that_is_no_threshold_is_explained_where_the_threshold_is_unknown(capsys):
-    given = BALL | {"amplitude": "0.1 um", "forward-amplitude": "0.1 um", "speed": "1 mm/s"}
-    text = said(capsys, "elliptic", **given, tolerance="0.05")
+    settings = BALL | {"amplitude": "0.1 um", "forward-amplitude": "0.1 um", "speed": "1 mm/s"}
+    text = said(capsys, "elliptic", **settings, tolerance="0.05")
     assert "static friction" in text and "force threshold  " not in text
     assert "it is not the force threshold, because part of the vibration is along the drive" in text
 
@@ -106,8 +106,13 @@ def test_static_friction_that_is_no_threshold_is_explained_where_the_threshold_i
 @pytest.mark.slow
 def test_a_contact_much_larger_than_the_other_lengths_has_a_unit_of_its_own(capsys):
     """Hertz: (3 F R / (4 E*))^(1/3) with F = 10 N, R = 5 km and 1/E* = (1 - 0.3^2) / 210 GPa."""
-    given = BALL | {"radius": "5 km", "amplitude": "0.1 um", "speed": "1 mm/s", "tolerance": "0.05"}
-    text = said(capsys, "transverse", **given)
+    settings = BALL | {
+        "radius": "5 km",
+        "amplitude": "0.1 um",
+        "speed": "1 mm/s",
+        "tolerance": "0.05",
+    }
+    text = said(capsys, "transverse", **settings)
     size = (0.75 * 10.0 * 5e3 * (1.0 - 0.3**2) / 210e9) ** (1.0 / 3.0)
     assert f"contact radius    {1e3 * size:.3f} mm\n" in text
     assert re.search(r"^u_lim +\S+ nm$", text, re.MULTILINE)
@@ -116,15 +121,15 @@ def test_a_contact_much_larger_than_the_other_lengths_has_a_unit_of_its_own(caps
 @pytest.mark.slow
 def test_a_threshold_of_rounding_errors_is_as_exact_as_the_static_friction(capsys):
     """At 5 degrees (dimensionless 31) the whole contact slides."""
-    given = BALL | {"amplitude": "5 deg", "speed": "1 mm/s", "tolerance": "0.01"}
-    text = said(capsys, "bore", **given)
+    settings = BALL | {"amplitude": "5 deg", "speed": "1 mm/s", "tolerance": "0.01"}
+    text = said(capsys, "bore", **settings)
     assert "static friction   0: " in text and "force threshold   0 N: " in text
 
 
 def test_a_static_friction_below_rounding_is_zero(capsys):
     """At 0.0412 rad (dimensionless 14.6) the static limit is 6e-13, a rounding error of 1."""
-    given = BALL | {"amplitude": "0.0412 rad", "speed": "1 mm/s", "tolerance": "0.01"}
-    text = said(capsys, "bore", **given)
+    settings = BALL | {"amplitude": "0.0412 rad", "speed": "1 mm/s", "tolerance": "0.01"}
+    text = said(capsys, "bore", **settings)
     assert re.search(r"^static friction +0 \+- \S+e-1[23]: ", text, re.MULTILINE)
     zero = r"^force threshold +0 \+- \S+ N: any larger constant force moves"
     assert re.search(zero, text, re.MULTILINE)

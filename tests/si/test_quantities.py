@@ -26,9 +26,9 @@ def name_of(value):
 @pytest.mark.parametrize(("value", "unit", "expected"), ROWS, ids=name_of)
 def test_an_odd_quantity_is_its_value_or_is_refused(value, unit, expected):
     if not isinstance(expected, str):
-        found = read("size", value, unit, low=-math.inf).si
-        assert type(found) is float
-        assert found == pytest.approx(expected, rel=HALF_A_DIGIT, abs=0.0)
+        result = read("size", value, unit, low=-math.inf).si
+        assert type(result) is float
+        assert result == pytest.approx(expected, rel=HALF_A_DIGIT, abs=0.0)
         return
     with pytest.raises(InputError) as caught:
         read("size", value, unit, low=-math.inf)

@@ -38,18 +38,18 @@ def test_three_contacts_in_phase_are_three_times_one(name):
     alone = microslip.predict("transverse", load=10.0, **ball, **same, **of_the_body)
     body = {key: 3.0 * value for key, value in of_the_body.items()}
     three = "phase=20;phase=20;phase=20"
-    found = microslip.predict("transverse", load=30.0, contacts=three, **ball, **same, **body)
-    assert found.u_lim_m == pytest.approx(alone.u_lim_m)
+    result = microslip.predict("transverse", load=30.0, contacts=three, **ball, **same, **body)
+    assert result.u_lim_m == pytest.approx(alone.u_lim_m)
     for key in ("friction_force_still_N", "force_threshold_N"):
-        assert getattr(found, key) == pytest.approx(3.0 * getattr(alone, key), rel=1e-9)
-    error = 3.0 * alone.mu_apparent_error * 10.0 + 3.0 * found.mu_apparent_error * 10.0
-    assert abs(found.friction_force_N - 3.0 * alone.friction_force_N) <= max(error, 1e-9)
-    assert found.drag_power_W == pytest.approx(3.0 * alone.drag_power_W, rel=1e-2)
+        assert getattr(result, key) == pytest.approx(3.0 * getattr(alone, key), rel=1e-9)
+    error = 3.0 * alone.mu_apparent_error * 10.0 + 3.0 * result.mu_apparent_error * 10.0
+    assert abs(result.friction_force_N - 3.0 * alone.friction_force_N) <= max(error, 1e-9)
+    assert result.drag_power_W == pytest.approx(3.0 * alone.drag_power_W, rel=1e-2)
     if name == "a force":
-        errors = found.speed_error_m_s + alone.speed_error_m_s
-        assert abs(found.speed_m_s - alone.speed_m_s) <= errors
-        assert found.safety_factor == pytest.approx(alone.safety_factor)
-        assert found.outcome == alone.outcome == "moves"
+        errors = result.speed_error_m_s + alone.speed_error_m_s
+        assert abs(result.speed_m_s - alone.speed_m_s) <= errors
+        assert result.safety_factor == pytest.approx(alone.safety_factor)
+        assert result.outcome == alone.outcome == "moves"
 
 
 MOVED = {
@@ -62,32 +62,32 @@ MOVED = {
 @pytest.mark.parametrize("motion", MOVED)
 def test_the_friction_of_a_body_at_a_speed_is_the_sum_of_its_contacts(motion):
     """The reference is a prediction for each contact alone, under its own load."""
-    given = BALL | MOVED[motion]
-    each = [microslip.predict(motion, load=load, **given) for load in (4.0, 16.0)]
+    settings = BALL | MOVED[motion]
+    each = [microslip.predict(motion, load=load, **settings) for load in (4.0, 16.0)]
     assert abs(each[0].mu_macro - each[1].mu_macro) > 0.05
-    found = microslip.predict(motion, load=20.0, contacts="load=1;load=4,phase=60", **given)
+    result = microslip.predict(motion, load=20.0, contacts="load=1;load=4,phase=60", **settings)
     forces = sum(one.friction_force_N for one in each)
-    errors = 20.0 * found.mu_apparent_error + sum(
+    errors = 20.0 * result.mu_apparent_error + sum(
         load * one.mu_apparent_error for load, one in zip((4.0, 16.0), each, strict=True)
     )
-    assert abs(found.friction_force_N - forces) <= errors
-    assert found.friction_force_still_N == pytest.approx(0.3 * 20.0)
+    assert abs(result.friction_force_N - forces) <= errors
+    assert result.friction_force_still_N == pytest.approx(0.3 * 20.0)
 
 
 @pytest.mark.slow
 def test_two_feet_that_work_against_each_other_walk_as_fast_as_the_closed_form():
     unit = one_of(10.0).u_lim
-    given = BALL | {"load": 20.0, "contacts": AGAINST}
-    found = microslip.predict("longitudinal", amplitude=unit, force=1.8, **given)
+    settings = BALL | {"load": 20.0, "contacts": AGAINST}
+    result = microslip.predict("longitudinal", amplitude=unit, force=1.8, **settings)
     expected = float(antiphase_drift(0.3, 1.0)) * OMEGA * unit
-    assert found.outcome == "moves" and found.converged
-    assert abs(found.speed_m_s - expected) <= found.speed_error_m_s
+    assert result.outcome == "moves" and result.converged
+    assert abs(result.speed_m_s - expected) <= result.speed_error_m_s
     # the threshold of each contact is (1 - A)^(3/2) mu times its load
-    still = microslip.predict("longitudinal", amplitude=0.5 * unit, force=1.8, **given)
+    still = microslip.predict("longitudinal", amplitude=0.5 * unit, force=1.8, **settings)
     assert still.force_threshold_N == pytest.approx(6.0 * 0.5**1.5, abs=6.0 * 1e-3)
     assert still.outcome == "stays"
     # in phase the contacts move with the body, and all of friction holds it
-    together = given | {"contacts": "phase=0;phase=0"}
+    together = settings | {"contacts": "phase=0;phase=0"}
     held = microslip.predict("longitudinal", amplitude=unit, force=1.8, **together)
     assert held.outcome == "stays" and held.force_threshold_N == pytest.approx(6.0)
 
@@ -95,14 +95,14 @@ def test_two_feet_that_work_against_each_other_walk_as_fast_as_the_closed_form()
 @pytest.mark.slow
 def test_no_threshold_is_claimed_where_contacts_move_the_body_by_themselves():
     """At a phase of 100 degrees the forces of the two contacts at rest do not cancel."""
-    given = BALL | {"load": 20.0, "contacts": "phase=0;phase=100", "tolerance": 0.1}
-    found = microslip.predict("longitudinal", amplitude="1 um", force=3.0, **given)
-    assert found.force_threshold_N is None and found.safety_factor is None
+    settings = BALL | {"load": 20.0, "contacts": "phase=0;phase=100", "tolerance": 0.1}
+    result = microslip.predict("longitudinal", amplitude="1 um", force=3.0, **settings)
+    assert result.force_threshold_N is None and result.safety_factor is None
 
 
 def test_parts_of_a_drive_and_the_contact_that_carries_most():
-    carriers, said = read_carriers(" load=3 ; load=1, phase=90, amplitude=2 ")
-    assert said == {"contacts": "load=3 ; load=1, phase=90, amplitude=2"}
+    carriers, message = read_carriers(" load=3 ; load=1, phase=90, amplitude=2 ")
+    assert message == {"contacts": "load=3 ; load=1, phase=90, amplitude=2"}
     assert (carriers.count, carriers.heaviest, carriers.widest) == (2, 1.5, 2.0)
     share = carriers.share_of(RealDrive(force=3.0, mass=0.5))
     assert share == RealDrive(force=1.5, mass=0.25)
@@ -119,23 +119,23 @@ def test_parts_of_a_drive_and_the_contact_that_carries_most():
 def test_warnings_are_about_the_contact_that_carries_most():
     """A sphere yields at a largest pressure of 0.57 times the hardness."""
     pressure = one_of(10.0).largest_pressure
-    given = BALL | {"load": 20.0, "amplitude": "0.5 um", "speed": "1 m/s", "tolerance": 0.1}
-    given["hardness"] = 1.05 * pressure / 0.57
-    found = {
-        contacts: microslip.predict("transverse", contacts=contacts, **given).warnings
+    settings = BALL | {"load": 20.0, "amplitude": "0.5 um", "speed": "1 m/s", "tolerance": 0.1}
+    settings["hardness"] = 1.05 * pressure / 0.57
+    result = {
+        contacts: microslip.predict("transverse", contacts=contacts, **settings).warnings
         for contacts in ("load=1;load=1", "load=5;load=1")
     }
     assert np.cbrt(5 / 3) > 1.05
-    yields = [any("hardness" in text for text in texts) for texts in found.values()]
+    yields = [any("hardness" in text for text in texts) for texts in result.values()]
     assert yields == [False, True]
 
 
 def test_warnings_are_about_the_largest_load_of_a_period():
     """Hertz's pressure is proportional to the cube root of the load: 5 % more for 1.16 times."""
-    given = BALL | {"load": 10.0, "speed": "1 m/s", "tolerance": 0.1}
-    given["hardness"] = 1.05 * one_of(10.0).largest_pressure / 0.57
+    settings = BALL | {"load": 10.0, "speed": "1 m/s", "tolerance": 0.1}
+    settings["hardness"] = 1.05 * one_of(10.0).largest_pressure / 0.57
     texts = [
-        " ".join(microslip.predict("normal", load_amplitude=one, **given).warnings)
+        " ".join(microslip.predict("normal", load_amplitude=one, **settings).warnings)
         for one in ("1.4 N", "1.8 N")
     ]
     assert ["hardness" in text for text in texts] == [False, True]

@@ -13,7 +13,7 @@ from microslip.estimate.refine import UNKNOWN
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
-from microslip.si import pulled, request
+from microslip.si import drive_result, request
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
 from microslip.si.materials import RIGID, Material
@@ -44,8 +44,8 @@ def test_the_groups_of_a_drive_by_hand():
     motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
     stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
     drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
-    found = drive_groups(drive, motion, CONTACT)
-    assert found == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
+    result = drive_groups(drive, motion, CONTACT)
+    assert result == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
     assert drive_groups(RealDrive(force=1.5), motion, CONTACT) == pytest.approx({"force": 0.5})
     assert drive_groups(RealDrive(), motion, CONTACT) == {}
 
@@ -78,11 +78,11 @@ SIZES |= {"amplitude": 3e-7}
 
 def scaled(sizes):
     """An equivalent problem in other units."""
-    found = {}
+    result = {}
     for name, value in sizes.items():
         length, time, mass = DIMENSIONS[name]
-        found[name] = value * LENGTH**length * TIME**time * MASS**mass
-    return found
+        result[name] = value * LENGTH**length * TIME**time * MASS**mass
+    return result
 
 
 @pytest.mark.slow
@@ -126,25 +126,27 @@ def test_answers_know_no_units(pulls):
 )
 def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
     """The references are coarse: a prototype with about twenty rings and backward Euler."""
-    found = microslip.predict(
+    result = microslip.predict(
         "transverse", amplitude=stroke(amplitude), force=force * STILL, **SIDEWAYS
     )
     unit = 2.0 * math.pi * 20e3 * CONTACT.u_lim
-    assert found.outcome == "moves" and found.converged
-    assert found.speed_m_s == pytest.approx(velocity * unit, abs=digits * unit)
-    assert found.speed_error_m_s <= 1.01e-2 * found.speed_m_s
-    assert found.speed_m_s * found.time_to_1_mm_s == pytest.approx(1e-3)
-    assert found.speed_m_s * found.time_to_contact_radius_s == pytest.approx(found.contact_radius_m)
-    assert found.displacement_per_cycle_m * 20e3 == pytest.approx(found.speed_m_s)
-    assert found.mu_macro == pytest.approx(force)
+    assert result.outcome == "moves" and result.converged
+    assert result.speed_m_s == pytest.approx(velocity * unit, abs=digits * unit)
+    assert result.speed_error_m_s <= 1.01e-2 * result.speed_m_s
+    assert result.speed_m_s * result.time_to_1_mm_s == pytest.approx(1e-3)
+    assert result.speed_m_s * result.time_to_contact_radius_s == pytest.approx(
+        result.contact_radius_m
+    )
+    assert result.displacement_per_cycle_m * 20e3 == pytest.approx(result.speed_m_s)
+    assert result.mu_macro == pytest.approx(force)
 
 
 @pytest.mark.slow
 def test_at_a_large_stroke_the_contact_drifts_as_a_rigid_one():
     """A rigid contact drifts by (2/pi) A P / sqrt(1 - P^2); an elastic one by about 1/A less."""
-    found = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
+    result = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
     rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8 * 2.0 * math.pi * 20e3 * CONTACT.u_lim
-    assert 0.97 * rigid < found.speed_m_s < rigid
+    assert 0.97 * rigid < result.speed_m_s < rigid
 
 
 @pytest.mark.parametrize("share", [0.9, 0.5, 1e-3])
@@ -152,40 +154,40 @@ def test_a_force_below_the_threshold_moves_nothing(share):
     """The threshold equals the friction at a speed of 0."""
     held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
     threshold = held.friction_force_N
-    found = microslip.predict(
+    result = microslip.predict(
         "transverse", amplitude=stroke(0.5), force=share * threshold, **SIDEWAYS
     )
-    assert (found.outcome, found.speed_m_s, found.speed_error_m_s) == ("stays", 0.0, 0.0)
-    assert found.force_threshold_N == pytest.approx(threshold)
+    assert (result.outcome, result.speed_m_s, result.speed_error_m_s) == ("stays", 0.0, 0.0)
+    assert result.force_threshold_N == pytest.approx(threshold)
     assert held.force_threshold_N == pytest.approx(threshold)
-    assert found.safety_factor == pytest.approx(1.0 / share)
-    assert found.time_to_1_mm_s is None and found.converged
+    assert result.safety_factor == pytest.approx(1.0 / share)
+    assert result.time_to_1_mm_s is None and result.converged
 
 
 def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(monkeypatch):
     """A force below the friction at speed 0 by twice its error needs no drift computation."""
-    asked = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3}
-    held = microslip.predict("transverse", speed=0.0, **asked)
+    requests = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3}
+    held = microslip.predict("transverse", speed=0.0, **requests)
     force = held.friction_force_N - 2.0 * held.friction_force_error_N
     assert force > 0.99 * STILL
 
-    def no_drift(motion, velocity, *given, **settings):
+    def no_drift(motion, velocity, *changes, **settings):
         assert velocity == 0.0, "a drift was computed"
-        return microslip.solve(motion, velocity, *given, **settings)
+        return microslip.solve(motion, velocity, *changes, **settings)
 
     monkeypatch.setattr(request, "solve", no_drift)
-    found = microslip.predict("transverse", force=force, **asked)
-    assert (found.outcome, found.speed_m_s, found.speed_error_m_s) == ("stays", 0.0, 0.0)
-    assert found.converged and found.mu_macro == pytest.approx(force / STILL, rel=1e-12)
-    assert force < found.force_threshold_N - found.force_threshold_error_N
+    result = microslip.predict("transverse", force=force, **requests)
+    assert (result.outcome, result.speed_m_s, result.speed_error_m_s) == ("stays", 0.0, 0.0)
+    assert result.converged and result.mu_macro == pytest.approx(force / STILL, rel=1e-12)
+    assert force < result.force_threshold_N - result.force_threshold_error_N
 
 
 @pytest.mark.parametrize("force", [3.0, 50.0, 1e12])
 def test_all_of_friction_and_more_runs_away(force):
-    found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
-    assert found.outcome == "runs away" and not found.converged
-    assert math.isnan(found.speed_m_s) and found.time_to_1_mm_s is None
-    assert found.reason.startswith("runs away")
+    result = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
+    assert result.outcome == "runs away" and not result.converged
+    assert math.isnan(result.speed_m_s) and result.time_to_1_mm_s is None
+    assert result.reason.startswith("runs away")
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 2e-2])
@@ -195,63 +197,63 @@ def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, s
     contact = SIDEWAYS | {"amplitude": stroke(0.5)}
     held = microslip.predict("transverse", speed=0.0, **contact)
     force = held.force_threshold_N + side * held.force_threshold_error_N
-    found = microslip.predict("transverse", force=force, tolerance=tolerance, **contact)
-    assert found.outcome == "undecided" and not found.converged
-    assert found.displacement_m is None and not found.displacement_reason
-    assert found.reason.startswith("the force differs from its threshold by less than")
-    assert "undecided within the error" in str(found)
+    result = microslip.predict("transverse", force=force, tolerance=tolerance, **contact)
+    assert result.outcome == "undecided" and not result.converged
+    assert result.displacement_m is None and not result.displacement_reason
+    assert result.reason.startswith("the force differs from its threshold by less than")
+    assert "undecided within the error" in str(result)
 
 
 def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
-    def given_up(motion, velocity, *given, **settings):
-        found = microslip.solve(motion, velocity, *given, **settings)
+    def given_up(motion, velocity, *changes, **settings):
+        result = microslip.solve(motion, velocity, *changes, **settings)
         if velocity == 0.0:
-            return found
+            return result
         lost = {"mean_velocity": UNKNOWN, "converged": False}
-        return replace(found, **lost, reason="lost on the way")
+        return replace(result, **lost, reason="lost on the way")
 
     monkeypatch.setattr(request, "solve", given_up)
     words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
     words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "2.9 N"]
     said_first = said(capsys, *words, code=1)
     assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
-    found = json.loads(said(capsys, *words, "--json", code=1))
-    assert (found["outcome"], found["speed_m_s"]) == (None, None)
+    result = json.loads(said(capsys, *words, "--json", code=1))
+    assert (result["outcome"], result["speed_m_s"]) == (None, None)
 
 
 def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypatch):
-    asked = SIDEWAYS | {"amplitude": stroke(0.5), "force": 1.0}
-    heavy = microslip.predict("transverse", **asked, mass="1 mg")
+    requests = SIDEWAYS | {"amplitude": stroke(0.5), "force": 1.0}
+    heavy = microslip.predict("transverse", **requests, mass="1 mg")
     assert (heavy.outcome, heavy.displacement_m) == ("stays", None)
     assert "displacement      unknown: computed for one contact without mass only" in str(heavy)
 
-    def endless(*given, **settings):
+    def endless(*changes, **settings):
         return SimpleNamespace(converged=False, reason="lost on the way")
 
     monkeypatch.setattr("microslip.si.predict.shakedown", endless)
-    light = microslip.predict("transverse", **asked)
+    light = microslip.predict("transverse", **requests)
     assert (light.outcome, light.displacement_reason) == ("stays", "lost on the way")
     assert "displacement      unknown: lost on the way" in str(light)
 
 
 def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():
-    found = microslip.predict("longitudinal", amplitude=stroke(3.0), force=2.9, **SIDEWAYS)
-    assert (found.outcome, found.speed_m_s) == ("stays", 0.0)
-    assert found.force_threshold_N == pytest.approx(STILL)
+    result = microslip.predict("longitudinal", amplitude=stroke(3.0), force=2.9, **SIDEWAYS)
+    assert (result.outcome, result.speed_m_s) == ("stays", 0.0)
+    assert result.force_threshold_N == pytest.approx(STILL)
     heavy = SIDEWAYS | {"amplitude": stroke(3.0), "force": 1.0, "mass": "1 kg"}
-    found = microslip.predict("longitudinal", **heavy)
-    assert found.outcome == "moves"
-    assert (found.force_threshold_N, found.safety_factor) == (None, None)
+    result = microslip.predict("longitudinal", **heavy)
+    assert result.outcome == "moves"
+    assert (result.force_threshold_N, result.safety_factor) == (None, None)
 
 
 def test_a_steady_spin_gives_way_to_any_force():
     """The velocity and the force satisfy Eq 21."""
-    found = microslip.predict("continuous-bore", rotation="10 Hz", force=0.5 * STILL, **BALL)
-    assert float(paper.bore_forward(found.velocity)) == pytest.approx(0.5, abs=1e-8)
-    edge = 2.0 * math.pi * 10.0 * found.contact_radius_m
-    assert found.speed_m_s == pytest.approx(found.velocity * edge)
-    assert (found.outcome, found.force_threshold_N) == ("moves", 0.0)
-    assert found.displacement_per_cycle_m is None
+    result = microslip.predict("continuous-bore", rotation="10 Hz", force=0.5 * STILL, **BALL)
+    assert float(paper.bore_forward(result.velocity)) == pytest.approx(0.5, abs=1e-8)
+    edge = 2.0 * math.pi * 10.0 * result.contact_radius_m
+    assert result.speed_m_s == pytest.approx(result.velocity * edge)
+    assert (result.outcome, result.force_threshold_N) == ("moves", 0.0)
+    assert result.displacement_per_cycle_m is None
 
 
 # Through a spring
@@ -285,33 +287,33 @@ def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
     """
     drive = Spring(stiffness, mass)
     assert regime(motion, amplitude, drive) == expected
-    found = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
+    result = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
     limits = {"velocity": microslip.solve(motion, velocity, amplitude).mu_macro, "force": 1.0}
     if motion != "longitudinal":
         limits["force"] = microslip.solve(motion, velocity, amplitude, stiffness=1e-4).mu_macro
-    assert found.converged
-    assert found.mu_macro == pytest.approx(limits[expected], abs=SAME)
+    assert result.converged
+    assert result.mu_macro == pytest.approx(limits[expected], abs=SAME)
     assert abs(limits["velocity"] - limits["force"]) > SAME
 
 
 def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     """Stiffness and mass are scaled by one factor, which keeps the natural frequency."""
-    asked = pulled.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
-    assert max(asked.values()) == LARGEST_BODY
+    requests = drive_result.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
+    assert max(requests.values()) == LARGEST_BODY
     for size in (3.3e25, 7e29, 1.1e30):  # the quotient is rounded up
-        assert pulled.within_range({"stiffness": size})["stiffness"] == LARGEST_BODY
-    assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
+        assert drive_result.within_range({"stiffness": size})["stiffness"] == LARGEST_BODY
+    assert requests["stiffness"] / requests["mass"] == pytest.approx(4.0)
     as_given = {"stiffness": 4.0, "mass": 0.5}
-    assert pulled.within_range(as_given) == as_given
+    assert drive_result.within_range(as_given) == as_given
 
 
 @pytest.mark.parametrize(
     ("argument", "option"), [("stiffness", "drive_stiffness"), ("velocity", "speed")]
 )
 def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argument, option):
-    def refuse(motion, velocity, *given, **settings):
+    def refuse(motion, velocity, *changes, **settings):
         if velocity == 0.0:
-            return microslip.solve(motion, velocity, *given, **settings)
+            return microslip.solve(motion, velocity, *changes, **settings)
         raise InputError(argument, 2e6, "allowed is at most 1e+06")
 
     monkeypatch.setattr(request, "solve", refuse)
@@ -351,28 +353,28 @@ def test_the_command_line_says_what_comes_of_a_force(capsys):
     assert "it runs away: friction holds at most 3 N" in away and "CONVERGED" not in away
     words += ["--speed", "1 mm/s", "--drive-stiffness", "10 N/um", "--mass", "20 g"]
     assert "stiff or heavy: the velocity is nearly constant" in said(capsys, *words)
-    found = json.loads(said(capsys, *words, "--json"))
-    assert (found["mass_kg"], found["drive_stiffness_N_m"]) == (0.02, 1e7)
-    assert found["regime"] == "velocity" and found["outcome"] is None
+    result = json.loads(said(capsys, *words, "--json"))
+    assert (result["mass_kg"], result["drive_stiffness_N_m"]) == (0.02, 1e7)
+    assert result["regime"] == "velocity" and result["outcome"] is None
 
 
 def test_a_contact_that_goes_along_with_the_vibration_has_the_threshold_of_what_is_left():
     """The threshold is that of the lateral part, whose closed form is exact at nu = 0."""
     parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
-    found = {
+    result = {
         share: microslip.predict("elliptic", **SIDEWAYS, **parts, force=share * STILL)
         for share in (0.4, 0.8)
     }
-    assert [one.outcome for one in found.values()] == ["stays", "moves"]
+    assert [one.outcome for one in result.values()] == ["stays", "moves"]
     exact = STILL * paper.static_limit_transverse(0.5)
-    for share, one in found.items():
+    for share, one in result.items():
         assert one.force_threshold_N == pytest.approx(exact, abs=one.force_threshold_error_N)
         assert one.safety_factor == pytest.approx(one.force_threshold_N / (share * STILL))
-    assert found[0.4].displacement_m > 0.0
+    assert result[0.4].displacement_m > 0.0
 
 
 def test_probabilities_that_are_not_known_are_said_to_be():
     parts = {"amplitude": stroke(0.5), "forward_amplitude": stroke(0.3), "phase": "90 deg"}
-    found = microslip.predict("elliptic", **SIDEWAYS, **parts, force="1.2 N +- 0.1 N")
-    assert found.probability_stays is None and found.probability_runs_away == 0.0
-    assert "not computed for staying and moving" in str(found)
+    result = microslip.predict("elliptic", **SIDEWAYS, **parts, force="1.2 N +- 0.1 N")
+    assert result.probability_stays is None and result.probability_runs_away == 0.0
+    assert "not computed for staying and moving" in str(result)

@@ -24,8 +24,8 @@ def test_the_line_is_that_of_the_groups(motion, share):
     """The unit of force is mu F_z, the unit of speed omega u_lim, the unit of power their
     product."""
     frequency = 20e3
-    given = {"amplitude": share * U_LIM, "frequency": frequency, "points": 3}
-    real = microslip.predict_propulsion(motion, **BALL, **given)
+    settings = {"amplitude": share * U_LIM, "frequency": frequency, "points": 3}
+    real = microslip.predict_propulsion(motion, **BALL, **settings)
     line = microslip.propulsion(motion, share, tolerance=1e-2, points=3)
     assert real.converged and line.converged
     speed = 2.0 * math.pi * frequency * U_LIM
@@ -65,21 +65,23 @@ def test_twice_as_fast_takes_twice_the_power():
 
 
 def words(motion, **more):
-    given = {"radius": "5 mm", "load": "10 N", "mu": "0.3", "young": "210 GPa", "nu": "0"}
-    given |= {"amplitude": f"{U_LIM} m", "frequency": "20 kHz"} | more
-    named = [f"--{name}={value}" for name, value in given.items() if value is not None]
+    settings = {"radius": "5 mm", "load": "10 N", "mu": "0.3", "young": "210 GPa", "nu": "0"}
+    settings |= {"amplitude": f"{U_LIM} m", "frequency": "20 kHz"} | more
+    named = [f"--{name}={value}" for name, value in settings.items() if value is not None]
     return ["predict", motion, "--propulsion", *named]
 
 
 @pytest.mark.slow
 def test_the_command_line_says_the_same(capsys):
     assert cli.main([*words(EIGHT, points="3"), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
-    found = microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=20e3, points=3)
-    assert said["force_N"] == pytest.approx(found.force_N.tolist())
+    message = json.loads(capsys.readouterr().out)
+    result = microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=20e3, points=3)
+    assert message["force_N"] == pytest.approx(result.force_N.tolist())
     assert cli.main(words(EIGHT, points="3")) == 0
-    assert capsys.readouterr().out.split("\n\n")[1] == f"{found}\n".split("\n\n")[1]
-    stall = number_text(found.stall_force_N, found.stall_force_error_N, "N")
-    assert f"\nstall force       {stall}\n" in str(found)
-    (row,) = [row for row in str(found).splitlines() if " +- " in row and row.startswith("  ")][1:2]
-    assert number_text(found.force_N[1], found.force_error_N[1]) in row
+    assert capsys.readouterr().out.split("\n\n")[1] == f"{result}\n".split("\n\n")[1]
+    stall = number_text(result.stall_force_N, result.stall_force_error_N, "N")
+    assert f"\nstall force       {stall}\n" in str(result)
+    (row,) = [row for row in str(result).splitlines() if " +- " in row and row.startswith("  ")][
+        1:2
+    ]
+    assert number_text(result.force_N[1], result.force_error_N[1]) in row

@@ -52,8 +52,8 @@ def test_the_ellipse_of_two_radii_is_pressed_into_shape(across):
             # integral of sqrt(gamma - 2 beta s - alpha s^2) over the chord
             return 0.5 * math.pi * (gamma + beta * beta / alpha) / math.sqrt(alpha)
 
-        found = dblquad(integrand, 0.0, math.pi, 0.0, 1.0, epsabs=0.0, epsrel=1e-10)[0]
-        return p0 * found / (math.pi * contact.E_star)
+        result = dblquad(integrand, 0.0, math.pi, 0.0, 1.0, epsabs=0.0, epsrel=1e-10)[0]
+        return p0 * result / (math.pi * contact.E_star)
 
     middle = displacement(0.0, 0.0)
     assert contact.indentation == pytest.approx(middle, rel=1e-8)
@@ -110,8 +110,8 @@ def flat_end(r, b=0.8):
 
 
 def largest_of(function, low, high):
-    found = minimize_scalar(lambda r: -function(r), bounds=(low, high), method="bounded")
-    return -found.fun
+    result = minimize_scalar(lambda r: -function(r), bounds=(low, high), method="bounded")
+    return -result.fun
 
 
 LARGEST = {
@@ -156,13 +156,13 @@ def test_the_largest_pressure_of_a_file_is_its_largest_value(grid, mean_height, 
 def test_a_cone_yields_at_its_tip_and_says_so_once():
     cone = {"contact_radius": "0.1 mm", "pressure": "power:exponent=1"}
     for hardness in ({}, {"hardness": "7 GPa"}):
-        found = microslip.predict("transverse", **ASKED | cone | hardness, tolerance=0.1)
-        assert found.largest_pressure_Pa == math.inf
-        assert "largest pressure  infinite, at the tip" in str(found)
-        (about,) = [text for text in found.warnings if "pressure" in text and "tip" in text]
+        result = microslip.predict("transverse", **ASKED | cone | hardness, tolerance=0.1)
+        assert result.largest_pressure_Pa == math.inf
+        assert "largest pressure  infinite, at the tip" in str(result)
+        (about,) = [text for text in result.warnings if "pressure" in text and "tip" in text]
         mean = 10.0 / (math.pi * 1e-8)
         assert f"the mean pressure is {mean:.2g} Pa" in about
-        texts = [*found.warnings, *found.not_checked]
+        texts = [*result.warnings, *result.not_checked]
         assert not any("inf" in text.replace("infinite", "") for text in texts)
         assert not any("stay elastic" in text for text in texts)
 
@@ -179,15 +179,15 @@ def test_u_lim_of_a_cone_is_that_of_its_depth():
 @pytest.mark.slow
 def test_a_prediction_under_another_pressure_is_what_the_solver_says():
     shape = {"contact_radius": "0.1 mm", "pressure": "power:exponent=4"}
-    found = microslip.predict("transverse", **ASKED | shape)
+    result = microslip.predict("transverse", **ASKED | shape)
     contact = of_size(
         TwoBodies(Material(210e9, 0.3), RIGID, 1.0, 10.0, 0.3), 1e-4, shape["pressure"]
     )
     omega = 2.0 * math.pi * 20e3
     point = 10e-3 / (omega * contact.u_lim), 0.3e-6 / contact.u_lim
     settings = {"pressure": shape["pressure"], "poisson": 0.3}
-    assert found.mu_macro == microslip.solve("transverse", *point, **settings).mu_macro
-    assert found.pressure == shape["pressure"] and found.contact_radius_m == 1e-4
+    assert result.mu_macro == microslip.solve("transverse", *point, **settings).mu_macro
+    assert result.pressure == shape["pressure"] and result.contact_radius_m == 1e-4
 
 
 # Motions in several ways
@@ -209,9 +209,9 @@ def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
     motion = RealMotion(label, 1e-3, along[0], 1e3, **parts)
     name, _, text = solver_motion(motion, BALL).partition(":")
-    found = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
-    assert name == label and found.pop("phase") == pytest.approx(90.0)
-    assert found == pytest.approx(expected)
+    result = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
+    assert name == label and result.pop("phase") == pytest.approx(90.0)
+    assert result == pytest.approx(expected)
     velocity, amplitude = groups(motion, BALL)
     assert amplitude == pytest.approx(largest)
     assert velocity == pytest.approx(1e-3 / (2e3 * math.pi * BALL.u_lim))
@@ -224,19 +224,19 @@ def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
         ("elliptic", {"forward_amplitude": 0.0}),
         ("transverse-bore", {"rotation_amplitude": "0 deg"}),
     ):
-        found = microslip.predict(motion, **SPHERE | other)
-        error = plain.mu_macro_error + found.mu_macro_error
-        assert found.mu_macro == pytest.approx(plain.mu_macro, abs=error)
-        assert found.velocity == plain.velocity and found.amplitude == plain.amplitude
+        result = microslip.predict(motion, **SPHERE | other)
+        error = plain.mu_macro_error + result.mu_macro_error
+        assert result.mu_macro == pytest.approx(plain.mu_macro, abs=error)
+        assert result.velocity == plain.velocity and result.amplitude == plain.amplitude
 
 
 @pytest.mark.long
 def test_an_oscillating_load_alone_is_its_closed_form():
     """The static limit is 1 - A for an amplitude A of the load, here 0.5."""
-    asked = {k: v for k, v in SPHERE.items() if k != "amplitude"}
-    found = microslip.predict("normal", **asked | {"load_amplitude": "5 N"})
-    assert found.mu_static == pytest.approx(0.5, abs=found.mu_static_error)
-    assert found.mu_macro > found.mu_static and found.load_amplitude_N == 5.0
+    request = {k: v for k, v in SPHERE.items() if k != "amplitude"}
+    result = microslip.predict("normal", **request | {"load_amplitude": "5 N"})
+    assert result.mu_static == pytest.approx(0.5, abs=result.mu_static_error)
+    assert result.mu_macro > result.mu_static and result.load_amplitude_N == 5.0
 
 
 # Motions from files
@@ -271,13 +271,13 @@ class OwnBore(Bore):
 @pytest.fixture
 def own(tmp_path):
     """Two motions from files: a translation of another shape, and a copy of the bore."""
-    known, path = dict(by_name.MOTIONS), list(motions.__path__)
+    registry, path = dict(by_name.MOTIONS), list(motions.__path__)
     for name, text in OWN.items():
         (tmp_path / f"{name}.py").write_text(text)
     by_name.find(tmp_path)
     yield
     by_name.MOTIONS.clear()
-    by_name.MOTIONS.update(known)
+    by_name.MOTIONS.update(registry)
     motions.__path__[:] = path
     for file in ("sine_cubed", "own_bore"):
         del sys.modules[f"microslip.motions.{file}"]
@@ -285,26 +285,26 @@ def own(tmp_path):
 
 @pytest.mark.slow
 def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
-    found = microslip.predict("sine-cubed", **SPHERE)
-    assert (found.velocity, found.amplitude) == pytest.approx(
-        (1e-2 / (2.0 * math.pi * 2e4 * found.u_lim_m), 3e-7 / found.u_lim_m), rel=1e-12
+    result = microslip.predict("sine-cubed", **SPHERE)
+    assert (result.velocity, result.amplitude) == pytest.approx(
+        (1e-2 / (2.0 * math.pi * 2e4 * result.u_lim_m), 3e-7 / result.u_lim_m), rel=1e-12
     )
-    assert found.understood["motion"] == "sine-cubed: the sphere is moving as it likes"
-    point = ["--velocity", repr(found.velocity), "--amplitude", repr(found.amplitude)]
-    point += ["--poisson", repr(found.poisson)]
+    assert result.understood["motion"] == "sine-cubed: the sphere is moving as it likes"
+    point = ["--velocity", repr(result.velocity), "--amplitude", repr(result.amplitude)]
+    point += ["--poisson", repr(result.poisson)]
     assert cli.main(["point", "sine-cubed", *point, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == found.mu_macro
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
     words = [f"--{name}={value}" for name, value in SPHERE.items()]
     assert cli.main(["predict", "sine-cubed", *words, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == found.mu_macro
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
 
 
 @pytest.mark.slow
 def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
     spin = SPHERE | {"amplitude": "0.2 deg", "tolerance": 1e-2}
-    found, bore = (microslip.predict(motion, **spin) for motion in ("own-bore", "bore"))
-    assert (found.velocity, found.amplitude) == (bore.velocity, bore.amplitude)
-    assert found.mu_macro == bore.mu_macro
+    result, bore = (microslip.predict(motion, **spin) for motion in ("own-bore", "bore"))
+    assert (result.velocity, result.amplitude) == (bore.velocity, bore.amplitude)
+    assert result.mu_macro == bore.mu_macro
     with pytest.raises(InputError, match="units of rad"):
         microslip.predict("own-bore", **spin | {"amplitude": "1 um"})
     assert cli.main(["predict", "own-bore", *(f"--{k}={v}" for k, v in spin.items())]) == 0
@@ -324,15 +324,15 @@ def test_numbers_after_the_name_of_a_family_are_taken_as_by_solve():
 @pytest.mark.long
 def test_a_load_amplitude_above_the_load_parts_the_bodies():
     """The mean load is the integral of 10 N + 15 N sin t over its positive part."""
-    given = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}
-    del given["amplitude"]
-    found = microslip.predict("normal", **given, power=False)
+    settings = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}
+    del settings["amplitude"]
+    result = microslip.predict("normal", **settings, power=False)
     gone = math.acos(10.0 / 15.0)  # half the phases without contact, around 3 pi/2
     mean = 10.0 * (1.0 - gone / math.pi) + 15.0 * math.sin(gone) / math.pi
-    answer = microslip.solve("normal", found.velocity, 1.5, poisson=0.3)
-    assert found.mu_macro == answer.mu_macro
-    assert found.friction_force_N == pytest.approx(0.3 * mean * found.mu_macro, rel=1e-9)
-    assert found.drag_power_W == pytest.approx(1e-3 * found.friction_force_N, rel=1e-12)
-    assert sum(f"{mean:.4g} N" in text for text in found.warnings) == 1
-    half = microslip.predict("normal", **given | {"speed": None, "force": 0.15 * mean})
+    answer = microslip.solve("normal", result.velocity, 1.5, poisson=0.3)
+    assert result.mu_macro == answer.mu_macro
+    assert result.friction_force_N == pytest.approx(0.3 * mean * result.mu_macro, rel=1e-9)
+    assert result.drag_power_W == pytest.approx(1e-3 * result.friction_force_N, rel=1e-12)
+    assert sum(f"{mean:.4g} N" in text for text in result.warnings) == 1
+    half = microslip.predict("normal", **settings | {"speed": None, "force": 0.15 * mean})
     assert half.force == pytest.approx(0.5, rel=1e-9)

@@ -97,14 +97,18 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
 
 
 def test_a_prediction_is_what_the_solver_says_of_its_groups():
-    found = microslip.predict("transverse", **EXAMPLE)
-    answer = microslip.solve("transverse", found.velocity, found.amplitude, poisson=found.poisson)
-    assert found.mu_macro == answer.mu_macro
-    assert found.mu_macro_error == answer.mu_macro_error
-    assert found.mu_apparent == pytest.approx(0.3 * answer.mu_macro)
-    assert found.friction_force_N == pytest.approx(3.0 * answer.mu_macro)
-    assert found.force_reduction == pytest.approx(1 - answer.mu_macro)
-    assert found.mu_static == pytest.approx(0.0, abs=found.mu_static_error)  # slides in each stroke
+    result = microslip.predict("transverse", **EXAMPLE)
+    answer = microslip.solve(
+        "transverse", result.velocity, result.amplitude, poisson=result.poisson
+    )
+    assert result.mu_macro == answer.mu_macro
+    assert result.mu_macro_error == answer.mu_macro_error
+    assert result.mu_apparent == pytest.approx(0.3 * answer.mu_macro)
+    assert result.friction_force_N == pytest.approx(3.0 * answer.mu_macro)
+    assert result.force_reduction == pytest.approx(1 - answer.mu_macro)
+    assert result.mu_static == pytest.approx(
+        0.0, abs=result.mu_static_error
+    )  # slides in each stroke
 
 
 def test_two_balls_are_one_ball_of_half_the_radius():
@@ -141,13 +145,13 @@ def test_the_amplitude_that_halves_friction_does(name, motion):
 
 def test_a_material_may_be_given_as_a_record():
     record = Material(210e9, 0.3)
-    asked = EXAMPLE | {"young": None, "nu": None, "material": record}
-    assert microslip.predict("transverse", **asked) == microslip.predict("transverse", **EXAMPLE)
+    request = EXAMPLE | {"young": None, "nu": None, "material": record}
+    assert microslip.predict("transverse", **request) == microslip.predict("transverse", **EXAMPLE)
     assert Material("210 GPa", "30 %", "7.85 g/cm^3", "7 GPa") == Material(210e9, 0.3, 7850.0, 7e9)
 
 
 @pytest.mark.parametrize(
-    ("values", "named", "said"),
+    ("values", "named", "message"),
     [
         ((0.0, 0.3), "young", "above 0"),
         ((math.nan, 0.3), "young", "not finite"),
@@ -158,10 +162,10 @@ def test_a_material_may_be_given_as_a_record():
         ((210e9, 0.3, None, None, 5), "source", "a text"),
     ],
 )
-def test_a_bad_material_is_refused_where_it_is_made(values, named, said):
+def test_a_bad_material_is_refused_where_it_is_made(values, named, message):
     with pytest.raises(InputError, match=f"^{named} = ") as caught:
         Material(*values)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 # Bodies that fit closely
@@ -171,29 +175,29 @@ FITTING = {"radius": "14 mm", "counter_radius": "-14.1 mm", "young": "50 MPa", "
 
 def test_a_contact_is_judged_against_the_smaller_body():
     """Hertz: E* = 50/0.75 MPa and R = 14 * 14.1/0.1 mm give a = (3 F R/(4 E*))^(1/3) = 6.06 mm."""
-    found = microslip.predict("transverse", **EXAMPLE | FITTING)
-    assert found.contact_radius_m == pytest.approx(6.057e-3, rel=1e-3)
-    assert any("0.43 of the smaller radius" in text for text in found.warnings)
+    result = microslip.predict("transverse", **EXAMPLE | FITTING)
+    assert result.contact_radius_m == pytest.approx(6.057e-3, rel=1e-3)
+    assert any("0.43 of the smaller radius" in text for text in result.warnings)
 
 
 def test_two_equal_balls_are_judged_against_their_relative_curvature_too():
     """A contact radius of 0.15 times either radius is 0.3 times that of relative curvature."""
     load = 4.0 / 3.0 * (210e9 / 0.91) * (0.15 * 5e-3) ** 3 / 2.5e-3
-    found = microslip.predict("transverse", **EXAMPLE | {"counter_radius": 5e-3, "load": load})
-    assert any("0.3 of the radius of relative curvature" in text for text in found.warnings)
+    result = microslip.predict("transverse", **EXAMPLE | {"counter_radius": 5e-3, "load": load})
+    assert any("0.3 of the radius of relative curvature" in text for text in result.warnings)
 
 
 @pytest.mark.parametrize("share", [0.49, 0.51])
 def test_half_the_radius_is_where_hertz_ends(share):
     """The load that gives a contact radius a is F = 4 E* a^3 / (3 R)."""
     load = 4.0 / 3.0 * (210e9 / 0.91) * (share * 5e-3) ** 3 / 5e-3
-    asked = EXAMPLE | {"load": load}
+    request = EXAMPLE | {"load": load}
     if share < 0.5:
-        found = microslip.predict("transverse", **asked)
-        assert any("0.49 of the smaller radius" in text for text in found.warnings)
+        result = microslip.predict("transverse", **request)
+        assert any("0.49 of the smaller radius" in text for text in result.warnings)
     else:
         with pytest.raises(InputError, match=r"^radius = '5 mm': .* 0\.51 of this"):
-            microslip.predict("transverse", **asked)
+            microslip.predict("transverse", **request)
 
 
 # Warnings
@@ -224,8 +228,8 @@ def test_nothing_is_warned_of_without_reason():
 @pytest.mark.slow
 @pytest.mark.parametrize("word", WARNED)
 def test_what_breaks_is_warned_of(word, monkeypatch):
-    found = microslip.predict("transverse", **MILD | WARNED[word])
-    assert sum(word in text for text in found.warnings) == 1
+    result = microslip.predict("transverse", **MILD | WARNED[word])
+    assert sum(word in text for text in result.warnings) == 1
 
 
 @pytest.mark.parametrize(
@@ -250,9 +254,13 @@ def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
         (1e6, 1e-2, 1.5, "JKR"),
     ):
         contact = TwoBodies(Material(young, 0.3), RIGID, radius, 1e-9, 0.3)
-        said = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
+        message = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
         pull = share * math.pi * radius * 0.05
-        assert len(said) == 1 and f"about {pull:.2g} N" in said[0] and f": {theory})" in said[0]
+        assert (
+            len(message) == 1
+            and f"about {pull:.2g} N" in message[0]
+            and f": {theory})" in message[0]
+        )
 
 
 @pytest.mark.slow
@@ -266,9 +274,9 @@ def test_what_was_not_checked_is_said():
 
 
 def test_a_missing_property_is_said_with_its_body():
-    given = MILD | {"material": "glass", "young": None, "nu": None, "counterbody": "gold"}
-    found = microslip.predict("transverse", **given)
-    assert found.not_checked == (
+    settings = MILD | {"material": "glass", "young": None, "nu": None, "counterbody": "gold"}
+    result = microslip.predict("transverse", **settings)
+    assert result.not_checked == (
         "whether the bodies stay elastic (the hardness of the counterbody is missing)",
     )
 
@@ -291,11 +299,11 @@ def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rou
 
 def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():
     gold = microslip.Material(young="79 GPa", poisson=0.42)
-    told = [
+    lines = [
         microslip.predict("transverse", **MILD | {"counterbody": body})
         for body in ("79 GPa, 0.42", (79e9, 0.42), ("79 GPa", 0.42), gold)
     ]
-    assert told[1:] == told[:1] * 3
+    assert lines[1:] == lines[:1] * 3
     with pytest.raises(InputError, match="its Poisson's ratio 0.6: .* at most 0.5"):
         microslip.predict("transverse", **MILD | {"counterbody": (79e9, 0.6)})
 

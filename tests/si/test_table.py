@@ -31,7 +31,7 @@ def test_each_case_is_its_prediction(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("cases", "said"),
+    ("cases", "message"),
     [
         ({}, "a mapping of names to sequences"),
         ([1.0], "a mapping of names to sequences"),
@@ -42,8 +42,8 @@ def test_each_case_is_its_prediction(tmp_path):
         (CASES | {"load": ["10 kg", "1 s"]}, "load = '10 kg': in case 0: the unit is kilogram"),
     ],
 )
-def test_a_table_that_is_none_is_refused(cases, said):
-    with pytest.raises(InputError, match=said):
+def test_a_table_that_is_none_is_refused(cases, message):
+    with pytest.raises(InputError, match=message):
         microslip.predict_table("transverse", cases, **SHARED)
 
 

@@ -11,7 +11,7 @@ NAMES = dict.fromkeys(("load", "speed", "amplitude", "mu", "counterbody"), False
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    ("text", "result"),
     [
         ("load [N],speed\n10,1 mm/s\n", {"load": ["10 N"], "speed": ["1 mm/s"]}),
         ("load [N];mu\n1e1;0.3\n2;\n", {"load": ["1e1 N", "2 N"], "mu": ["0.3", None]}),
@@ -24,9 +24,9 @@ NAMES = dict.fromkeys(("load", "speed", "amplitude", "mu", "counterbody"), False
         ("label,load [N]\nsecond run,10\n", {"label": ["second run"], "load": ["10 N"]}),
     ],
 )
-def test_columns_are_texts_with_their_units(text, found):
+def test_columns_are_texts_with_their_units(text, result):
     table = read_table(text.encode(), NAMES)
-    assert (table.columns, table.errors) == (found, {})
+    assert (table.columns, table.errors) == (result, {})
 
 
 def test_lines_are_numbered_as_the_file_has_them():
@@ -59,7 +59,7 @@ def test_a_line_that_cannot_be_read_does_not_refuse_the_others():
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "line 1: the heading is ''"),
         ("load [N]\n", "line 1: no line follows"),
@@ -73,8 +73,8 @@ def test_a_line_that_cannot_be_read_does_not_refuse_the_others():
         ("load [\xb5N]\n1\n", "line 1: byte 0xb5 is not UTF-8; allowed: UTF-8, which"),
     ],
 )
-def test_what_is_no_table_is_refused_by_line(text, said):
-    with pytest.raises(ValueError, match=said.replace("(", r"\(")):
+def test_what_is_no_table_is_refused_by_line(text, message):
+    with pytest.raises(ValueError, match=message.replace("(", r"\(")):
         read_table(text.encode("latin-1"), NAMES)
 
 
@@ -84,7 +84,7 @@ def test_a_heading_may_need_a_unit():
 
 
 @pytest.mark.parametrize(
-    ("source", "form", "said"),
+    ("source", "form", "message"),
     [
         ("none.csv", {}, r"^table = 'none.csv': cannot be read \(No such file"),
         ("none.csv", {"encoding": "klingon"}, "^encoding = 'klingon': allowed is the name"),
@@ -99,22 +99,22 @@ def test_a_heading_may_need_a_unit():
         (pd.DataFrame({0: ["5 N"]}), {}, "^table = 0: names of columns must be texts"),
     ],
 )
-def test_what_is_no_table_is_refused(source, form, said):
-    with pytest.raises(InputError, match=said):
+def test_what_is_no_table_is_refused(source, form, message):
+    with pytest.raises(InputError, match=message):
         table_of("table", source, NAMES, **form)
 
 
 def test_another_encoding_is_read_if_declared(tmp_path):
     path = tmp_path / "latin.csv"
     path.write_bytes("label,amplitude [µm]\nprüf,1\n".encode("cp1252"))
-    found = table_of("table", path, NAMES, encoding="cp1252")
-    assert found.columns == {"label": ["prüf"], "amplitude": ["1 µm"]}
+    result = table_of("table", path, NAMES, encoding="cp1252")
+    assert result.columns == {"label": ["prüf"], "amplitude": ["1 µm"]}
 
 
 def test_columns_of_a_frame_are_lists_with_units():
     """Every missing value of pandas becomes None."""
     frame = pd.DataFrame({"load [N]": [1.5, np.nan], "mu": [0.3, None], "label": ["a", pd.NA]})
-    found = table_of("table", frame, NAMES)
-    assert found.columns == {"load": ["1.5 N", None], "mu": [0.3, None], "label": ["a", None]}
+    result = table_of("table", frame, NAMES)
+    assert result.columns == {"load": ["1.5 N", None], "mu": [0.3, None], "label": ["a", None]}
     series = {"load": pd.Series(["1 N", "2 N"], index=[7, 3])}
     assert table_of("table", series, NAMES).columns == {"load": ["1 N", "2 N"]}

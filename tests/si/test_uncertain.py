@@ -16,26 +16,26 @@ SPIN = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
 @pytest.mark.slow
 def test_a_spread_of_mu_alone_is_a_share_of_the_force():
     """The friction of a steady spin is independent of u_lim and proportional to mu."""
-    found = microslip.predict("continuous-bore", **SPIN | {"mu": "0.3 +- 0.03"})
-    assert found.friction_force_spread_N == pytest.approx(0.1 * found.friction_force_N, rel=1e-9)
-    assert found.mu_apparent_spread == pytest.approx(0.1 * found.mu_apparent, rel=1e-9)
-    assert found.mu_macro_spread == pytest.approx(0.0, abs=1e-12)
-    assert found.understood["mu"] == "0.3 +- 0.03"
+    result = microslip.predict("continuous-bore", **SPIN | {"mu": "0.3 +- 0.03"})
+    assert result.friction_force_spread_N == pytest.approx(0.1 * result.friction_force_N, rel=1e-9)
+    assert result.mu_apparent_spread == pytest.approx(0.1 * result.mu_apparent, rel=1e-9)
+    assert result.mu_macro_spread == pytest.approx(0.0, abs=1e-12)
+    assert result.understood["mu"] == "0.3 +- 0.03"
 
 
 def test_spreads_of_several_quantities_are_those_of_a_monte_carlo():
     """10^5 draws of the closed form (Eq 21, v~ <= 1) have a statistical error of 1 %."""
-    asked = BALL | {"speed": "0.2 mm/s", "rotation": "10 rad/s", "load": "10 N +- 5 %"}
-    asked |= {"mu": "0.3 +- 0.01", "radius": "5 mm ± 0.5 mm"}
-    found = microslip.predict("continuous-bore", **asked)
+    request = BALL | {"speed": "0.2 mm/s", "rotation": "10 rad/s", "load": "10 N +- 5 %"}
+    request |= {"mu": "0.3 +- 0.01", "radius": "5 mm ± 0.5 mm"}
+    result = microslip.predict("continuous-bore", **request)
     draw = np.random.default_rng(0).standard_normal((3, 100_000))
     mu, load, radius = 0.3 + 0.01 * draw[0], 10.0 + 0.5 * draw[1], 5e-3 + 0.5e-3 * draw[2]
     a = (0.75 * load * radius / (210e9 / (2.0 * 0.91))) ** (1.0 / 3.0)
     v = 0.2e-3 / (10.0 * a)
     assert v.max() < 1.0
     drawn = mu * load * 3.0 * math.pi / 8.0 * (v - v**3 / 4.0)
-    assert found.friction_force_spread_N == pytest.approx(drawn.std(), rel=0.03)
-    assert found.friction_force_N == pytest.approx(drawn.mean(), rel=5e-3)
+    assert result.friction_force_spread_N == pytest.approx(drawn.std(), rel=0.03)
+    assert result.friction_force_N == pytest.approx(drawn.mean(), rel=5e-3)
 
 
 SLIDER = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "2 kHz"}
@@ -44,11 +44,11 @@ SLIDER = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "2 kHz"
 @pytest.mark.long
 def test_what_is_found_is_known_as_well_as_what_was_given():
     """The friction of a rigid slider depends on the speed divided by the amplitude only."""
-    asked = SLIDER | {"load": "1 N", "speed": "1 m/s +- 5 %", "reduction": "50 %"}
-    found = microslip.predict("transverse", **asked)
-    assert found.sought_value == found.amplitude_si
-    assert found.sought_spread == pytest.approx(0.05 * found.amplitude_si, rel=1e-2)
-    assert found.mu_macro_spread == pytest.approx(0.0, abs=1e-3)
+    request = SLIDER | {"load": "1 N", "speed": "1 m/s +- 5 %", "reduction": "50 %"}
+    result = microslip.predict("transverse", **request)
+    assert result.sought_value == result.amplitude_si
+    assert result.sought_spread == pytest.approx(0.05 * result.amplitude_si, rel=1e-2)
+    assert result.mu_macro_spread == pytest.approx(0.0, abs=1e-3)
 
 
 @pytest.mark.long
@@ -59,9 +59,9 @@ def test_where_an_end_has_no_answer_the_spread_is_endless():
     0.8 times the velocity of the vibration, but by 18 % at 0.96 times.
     """
     speed = 0.8 * 2.0 * math.pi * 2e3 * 1e-6
-    asked = SLIDER | {"speed": f"{speed:.6g} m/s +- 20 %", "amplitude": "1 um"}
-    found = microslip.predict("transverse", **asked, reduction=0.2, tolerance=1e-2)
-    assert found.converged and found.load_N > 0.0 and math.isinf(found.sought_spread)
+    request = SLIDER | {"speed": f"{speed:.6g} m/s +- 20 %", "amplitude": "1 um"}
+    result = microslip.predict("transverse", **request, reduction=0.2, tolerance=1e-2)
+    assert result.converged and result.load_N > 0.0 and math.isinf(result.sought_spread)
 
 
 @pytest.mark.parametrize(

@@ -52,14 +52,14 @@ def travel_of(contact, problem, phase):
 def balance(problem, drive, model, resolution):
     """Mean powers of the vibration, the drive, the slip and the dashpot."""
     driven = replace(problem, drive=drive)
-    found = simulate_driven(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
-    assert found.converged, found.reason
+    result = simulate_driven(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    assert result.converged, result.reason
     contact = contact_of(problem, model, resolution)
     load = (drive.force or 0.0) - drive.damping * problem.drift
     body = Body(drive.stiffness, drive.damping, drive.mass, load)
     shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
     points = int(np.prod(shape))
-    q, at = found.state[:points].reshape(shape), np.append(found.state[points:], np.zeros(2))[:2]
+    q, at = result.state[:points].reshape(shape), np.append(result.state[points:], np.zeros(2))[:2]
     if drive.stiffness > 0.0 and not body.remembers:
         at = np.array([(load - forces(contact, q)[0]) / drive.stiffness, 0.0])
     phases = path_of(problem, contact, resolution.steps).phase
@@ -68,9 +68,9 @@ def balance(problem, drive, model, resolution):
         step = make_path(problem.displacement, np.array([begin, end]))
         march = contact.march(step, q, 1e-11, body=body, start=at)
         ahead = march.body[1, 0] - march.body[0, 0]
-        moved = travel_of(contact, problem, end) - travel_of(contact, problem, begin)
-        moved[0] += ahead
-        slip = moved - contact.displacement(march.state - q)
+        displacement = travel_of(contact, problem, end) - travel_of(contact, problem, begin)
+        displacement[0] += ahead
+        slip = displacement - contact.displacement(march.state - q)
         slipped += np.sum(contact.weight * contact.bound * np.hypot(*slip))
         swung = np.diff([problem.oscillation(phase) for phase in (begin, end)], axis=0)[0]
         vibration += 0.5 * (forces(contact, q) + forces(contact, march.state)) @ swung

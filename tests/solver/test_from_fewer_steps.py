@@ -58,6 +58,6 @@ def test_a_search_goes_on_without_one_that_failed(monkeypatch):
 
     monkeypatch.setattr(driven_run, "simulate_driven", fails)
     fine = Resolution(8, 1, PREPARED_FROM)
-    found = really(problem, "radial", fine, Accuracy(1e-4), AS_SHIPPED)
+    result = really(problem, "radial", fine, Accuracy(1e-4), AS_SHIPPED)
     assert tried == [PREPARED_FROM // COARSENING]
-    assert found.converged and found.periods > 0.0
+    assert result.converged and result.periods > 0.0

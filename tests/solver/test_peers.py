@@ -37,10 +37,10 @@ needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package i
 def without(monkeypatch):
     """An environment without the package aspher."""
 
-    def found(name):
+    def result(name):
         return None if name == "aspher" else find_spec(name)
 
-    monkeypatch.setattr(method_names, "find_spec", found)
+    monkeypatch.setattr(method_names, "find_spec", result)
     monkeypatch.setitem(sys.modules, "aspher", None)
 
 
@@ -90,10 +90,10 @@ def test_squares_are_asked_with_the_package(within):
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
 @pytest.mark.parametrize("motion", [name for name, one in MOTIONS.items() if not fields(one)])
 def test_it_applies_where_it_is_asked(motion, poisson, within):
-    known = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
-    assert ladders.models_for("aspher", motion, poisson) == known
+    models = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
+    assert ladders.models_for("aspher", motion, poisson) == models
     # the slider has no rotations either
-    assert bool(known) == ("slider" in MODELS_OF_MOTION[motion])
+    assert bool(models) == ("slider" in MODELS_OF_MOTION[motion])
 
 
 def test_rotation_is_refused(within):
@@ -190,12 +190,12 @@ def test_its_half_space_is_ours(poisson):
     """Displacements of its tractions by its own kernel and by ours."""
     solver, contact = aspher.Solver(16, poisson), CartesianContact(16, poisson)
     solver.step(0.3, 0.1)
-    q, moved = (  # with the first component along axis 1
-        np.swapaxes(given.reshape(2, 16, 16), 1, 2)
-        for given in (solver._solver.q, solver._solver.u_t)
+    q, change = (  # with the first component along axis 1
+        np.swapaxes(array.reshape(2, 16, 16), 1, 2)
+        for array in (solver._solver.q, solver._solver.u_t)
     )
     assert np.abs(q).max() > 0.1
-    assert moved == pytest.approx(contact.displacement(q), abs=1e-12)
+    assert change == pytest.approx(contact.displacement(q), abs=1e-12)
 
 
 @needs_it
@@ -204,13 +204,13 @@ def test_one_direction_is_cattaneo_and_mindlin():
     cells, path = 24, straight(1.2, 12)
     solver = aspher.Solver(cells, 0.0)
     assert solver.bound.sum() * solver.size**2 == pytest.approx(1.0, abs=1e-6)
-    found, residuals = np.transpose([solver.step(*to) for to in path.positions[1:, :2]])
+    result, residuals = np.transpose([solver.step(*to) for to in path.positions[1:, :2]])
     ours = CartesianContact(cells).march(path, np.zeros((2, cells, cells)), 1e-9).forces[1:, 0]
     assert solver.failed == 0
     assert residuals.max() < 1e-3
     left = np.maximum(1.0 - path.positions[1:, 0], 0.0)
-    assert found == pytest.approx(1.0 - left**1.5, abs=2e-3)
-    assert found == pytest.approx(ours, abs=3e-3)
+    assert result == pytest.approx(1.0 - left**1.5, abs=2e-3)
+    assert result == pytest.approx(ours, abs=3e-3)
 
 
 def trial_at(method, velocity, amplitude, steps, tolerance):
@@ -239,7 +239,7 @@ def test_means_agree_with_ours_on_the_same_squares_and_steps(velocity, amplitude
 def test_failed_steps_make_a_trial_fail(monkeypatch):
     """With a limit that no step can meet, every step has failed."""
     monkeypatch.setattr(aspher, "ACCEPTED", -1.0)
-    found = trial_at("aspher", 0.5, 0.05, 8, 1e-2)
-    assert not found["converged"]
-    assert found["reason"].startswith(f"{found['solves']} of {found['solves']} steps failed")
-    assert math.isfinite(found["mu_macro"])
+    result = trial_at("aspher", 0.5, 0.05, 8, 1e-2)
+    assert not result["converged"]
+    assert result["reason"].startswith(f"{result['solves']} of {result['solves']} steps failed")
+    assert math.isfinite(result["mu_macro"])

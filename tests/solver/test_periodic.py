@@ -99,17 +99,17 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     motion, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
     cycle = PeriodMap(contact, path)
-    found = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
-    assert found.converged
+    result = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
+    assert result.converged
     whole = path_of(name, *point, integrator, whole=True)
-    march = contact.march(whole, found.start, STEP_TOLERANCE)
-    assert energy_norm(contact, march.state - found.start) < 3 * TOLERANCE
+    march = contact.march(whole, result.start, STEP_TOLERANCE)
+    assert energy_norm(contact, march.state - result.start) < 3 * TOLERANCE
     first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
     assert second[:, 0] == pytest.approx(first[:, 0], abs=3 * TOLERANCE)
     turning = 2 if motion.rotates else 1  # the force or torque along the oscillation
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
-    assert whole.mean(march.forces)[0] == pytest.approx(path.mean(found.forces)[0], abs=TOLERANCE)
+    assert whole.mean(march.forces)[0] == pytest.approx(path.mean(result.forces)[0], abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -122,13 +122,13 @@ def test_verdict_is_that_of_the_plain_map(name):
     few = find_periodic_state(PeriodMap(contact, path), start, fewer)
     assert not few.converged
     assert few.marches < enough.marches
-    for found in (enough, few):
+    for result in (enough, few):
         # the result of the search is one march of the plain map
-        march = contact.march(path, found.start, STEP_TOLERANCE)
-        loose = max(1e-6, found.solver_residual)  # early steps have a larger tolerance
-        assert march.forces == pytest.approx(found.forces, abs=loose)
-        change = energy_norm(contact, contact.mirrored(march.state) - found.start)
-        assert change == pytest.approx(found.residual, rel=0.02, abs=loose)
+        march = contact.march(path, result.start, STEP_TOLERANCE)
+        loose = max(1e-6, result.solver_residual)  # early steps have a larger tolerance
+        assert march.forces == pytest.approx(result.forces, abs=loose)
+        change = energy_norm(contact, contact.mirrored(march.state) - result.start)
+        assert change == pytest.approx(result.residual, rel=0.02, abs=loose)
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
@@ -196,21 +196,21 @@ def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
 
 
 def test_run_in_other_steps_spares_marches():
-    known = radial_run(0.01, 0.5, 8, 12)
+    reference = radial_run(0.01, 0.5, 8, 12)
     alone = radial_run(0.01, 0.5, 8, 16)
-    led = radial_run(0.01, 0.5, 8, 16, guess=known)
+    led = radial_run(0.01, 0.5, 8, 16, guess=reference)
     assert led.converged and led.periods < alone.periods
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)
     assert led.static_force == pytest.approx(alone.static_force, abs=1e-6)
-    other = radial_run(0.01, 0.5, 6, 16, guess=known)  # a guess on other rings is not used
+    other = radial_run(0.01, 0.5, 6, 16, guess=reference)  # a guess on other rings is not used
     assert other.mu == radial_run(0.01, 0.5, 6, 16).mu
 
 
 def test_a_wild_guess_costs_effort_only():
-    known = radial_run(0.01, 0.5, 8, 16)
-    led = radial_run(0.01, 0.5, 8, 16, guess=replace(known, state=-known.state))
-    assert led.converged and led.periods >= known.periods
-    assert led.mu == pytest.approx(known.mu, abs=2e-6)
+    reference = radial_run(0.01, 0.5, 8, 16)
+    led = radial_run(0.01, 0.5, 8, 16, guess=replace(reference, state=-reference.state))
+    assert led.converged and led.periods >= reference.periods
+    assert led.mu == pytest.approx(reference.mu, abs=2e-6)
 
 
 @pytest.mark.parametrize("steps", [16, 48])

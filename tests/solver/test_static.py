@@ -29,9 +29,9 @@ def numerical_limit(motion, amplitude, model, cells, angles=1, poisson=0.0):
 
 def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
     radial = contact_for(Transverse(), 0.5, "radial", 64)
-    found = static_state(radial, oscillation(Transverse(), 0.5), 1e-11).oscillating
-    total = np.sum(radial.weight * found[1])
-    assert found[0] == pytest.approx(0.0, abs=1e-14)
+    result = static_state(radial, oscillation(Transverse(), 0.5), 1e-11).oscillating
+    total = np.sum(radial.weight * result[1])
+    assert result[0] == pytest.approx(0.0, abs=1e-14)
     assert total == pytest.approx(-hertz.mindlin_force(0.5), abs=3e-4)
 
     polar = contact_for(Bore(), 1.0, "polar", 32, 4)
@@ -73,20 +73,20 @@ def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
 @pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
-    found = numerical_limit(Bore(), amplitude, "polar", 32, 16, poisson)
-    assert found == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
+    result = numerical_limit(Bore(), amplitude, "polar", 32, 16, poisson)
+    assert result == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
 
 
 def test_squares_find_the_same_limits():
-    found = numerical_limit(Transverse(), 0.5, "cartesian", 32)
-    assert found == pytest.approx(float(paper.static_limit_transverse(0.5)), abs=5e-3)
-    found = numerical_limit(Bore(), 1.0, "cartesian", 32)
-    assert found == pytest.approx(float(paper.static_limit_bore(1.0)), abs=5e-3)
+    result = numerical_limit(Transverse(), 0.5, "cartesian", 32)
+    assert result == pytest.approx(float(paper.static_limit_transverse(0.5)), abs=5e-3)
+    result = numerical_limit(Bore(), 1.0, "cartesian", 32)
+    assert result == pytest.approx(float(paper.static_limit_bore(1.0)), abs=5e-3)
 
 
 def test_slider_limit_is_eq_7():
-    found = microslip.solve("transverse", 0.0, 0.5, model="slider")
-    assert found.mu_macro == pytest.approx(float(paper.static_slider(0.5)), abs=1e-6)
+    result = microslip.solve("transverse", 0.0, 0.5, model="slider")
+    assert result.mu_macro == pytest.approx(float(paper.static_slider(0.5)), abs=1e-6)
 
 
 @pytest.mark.slow

@@ -19,9 +19,9 @@ EIGHT = "elliptic:forward=0.5,phase=0,forward_cycles=2"
 ACROSS = "normal:lateral=1,normal_cycles=2"
 
 
-def within(found, expected, slack=0.0):
-    assert found.converged
-    assert abs(found.mu_macro - expected) <= found.mu_macro_error + slack
+def within(result, expected, slack=0.0):
+    assert result.converged
+    assert abs(result.mu_macro - expected) <= result.mu_macro_error + slack
 
 
 def test_the_largest_shift_is_that_of_a_fine_grid():
@@ -32,13 +32,13 @@ def test_the_largest_shift_is_that_of_a_fine_grid():
         bounds = rng.uniform(0.5, 1.0, (6, 1))
         size, turn = bounds[:, 0] * rng.uniform(0.0, 1.0, 6), rng.uniform(0.0, 2.0 * np.pi, 6)
         tractions = (size * np.stack([np.cos(turn), np.sin(turn)])).T
-        kept = np.ones(forward.shape, bool)
+        matrices = np.ones(forward.shape, bool)
         for q, bound in zip(tractions, bounds[:, 0], strict=True):
-            kept &= np.hypot(q[0] + forward, q[1] + lateral) <= bound
+            matrices &= np.hypot(q[0] + forward, q[1] + lateral) <= bound
         shift = largest_shift(tractions[:, :, None], bounds)[:, 0]
-        assert shift[0] == pytest.approx(forward[kept].max(initial=0.0), abs=1.2e-2)
-        moved = np.hypot(*(tractions + shift).T)
-        assert (moved <= bounds[:, 0] + 1e-6).all()
+        assert shift[0] == pytest.approx(forward[matrices].max(initial=0.0), abs=1.2e-2)
+        sizes = np.hypot(*(tractions + shift).T)
+        assert (sizes <= bounds[:, 0] + 1e-6).all()
 
 
 def test_nothing_is_left_where_slip_goes_both_ways():
@@ -65,15 +65,15 @@ def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
     # this motion along a line does not have the attribute `straight`
     loop = motion_named("elliptic:forward=0,phase=0,forward_cycles=2")
     assert not loop.straight
-    found = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    assert found == pytest.approx(line, abs=2e-3)
+    result = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
+    assert result == pytest.approx(line, abs=2e-3)
 
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.4, 0.7])
 def test_springs_on_a_circle_in_closed_form(amplitude):
     """A sticking spring at x has the force `amplitude`; its shift is 1 - x^2 - amplitude."""
-    found = microslip.solve("elliptic", 0.0, amplitude, model="mdr")
-    within(found, (1.0 - amplitude) ** 1.5)
+    result = microslip.solve("elliptic", 0.0, amplitude, model="mdr")
+    within(result, (1.0 - amplitude) ** 1.5)
 
 
 @pytest.mark.slow
@@ -180,5 +180,5 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
     monkeypatch.setattr("microslip.solver.static_loop.MARCHES", 1)
     monkeypatch.setattr("microslip.solver.static_loop.MOST_ROUNDS", 1)
-    found = microslip.solve(NARROW, 0.0, 0.5)
-    assert not found.converged and "no periodic state" in found.reason
+    result = microslip.solve(NARROW, 0.0, 0.5)
+    assert not result.converged and "no periodic state" in result.reason

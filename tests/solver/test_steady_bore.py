@@ -54,14 +54,14 @@ def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
     field = microslip.traction_field("continuous-bore", velocity, cells=16)
     assert field["centre_lateral"] == paper.rotation_centre(velocity)[0]
     lateral, forward = field["lateral_position"], field["forward_position"]
-    found = np.stack([field["traction_lateral"], field["traction_forward"]])
-    assert np.hypot(*found) == pytest.approx(field["bound"], rel=1e-12)
+    result = np.stack([field["traction_lateral"], field["traction_forward"]])
+    assert np.hypot(*result) == pytest.approx(field["bound"], rel=1e-12)
     expected = paper.steady_bore_traction(lateral, forward, velocity)
     direction = expected / hertz.friction_bound(np.hypot(lateral, forward))
     # close to the centre of rotation the directions converge last
     away = np.hypot(lateral + velocity, forward) > 0.1
     assert away.sum() > 0.9 * away.size
-    assert (found / field["bound"])[:, away] == pytest.approx(direction[:, away], abs=2e-3)
+    assert (result / field["bound"])[:, away] == pytest.approx(direction[:, away], abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -72,11 +72,11 @@ def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
 def test_nothing_sticks_around_a_centre_of_rotation_inside(build):
     """Claim 4: in the steady state every point slips with the rigid velocity."""
     contact = build()
-    found = steady_state(contact, Problem(ContinuousBore(), 0.5, poisson=0.3), 1e-5, 1e-8)
-    assert found.converged
+    result = steady_state(contact, Problem(ContinuousBore(), 0.5, poisson=0.3), 1e-5, 1e-8)
+    assert result.converged
     loaded = np.broadcast_to(contact.bound > 0, contact.forward_position.shape)
-    used = np.hypot(*found.state)[loaded] / np.broadcast_to(contact.bound, loaded.shape)[loaded]
+    used = np.hypot(*result.state)[loaded] / np.broadcast_to(contact.bound, loaded.shape)[loaded]
     assert used.min() > 1 - 1e-6 and used.max() <= 1 + 1e-12
     velocity = np.stack([0.5 + contact.lateral_position, -contact.forward_position])
-    along = (found.state * velocity).sum(axis=0) / np.hypot(*velocity)
+    along = (result.state * velocity).sum(axis=0) / np.hypot(*velocity)
     assert (along / np.where(loaded, contact.bound, 1.0))[loaded].min() > 1 - 1e-4

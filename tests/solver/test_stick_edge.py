@@ -81,8 +81,8 @@ def test_a_bore_sticks_inside_the_radius_of_its_closed_form(name, amplitude):
 
 @pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
 def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model):
-    found = [focus_of(motion, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.3, 0.7)]
-    inner, outer = np.transpose(found)
+    result = [focus_of(motion, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.3, 0.7)]
+    inner, outer = np.transpose(result)
     assert np.all(np.diff(inner) > 0.0) and np.all(np.diff(outer) < 0.0)
     assert 0.5 < inner[0] < 0.52 and 0.97 < outer[0] < 1.0
 
@@ -93,8 +93,8 @@ def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(
     limit, exact = Problem(motion, 0.0, amplitude, 0.0), np.sqrt(1.0 - amplitude)
     near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
     assert near == pytest.approx([exact], abs=5e-3)
-    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
-    assert found == pytest.approx([exact], abs=5e-4)
+    result = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
+    assert result == pytest.approx([exact], abs=5e-4)
 
 
 @pytest.mark.parametrize("amplitude", [0.01, 0.02, 0.032, 0.05])
@@ -104,10 +104,10 @@ def test_a_ring_that_slips_little_sticks_between_two_edges_next_to_its_own(inner
         motion_named("transverse"), 0.0, amplitude, 0.0, pressure_named(f"ring:inner={inner}")
     )
     near = edges_on_a_line(limit, "radial", LINE_RESOLUTION, TOLERANCE)
-    found = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
-    assert len(found) == 2  # narrow gaps between edges are scatter
+    result = edges_on_a_line(limit, "radial", FINE_RESOLUTION, FINE_TOLERANCE, near=near)
+    assert len(result) == 2  # narrow gaps between edges are scatter
     narrower = 1.0 - np.sqrt(1.0 - amplitude)  # width of the slip annulus of a sphere
-    assert inner < found[0] < inner + narrower and 1.0 - narrower < found[1] < 1.0
+    assert inner < result[0] < inner + narrower and 1.0 - narrower < result[1] < 1.0
 
 
 # Narrow rings with little slip, and wide ones.  With edges from 48 rings, or from a search that did
@@ -127,14 +127,14 @@ ON_RINGS = [
 @pytest.mark.parametrize(("pressure", "amplitude"), ON_RINGS)
 def test_the_claim_of_a_static_limit_on_a_ring_holds_against_far_more_rings(pressure, amplitude):
     point = {"velocity": 0.0, "amplitude": amplitude, "pressure": pressure}
-    given = microslip.solve("transverse", **point, tolerance=1e-4)
+    answer = microslip.solve("transverse", **point, tolerance=1e-4)
     counts = (288, 320, 352, 384)  # several counts, since the edges scatter over the rings
     finer = [
         microslip.solve("transverse", **point, tolerance=None, cells=count).mu_macro
         for count in counts
     ]
     assert np.ptp(finer) < 4e-5
-    assert abs(given.mu_macro - np.mean(finer)) <= given.mu_macro_error
+    assert abs(answer.mu_macro - np.mean(finer)) <= answer.mu_macro_error
 
 
 # Grading towards several radii
@@ -214,10 +214,10 @@ def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
     focus, resolution = edge_focus(problem, "radial"), Resolution(48, 1, 192)
     by_itself, radii = edges_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
-    told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
+    static = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
-    assert told.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
-    assert len(by_itself) > 1 and told.effort.solves < sum(run.effort.solves for run in by_itself)
+    assert static.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
+    assert len(by_itself) > 1 and static.effort.solves < sum(run.effort.solves for run in by_itself)
 
 
 @pytest.mark.slow
@@ -234,11 +234,11 @@ def test_limits_under_a_ring_are_those_of_squares():
 def slow_bores(name, rings, focused=True):
     problem = Problem(motion_named("bore"), 1e-3, 0.4, 0.0, pressure_named(name))
     settings = Settings(focus=edge_focus(problem, "polar") if focused else None)
-    found = [
+    result = [
         simulate(problem, "polar", Resolution(cells, 4, 24), 1e-6, settings=settings).mu
         for cells in rings
     ]
-    return np.array(found)
+    return np.array(result)
 
 
 @pytest.mark.long
@@ -264,20 +264,20 @@ SWEPT = "normal:lateral=1,angle=1"
 
 @pytest.mark.parametrize("bound", [{"most_work": 1.0}, {"time_limit": 1e-9}], ids=list)
 def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
-    seen, spent = [], "work" if "most_work" in bound else "time"
-    found = microslip.solve(SWEPT, 0.0, 0.4375, progress=seen.append, **bound)
-    assert seen == [SWEPT_RESOLUTION]  # no other run has started
-    assert not found.converged and np.isnan(found.mu_macro)
-    assert found.exhausted == spent
-    assert "no error is known yet" in found.reason
+    calls, spent = [], "work" if "most_work" in bound else "time"
+    result = microslip.solve(SWEPT, 0.0, 0.4375, progress=calls.append, **bound)
+    assert calls == [SWEPT_RESOLUTION]  # no other run has started
+    assert not result.converged and np.isnan(result.mu_macro)
+    assert result.exhausted == spent
+    assert "there is no error estimate yet" in result.reason
 
 
 def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
     problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
-    first, later, seen = Budget(), Budget(), []
-    focus = edge_focus(problem, "radial", first, seen.append)
-    assert len(seen) >= 1 and first.taken.work > 0
-    assert edge_focus(problem, "radial", later, seen.append) == focus
+    first, later, calls = Budget(), Budget(), []
+    focus = edge_focus(problem, "radial", first, calls.append)
+    assert len(calls) >= 1 and first.taken.work > 0
+    assert edge_focus(problem, "radial", later, calls.append) == focus
     assert later.taken == first.taken
     with pytest.raises(Spent, match="the work that the point may take"):
         edge_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
@@ -286,6 +286,6 @@ def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
 @pytest.mark.slow
 def test_a_propulsion_line_and_a_shakedown_end_where_the_search_does():
     line = microslip.propulsion("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
-    assert not line.converged and "no error is known yet" in line.reason
+    assert not line.converged and "there is no error estimate yet" in line.reason
     rest = microslip.shakedown("normal:lateral=0.5", 0.4321, 0.05, most_work=1.0)
-    assert not rest.converged and "no error is known yet" in rest.reason
+    assert not rest.converged and "there is no error estimate yet" in rest.reason

@@ -87,12 +87,12 @@ def test_a_period_does_not_converge_where_only_its_last_march_is_unsolved(monkey
         return frames(contact, path, state, LOOSE)
 
     monkeypatch.setattr(period, "frames", loosely)
-    found = microslip.period("transverse", 0.1, 1.0, cells=8, angles=4, steps=32)
-    assert not found.converged and "unsolved" in found.reason
-    assert np.isfinite(found.mu_macro)
+    result = microslip.period("transverse", 0.1, 1.0, cells=8, angles=4, steps=32)
+    assert not result.converged and "unsolved" in result.reason
+    assert np.isfinite(result.mu_macro)
 
 
 @pytest.mark.slow
 def test_a_shakedown_does_not_converge(loose_steps):
-    found = microslip.shakedown("transverse", 0.5, 0.2, tolerance=3e-2)
-    assert not found.converged and "unsolved" in found.reason
+    result = microslip.shakedown("transverse", 0.5, 0.2, tolerance=3e-2)
+    assert not result.converged and "unsolved" in result.reason

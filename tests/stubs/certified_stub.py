@@ -20,9 +20,9 @@ def record(request, mu, error=1e-4):
     return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
 
-def configured(motion, **given):
+def configured(motion, **settings):
     """Certified map of a sweep with some settings."""
-    (map_,) = load.from_mapping({"sweeps": {motion: given}}).certified.values()
+    (map_,) = load.from_mapping({"sweeps": {motion: settings}}).certified.values()
     return map_
 
 
@@ -47,7 +47,7 @@ def first_requests(map_):
     ]
 
 
-def bore(**given) -> xr.Dataset:
+def bore(**settings) -> xr.Dataset:
     """Dataset of a bore map with the friction (v + 0.1) / (v + 0.1 + A)."""
 
     def answer(request):
@@ -55,7 +55,7 @@ def bore(**given) -> xr.Dataset:
         return record(request, (velocity + 0.1) / (velocity + 0.1 + amplitude))
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
-    map_ = configured("bore", **axes | given)
+    map_ = configured("bore", **axes | settings)
     return certified_map.build(map_, played(map_, answer))
 
 
@@ -67,7 +67,7 @@ def drift(force, amplitude):
     return amplitude * share**1.5 / np.sqrt(1.0 - share)
 
 
-def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
+def drifting(*, fails=lambda force, amplitude: False, **settings) -> xr.Dataset:
     """Dataset of a map of this velocity; fails: places without a result."""
 
     def answer(request):
@@ -79,7 +79,7 @@ def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
             result = {"converged": False}
         return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
-    drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | given}
+    drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | settings}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
     return certified_map.build(map_, played(map_, answer))
 

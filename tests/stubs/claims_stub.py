@@ -83,21 +83,21 @@ def result(request):
     if kind == "patches":
         return period(request)
     off = 0.002 if request["model"] == "cartesian" else 0.0
-    found = {"mu_macro": friction(request) + off, "converged": True, "reason": ""}
+    answer = {"mu_macro": friction(request) + off, "converged": True, "reason": ""}
     if kind == "point":
         static = request["velocity"] == "0" and request["model"] == "auto"
-        found |= {"mu_macro_error": 1e-12 if static else 1e-4, "cells": 16, "angles": 8}
-        found |= {"steps_per_period": 64, "model": request["model"]}
-    return found
+        answer |= {"mu_macro_error": 1e-12 if static else 1e-4, "cells": 16, "angles": 8}
+        answer |= {"steps_per_period": 64, "model": request["model"]}
+    return answer
 
 
 def answered(results=result):
     """Function from a request to the record of `results(request)`, and the list of its requests."""
-    seen = []
+    calls = []
 
     def answer(request):
-        seen.append(request)
+        calls.append(request)
         key = batches.result_key(request, "d")
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
-    return answer, seen
+    return answer, calls

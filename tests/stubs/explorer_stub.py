@@ -27,8 +27,8 @@ def computed(folder, store):
     datasets, periods = {}, {}
     for name, grid in configuration.sweeps.items():
         points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
-        asked = explorer.period_requests(configuration, name)
-        periods[name] = [batches.answer(request, store)[0] for request in asked]
+        requests = explorer.period_requests(configuration, name)
+        periods[name] = [batches.answer(request, store)[0] for request in requests]
         if name == BAD_POINT[0]:
             at = BAD_POINT[1] * len(grid.velocity) + BAD_POINT[2]
             points[at]["result"] |= {"converged": False, "reason": "made up"}
@@ -36,8 +36,8 @@ def computed(folder, store):
             if name == where[0]:
                 wanted = str(grid.amplitude[where[1]]), f"{grid.velocity[where[2]]:g}"
                 (record,) = (r for r in periods[name] if place(r) == wanted)
-                kept = record["result"] if result is None else {}
-                record["result"] = kept | {"converged": False, "reason": "none to be found"}
+                rows = record["result"] if result is None else {}
+                record["result"] = rows | {"converged": False, "reason": "none to be found"}
         path = folder / f"{name}.nc"
         sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
         datasets[name] = netcdf.whole(path)
@@ -60,9 +60,9 @@ def made_up(folder, configuration):
     }
     periods = {}
     for name in explorer.maps_of(configuration):
-        asked = explorer.period_requests(configuration, name)
-        one = evaluate.computed(asked[len(asked) // 2])
-        periods[name] = [{"request": request, "result": one} for request in asked]
+        requests = explorer.period_requests(configuration, name)
+        one = evaluate.computed(requests[len(requests) // 2])
+        periods[name] = [{"request": request, "result": one} for request in requests]
     return datasets, periods
 
 

@@ -13,7 +13,7 @@ def fitted(rows=12, errors=True):
     amplitude = np.repeat([3e-7, 6e-7], rows // 2)
     force = 3.0 * speed / (speed + 1e4 * amplitude)
     residual = 2.0 * np.cos(3.0 * np.arange(rows))
-    found = {
+    result = {
         "speed_m_s": speed,
         "amplitude_si": amplitude,
         "row_load_N": np.full(rows, 10.0),
@@ -36,6 +36,6 @@ def fitted(rows=12, errors=True):
     }
     numbers = {"mu": 0.3, "mu_low": 0.29, "mu_high": 0.31}
     numbers |= {"u_lim_m": 3e-7, "u_lim_low_m": 2.8e-7, "u_lim_high_m": 3.3e-7}
-    variables = {name: ("row", values) for name, values in found.items()} | numbers
+    variables = {name: ("row", values) for name, values in result.items()} | numbers
     variables |= {f"curve_{name}": ("curve_point", values) for name, values in curve.items()}
     return xr.Dataset(variables, attrs={"motion": "transverse", "quantity": "friction"})

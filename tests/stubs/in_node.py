@@ -31,22 +31,22 @@ process.stdout.write(JSON.stringify(calls.map((one) => {
 """
 
 
-def answers(scripts, call, given, calls):
+def answers(scripts, call, inputs, calls):
     """Results of JavaScript calls, as a list of values or {"refused": message}.
 
     scripts: names of files, in their order. call: JavaScript function of `given` and one of
     `calls`.
     """
     code = ["'use strict';", *((FOLDER / name).read_text(encoding="utf-8") for name in scripts)]
-    done = subprocess.run(
+    process = subprocess.run(
         [NODE, "-e", "\n".join([*code, CALLS])],
-        input=json.dumps({"given": given, "calls": calls, "call": call}),
+        input=json.dumps({"given": inputs, "calls": calls, "call": call}),
         capture_output=True,
         text=True,
         timeout=120,
     )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    assert process.returncode == 0, process.stderr
+    return json.loads(process.stdout)
 
 
 class _Ids(HTMLParser):
@@ -84,13 +84,13 @@ def page_says(content, *steps):
     scripts = [name for name in explorer.ASSETS if name.endswith(".js")]
     code = ["'use strict';", stub, *((FOLDER / name).read_text("utf-8") for name in scripts)]
     code.append("process.stdout.write(JSON.stringify(steps.map((step) => eval(step) ?? null)));")
-    given = {"ids": ids.hidden, "parents": ids.parents, "numbers": content, "steps": steps}
-    done = subprocess.run(
+    inputs = {"ids": ids.hidden, "parents": ids.parents, "numbers": content, "steps": steps}
+    process = subprocess.run(
         [NODE, "-e", "\n".join(code)],
-        input=json.dumps(given, allow_nan=False),
+        input=json.dumps(inputs, allow_nan=False),
         capture_output=True,
         text=True,
         timeout=120,
     )
-    assert done.returncode == 0, done.stderr[-2000:]
-    return json.loads(done.stdout)
+    assert process.returncode == 0, process.stderr[-2000:]
+    return json.loads(process.stdout)

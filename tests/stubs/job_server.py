@@ -83,11 +83,11 @@ def main(address):
     server.bind(address)
     server.listen(64)
     while True:
-        asked, _ = server.accept()
+        request, _ = server.accept()
         if not os.fork():
             server.close()
-            _run(asked)
-        asked.close()
+            _run(request)
+        request.close()
 
 
 def _load_numba():
@@ -111,16 +111,16 @@ def _run(connection):
     for number, file in enumerate(files):
         os.dup2(file, number)
         os.close(file)
-    asked = json.loads(connection.makefile().readline())
-    os.chdir(asked["folder"])
+    request = json.loads(connection.makefile().readline())
+    os.chdir(request["folder"])
     os.environ.clear()
-    os.environ.update(asked["environment"])
+    os.environ.update(request["environment"])
     sys.executable = sys.argv[2]  # path of the program that jobs start for other jobs
-    given = asked["environment"].get("PYTHONPATH", "").split(os.pathsep)
-    sys.path[:0] = filter(None, given)
+    paths = request["environment"].get("PYTHONPATH", "").split(os.pathsep)
+    sys.path[:0] = filter(None, paths)
     threading.Thread(target=_end_with, args=[connection], daemon=True).start()
     forked.end_with(
-        lambda: _do(asked["arguments"]), lambda code: connection.sendall(str(code).encode())
+        lambda: _do(request["arguments"]), lambda code: connection.sendall(str(code).encode())
     )
 
 

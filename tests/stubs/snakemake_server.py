@@ -28,13 +28,13 @@ def start(arguments, folder, environment, timeout=900):
     """Run Snakemake with these arguments in a folder, as subprocess.run does a command."""
     server = _server(tuple(sorted(environment.items())))
     with ExitStack() as stack:
-        said = [stack.enter_context(tempfile.NamedTemporaryFile("w+")) for _ in range(2)]
-        asked = {"arguments": list(map(str, arguments)), "folder": str(folder)}
-        asked["said"] = [file.name for file in said]
-        code = server.ask(asked | {"timeout": timeout})
-        for file in said:
+        message = [stack.enter_context(tempfile.NamedTemporaryFile("w+")) for _ in range(2)]
+        request = {"arguments": list(map(str, arguments)), "folder": str(folder)}
+        request["said"] = [file.name for file in message]
+        code = server.ask(request | {"timeout": timeout})
+        for file in message:
             file.seek(0)
-        return subprocess.CompletedProcess(arguments, code, *(file.read() for file in said))
+        return subprocess.CompletedProcess(arguments, code, *(file.read() for file in message))
 
 
 class _Server:
@@ -73,26 +73,26 @@ def main():
         import_module(name)
     sys.path.remove(str(Path(__file__).parent))
     for line in sys.stdin:
-        asked = json.loads(line)
+        request = json.loads(line)
         child = os.fork()
         if not child:
-            _run(asked)
+            _run(request)
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 
 
-def _run(asked):
+def _run(request):
     import signal
 
     from snakemake.cli import main as snakemake
 
-    signal.alarm(asked["timeout"])  # ends this fork
+    signal.alarm(request["timeout"])  # ends this fork
     sys.executable = sys.argv[1]  # path of the program that starts jobs
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    for number, name in enumerate(asked["said"], 1):
+    for number, name in enumerate(request["said"], 1):
         os.dup2(os.open(name, os.O_WRONLY), number)
-    os.chdir(asked["folder"])
-    sys.argv = ["snakemake", *asked["arguments"]]
-    forked.end_with(lambda: snakemake(asked["arguments"]))
+    os.chdir(request["folder"])
+    sys.argv = ["snakemake", *request["arguments"]]
+    forked.end_with(lambda: snakemake(request["arguments"]))
 
 
 if __name__ == "__main__":

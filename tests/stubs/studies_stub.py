@@ -27,8 +27,8 @@ STABILITY = {"methods": ["shipped", "admm", "euler"], "axes": ["poisson", "penal
 
 def configured(accuracy=(), stability=()):
     """Configuration of both studies with some settings changed."""
-    given = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
-    return load.from_mapping({"sweeps": SWEEPS} | given)
+    settings = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
+    return load.from_mapping({"sweeps": SWEEPS} | settings)
 
 
 def asked(study, configuration):
@@ -49,14 +49,14 @@ GOOD = {
 
 def answered(results):
     """Function from a request to the record of `results(request)`, and the list of its requests."""
-    seen = []
+    calls = []
 
     def answer(request):
-        seen.append(canonical.canonical_json(request))
+        calls.append(canonical.canonical_json(request))
         key = batches.result_key(request, "d")
         return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
 
-    return answer, seen
+    return answer, calls
 
 
 def mu_of(request):
@@ -85,8 +85,8 @@ def untimed(request):
         }
     if kind == "choice":
         error = 0.3 * float(request["tolerance"])
-        found = {"mu_macro": mu_of(request) - error, "mu_macro_error": 2 * error, "cells": 24}
-        return found | {
+        result = {"mu_macro": mu_of(request) - error, "mu_macro_error": 2 * error, "cells": 24}
+        return result | {
             "seconds": 9.0,
             "effort": 900,
             "steps_per_period": 64 if request["amplitude"] else 0,

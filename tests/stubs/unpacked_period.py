@@ -12,7 +12,7 @@ def unpacked(result):
     The error of traction_forward and traction_lateral is at most bound/254.
     """
     angles, radius = result["angles"], np.array(result["radius"])
-    found = {name: np.array(result[name]) for name in period_codec.HISTORIES}
+    answer = {name: np.array(result[name]) for name in period_codec.HISTORIES}
     steps, slips = period_codec.unpacked_half(result)
     shares = steps / period_codec.SHARES
     # half a period later: theta to pi - theta, lateral tractions negated
@@ -32,5 +32,5 @@ def unpacked(result):
     }
     for name, halves in parts.items():
         flat = [half.reshape(*half.shape[:-2], -1) for half in halves]
-        found[name] = np.concatenate(flat, axis=-1)
-    return found | {name: result[name] for name in ("mu_macro", "converged", "reason")}
+        answer[name] = np.concatenate(flat, axis=-1)
+    return answer | {name: result[name] for name in ("mu_macro", "converged", "reason")}

@@ -40,9 +40,9 @@ TINY = {
 ALL_JOBS = {"warm_up": 2, "solve": 6, "collect": 3, "draw": 6, "all": 1}
 
 
-def jobs_in(said):
+def jobs_in(message):
     """Number of jobs by rule, from Snakemake's table before a run; {} if there is nothing to do."""
-    table = re.search(r"^-+  -+\n(.*?)^total", said, re.MULTILINE | re.DOTALL)
+    table = re.search(r"^-+  -+\n(.*?)^total", message, re.MULTILINE | re.DOTALL)
     rows = table[1].split("\n")[:-1] if table else []
     return {name: int(count) for name, count in map(str.split, rows)}
 

@@ -69,9 +69,9 @@ def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
 
 
 def test_eq_33_tends_to_the_share_above_the_asymptote_that_the_dataset_says():
-    found = static_limits.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
+    result = static_limits.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
     ratio = float(theory.static_bore(9.0)) / float(static_limits.asymptote(9.0)) - 1
-    assert float(found) == pytest.approx(ratio, rel=1e-4)
+    assert float(result) == pytest.approx(ratio, rel=1e-4)
 
 
 def _no_runs(request):
@@ -121,35 +121,35 @@ def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
 @pytest.mark.parametrize("motion", ["bore", "transverse"])
 def test_patches_are_shares_of_a_period(motion):
     sizes = {"cells": 12, "angles": 8, "steps": 32}
-    found = patches(motion, 0.01, 0.7, **sizes)
+    result = patches(motion, 0.01, 0.7, **sizes)
     whole = microslip.period(motion, 0.01, 0.7, **sizes)
-    assert found["area"].sum() == pytest.approx(math.pi)
+    assert result["area"].sum() == pytest.approx(math.pi)
     # areas times pressure is the load, areas times traction the force
-    assert (found["area"] * whole.bound).sum() == pytest.approx(1.0, abs=2e-3)
-    force = whole.traction_forward @ found["area"]
+    assert (result["area"] * whole.bound).sum() == pytest.approx(1.0, abs=2e-3)
+    force = whole.traction_forward @ result["area"]
     assert force == pytest.approx(whole.force_forward, abs=2e-3)
-    sticking = (~whole.slips * found["area"]).sum(axis=1) / math.pi
-    assert found["stick_right"] + found["stick_left"] == pytest.approx(sticking)
-    assert found["least_stick"] == pytest.approx(sticking[1:].min())
-    assert found["moment_share"].shape == (4, whole.bound.size)
-    least = found["moment_phase"][0]
-    assert sticking[np.argmin(np.abs(whole.phase - least))] == found["least_stick"]
-    assert found["moment_phase"][2] - least == pytest.approx(math.pi)
+    sticking = (~whole.slips * result["area"]).sum(axis=1) / math.pi
+    assert result["stick_right"] + result["stick_left"] == pytest.approx(sticking)
+    assert result["least_stick"] == pytest.approx(sticking[1:].min())
+    assert result["moment_share"].shape == (4, whole.bound.size)
+    least = result["moment_phase"][0]
+    assert sticking[np.argmin(np.abs(whole.phase - least))] == result["least_stick"]
+    assert result["moment_phase"][2] - least == pytest.approx(math.pi)
 
 
 @pytest.mark.slow
 def test_patches_of_the_slow_bore_lie_where_theory_has_them():
     """At the moment of least stick one side sticks, where |cos angle| exceeds the used share."""
-    found = patches("bore", 1e-3, 1.0, cells=24, angles=24, steps=64)
-    radius = np.hypot(found["forward_position"], found["lateral_position"])
+    result = patches("bore", 1e-3, 1.0, cells=24, angles=24, steps=64)
+    radius = np.hypot(result["forward_position"], result["lateral_position"])
     stick = float(theory.bore_stick_radius(1.0))
     used = hertz.lubkin_share(np.minimum(radius, stick), stick)
-    cosine = found["lateral_position"] / radius
+    cosine = result["lateral_position"] / radius
     for moment, side in ((0, -1.0), (2, 1.0)):
         inside = (radius < stick) & (side * cosine > used)
-        sticks = found["moment_share"][moment] < 1.0
-        wrong = (inside != sticks) * found["area"]
-        assert wrong.sum() < 0.15 * (inside * found["area"]).sum()
+        sticks = result["moment_share"][moment] < 1.0
+        wrong = (inside != sticks) * result["area"]
+        assert wrong.sum() < 0.15 * (inside * result["area"]).sum()
 
 
 def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():

@@ -23,8 +23,8 @@ STUDIES = {
 def answered(study):
     """Dataset of a study with invented results, and its requests."""
     configured, results = STUDIES[study]
-    answer, seen = studies_stub.answered(results)
-    return registry.build(study, configured(), answer), seen
+    answer, calls = studies_stub.answered(results)
+    return registry.build(study, configured(), answer), calls
 
 
 @pytest.fixture(scope="module", params=STUDIES)

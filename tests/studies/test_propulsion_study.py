@@ -22,9 +22,9 @@ def test_every_line_is_asked_for_once():
     configuration = propulsion_stub.configured(motions=again)
     requests = studies_stub.asked("propulsion", configuration)
     assert len(requests) == len(set(requests)) == 3
-    answer, seen = studies_stub.answered(propulsion_stub.propulsion_result)
+    answer, calls = studies_stub.answered(propulsion_stub.propulsion_result)
     built = registry.build("propulsion", configuration, answer)
-    assert set(seen) == set(requests)
+    assert set(calls) == set(requests)
     assert built.sizes == {"line": 4, "point": 3}
 
 

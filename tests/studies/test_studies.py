@@ -327,16 +327,16 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
 
 def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
     Trials(monkeypatch)
-    seen = {}
+    calls = {}
 
     def solve(motion, velocity, amplitude, **settings):
-        seen.update(settings)
+        calls.update(settings)
         return SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan, "solve_time_s": 1.0})
 
     monkeypatch.setattr("microslip.solve", solve)
     study = configured(stability={"axes": ["steps"]}).stability
     result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
-    assert seen == {
+    assert calls == {
         "poisson": 0.0,
         "model": "auto",
         "method": "euler",

@@ -10,15 +10,15 @@ from microslip.studies.accuracy import profiles
 
 
 def test_every_method_has_a_contest_by_the_part_that_it_exchanges():
-    found = {
+    result = {
         name: profiles.contest_of(name)
         for name in method_names.names()
         if not method_names.missing(name)
     }
-    assert found["shipped"] == found["paper"] == "models"
-    assert found["euler"] == found["extrapolated"] == found["theta"] == "integrators"
-    assert found["admm"] == found["jacobi"] == "solvers of a step"
-    assert found["march"] == found["equal-means"] == "searches"
+    assert result["shipped"] == result["paper"] == "models"
+    assert result["euler"] == result["extrapolated"] == result["theta"] == "integrators"
+    assert result["admm"] == result["jacobi"] == "solvers of a step"
+    assert result["march"] == result["equal-means"] == "searches"
 
 
 def table(*rows):
@@ -35,7 +35,7 @@ def ratio(rows, tolerances=(1e-3,), points=("p", "q")):
 
 
 def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():
-    found = ratio(
+    result = ratio(
         table(
             ("p", "polar", "shipped", 0, 5e-3, 1.0),
             ("p", "polar", "shipped", 1, 5e-4, 4.0),
@@ -47,12 +47,12 @@ def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():
         tolerances=(1e-2, 1e-3),
     )
     # by hand: polar needs 1 s at 1e-2 with the coarse run, and 4 s at 1e-3
-    assert found["models", "polar"].tolist() == [[1.0, 3.0], [2.0, 1.0]]
-    assert found["models", "radial"].tolist() == [[2.0, 1.0], [1.0, np.inf]]
+    assert result["models", "polar"].tolist() == [[1.0, 3.0], [2.0, 1.0]]
+    assert result["models", "radial"].tolist() == [[2.0, 1.0], [1.0, np.inf]]
 
 
 def test_a_coarse_run_that_is_right_by_chance_does_not_count():
-    found = ratio(
+    result = ratio(
         table(
             ("p", "polar", "shipped", 0, 1e-6, 1.0),
             ("p", "polar", "shipped", 1, 5e-2, 2.0),
@@ -60,17 +60,17 @@ def test_a_coarse_run_that_is_right_by_chance_does_not_count():
             ("q", "polar", "shipped", 0, np.nan, 1.0),
         )
     )
-    assert found["models", "polar"].tolist() == [[1.0, np.inf]]
+    assert result["models", "polar"].tolist() == [[1.0, np.inf]]
     rows = table(("p", "polar", "shipped", 0, 1e-6, 1.0), ("p", "dahl", "shipped", 0, 1e-4, 5.0))
     assert ratio(rows, points=("p",))["models", "dahl"].tolist() == [[5.0]]
     rows[0]["converged"] = False
-    found = ratio(rows, points=("p",))
-    assert found["models", "polar"].tolist() == [[np.inf]]
-    assert found["models", "dahl"].tolist() == [[1.0]]
+    result = ratio(rows, points=("p",))
+    assert result["models", "polar"].tolist() == [[np.inf]]
+    assert result["models", "dahl"].tolist() == [[1.0]]
 
 
 def test_methods_are_compared_with_what_ships_where_both_were_run():
-    found = ratio(
+    result = ratio(
         table(
             ("p", "polar", "shipped", 0, 1e-4, 2.0),
             ("p", "mdr", "shipped", 0, 1e-4, 0.1),
@@ -81,8 +81,8 @@ def test_methods_are_compared_with_what_ships_where_both_were_run():
         ),
         points=("p",),
     )
-    assert found["integrators", "euler"].item() == pytest.approx(3.0)
-    assert found["integrators", "shipped"].item() == 1.0  # not compared with mdr
-    assert found["searches", "shipped"].item() == pytest.approx(2.0)
-    assert found["models", "paper"].item() == pytest.approx(500.0)
-    assert found["models", "auto"].item() == pytest.approx(4.0)
+    assert result["integrators", "euler"].item() == pytest.approx(3.0)
+    assert result["integrators", "shipped"].item() == 1.0  # not compared with mdr
+    assert result["searches", "shipped"].item() == pytest.approx(2.0)
+    assert result["models", "paper"].item() == pytest.approx(500.0)
+    assert result["models", "auto"].item() == pytest.approx(4.0)

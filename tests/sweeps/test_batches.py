@@ -160,9 +160,9 @@ def test_a_damaged_batch_is_noticed(kind, monkeypatch, store, tmp_path):
 
 def test_a_batch_with_a_point_that_failed_is_readable_and_not_final(monkeypatch, store, tmp_path):
     failing_at(monkeypatch, SolverError("stalled"))
-    records, done = sweep.run_batch(requests_of(), store)
+    records, counts = sweep.run_batch(requests_of(), store)
     path = tmp_path / "batch.jsonl"
-    write(path, records, done["final"])
+    write(path, records, counts["final"])
     assert list(sweep.records_in([path])) == records
     assert not is_final(path)
     assert not is_final(tmp_path / "none.jsonl")
@@ -170,12 +170,12 @@ def test_a_batch_with_a_point_that_failed_is_readable_and_not_final(monkeypatch,
 
 def test_only_what_the_store_lacks_is_computed(monkeypatch, store):
     solver = Solver(monkeypatch)
-    records, done = sweep.run_batch(requests_of(), store)
-    assert (done["points"], done["computed"], solver.calls) == (6, 6, 6)
-    again, done = sweep.run_batch(requests_of(), store)
-    assert (again, done["computed"], solver.calls) == (records, 0, 6)
-    _, done = sweep.run_batch(requests_of(amplitude=[0, 0.5, 1, 2]), store)
-    assert (done["computed"], solver.calls) == (2, 8)
+    records, counts = sweep.run_batch(requests_of(), store)
+    assert (counts["points"], counts["computed"], solver.calls) == (6, 6, 6)
+    again, counts = sweep.run_batch(requests_of(), store)
+    assert (again, counts["computed"], solver.calls) == (records, 0, 6)
+    _, counts = sweep.run_batch(requests_of(amplitude=[0, 0.5, 1, 2]), store)
+    assert (counts["computed"], solver.calls) == (2, 8)
 
 
 def test_a_damaged_result_is_computed_again_to_the_same_bytes(monkeypatch, store):

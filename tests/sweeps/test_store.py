@@ -119,10 +119,10 @@ def test_killed_before_the_rename_nothing_is_lost(store, moment):
         os.{moment} = lambda *args: os.kill(os.getpid(), signal.SIGKILL)
         Store({str(store.folder)!r}).write("a", {KEY!r}, {{"other": 1}})
     """
-    done = subprocess.run(
+    jobs = subprocess.run(
         [sys.executable, "-c", textwrap.dedent(program)], env={"PYTHONPATH": SOURCE}
     )
-    assert done.returncode == -signal.SIGKILL
+    assert jobs.returncode == -signal.SIGKILL
     assert path.exists()
     assert len(leftovers(store)) == 1
     assert store.read("a", KEY) == {**RECORD, "key": KEY}
@@ -211,7 +211,7 @@ def test_many_threads_and_containers_write_one_result_without_disturbing_each_ot
     """Threads, and processes in containers, have equal process numbers."""
     monkeypatch.setattr(os, "getpid", lambda: 7)
     with concurrent.futures.ThreadPoolExecutor(8) as pool:
-        done = [pool.submit(store.write, "a", KEY, RECORD) for _ in range(400)]
-    assert all(future.result() is None for future in done)
+        jobs = [pool.submit(store.write, "a", KEY, RECORD) for _ in range(400)]
+    assert all(future.result() is None for future in jobs)
     assert store.read("a", KEY) == {**RECORD, "key": KEY}
     assert not leftovers(store)

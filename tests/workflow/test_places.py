@@ -81,8 +81,8 @@ def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     assert f"{far / 'pad.csv'}, {place.folder / 'pad.csv'}" in refused.stderr
     assert "Traceback" not in refused.stderr
     (far / "pad.csv").write_text("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n")
-    done = place.snakemake("results/pad.nc", *there, "-j1")
-    assert done.returncode == 0, done.stderr
+    process = place.snakemake("results/pad.nc", *there, "-j1")
+    assert process.returncode == 0, process.stderr
     with xr.open_dataset(place.folder / "results" / "pad.nc") as data:
         assert data.attrs["pressure"].startswith("file:sha256=")
         assert bool(data.converged.all())
@@ -128,8 +128,8 @@ use rule * from friction
 def test_a_module_of_another_workflow_gives_the_same_dataset(ordinary):
     place = beside(ordinary, "outer", {"friction": CONFIGURATION, "of_another": 1})
     (place.folder / "Snakefile").write_text(OUTER)
-    said = place.run()
-    assert "friction_collect" in said
+    message = place.run()
+    assert "friction_collect" in message
     assert (place.folder / "outer.txt").read_text() == f"sub/{DATASET}\n"
     assert bytes_of(place, f"sub/{DATASET}") == bytes_of(ordinary)
     assert [p.name for p in (place.folder / "sub").iterdir()] == ["results"]
@@ -144,9 +144,9 @@ def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_b
     (place.folder / "Snakefile").write_text(DEPLOYED)
     assert place.planned()["collect"] == 1
     place.configure({**CONFIGURATION, "sweep": {}})
-    done = place.snakemake("--dry-run")
-    assert done.returncode != 0
-    assert "Error in configuration: sweep: unknown key" in done.stderr
+    process = place.snakemake("--dry-run")
+    assert process.returncode != 0
+    assert "Error in configuration: sweep: unknown key" in process.stderr
 
 
 # Installed copies
@@ -178,24 +178,24 @@ def installed(ordinary):
 @pytest.mark.long
 def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ordinary, installed):
     place = beside(ordinary, "empty")
-    done = installed(place, "sweep", DATASET, *RUN)
-    assert done.returncode == 0, done.stderr
+    process = installed(place, "sweep", DATASET, *RUN)
+    assert process.returncode == 0, process.stderr
     assert bytes_of(place) == bytes_of(ordinary)
     # The source tree uses the results of the installed copy, and the other way round.
     assert place.planned(DATASET, "-s", "../microslip/Snakefile") == {}
     copy = beside(ordinary, "copied")
     shutil.copytree(ordinary.folder / "results", copy.folder / "results")
     shutil.copytree(ordinary.folder / ".snakemake", copy.folder / ".snakemake")
-    done = installed(copy, "sweep", "--configfile", "tiny.yaml")
-    assert "Nothing to be done" in done.stdout + done.stderr, done.stderr
+    process = installed(copy, "sweep", "--configfile", "tiny.yaml")
+    assert "Nothing to be done" in process.stdout + process.stderr, process.stderr
 
 
 @pytest.mark.long
 def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed):
     place = beside(ordinary, "refused")
-    done = installed(place, "sweep", "results/sideways.nc", *RUN)
-    assert done.returncode == 1
-    assert "sideways" in done.stderr
+    process = installed(place, "sweep", "results/sideways.nc", *RUN)
+    assert process.returncode == 1
+    assert "sideways" in process.stderr
     # Without arguments: the sweeps of the paper, whose configuration is in the package.
     plan = installed(place, "sweep", "--dry-run", "--quiet", "host")
     assert re.search(r"draw +6\n", plan.stdout)
@@ -215,8 +215,8 @@ def offline():
 def test_the_report_is_made_offline_and_holds_captions_and_what_made_the_datasets(ordinary):
     report = ordinary.folder.parent / "report.zip"
     command = [sys.executable, "-m", "snakemake", *RUN[1:], "--report", str(report)]
-    done = subprocess.run([*offline(), *command], cwd=ordinary.folder, capture_output=True)
-    assert done.returncode == 0, done.stderr
+    process = subprocess.run([*offline(), *command], cwd=ordinary.folder, capture_output=True)
+    assert process.returncode == 0, process.stderr
     with zipfile.ZipFile(report) as files:
         raw = sorted(name.rpartition("/")[2] for name in files.namelist() if "/raw/" in name)
         page = files.read("report/report.html").decode()

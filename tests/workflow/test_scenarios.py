@@ -153,10 +153,10 @@ def share(project):
 
 @pytest.mark.parametrize("how", [forget, copy, share])
 def test_what_snakemake_remembers_does_not_count(how, project):
-    moved = how(project)
-    assert moved.planned(DATASET, FIGURE) == {}
-    moved.configure(configured(velocity=[0.5, 1]))
-    assert moved.planned(DATASET)["collect"] == 1
+    elsewhere = how(project)
+    assert elsewhere.planned(DATASET, FIGURE) == {}
+    elsewhere.configure(configured(velocity=[0.5, 1]))
+    assert elsewhere.planned(DATASET)["collect"] == 1
 
 
 @pytest.mark.parametrize("dates", ["2096", "1970", "mixed"])
@@ -219,10 +219,10 @@ def solve(*arguments, **settings):
 def test_a_solver_that_is_edited_during_a_run_ends_it(project):
     project.append("src/microslip/adaptive/point.py", EDITING)
     before = project.points()
-    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
-    assert done.returncode != 0
-    assert "was edited while its code was running" in done.stderr
-    assert "Traceback" not in done.stderr
+    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert process.returncode != 0
+    assert "was edited while its code was running" in process.stderr
+    assert "Traceback" not in process.stderr
     assert project.points() == before
     project.run(DATASET)
     assert project.planned(DATASET) == {}
@@ -230,8 +230,8 @@ def test_a_solver_that_is_edited_during_a_run_ends_it(project):
 
 def test_a_collector_that_fails_leaves_the_old_dataset(finished, project):
     project.append("src/microslip/datasets/sweep_dataset.py", "\n\ndef report(*_):\n    1 / 0\n")
-    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
-    assert done.returncode != 0
+    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert process.returncode != 0
     assert (project.folder / DATASET).read_bytes() == (finished.folder / DATASET).read_bytes()
 
 
@@ -253,12 +253,12 @@ DAMAGED = {
 def test_a_damaged_product_is_made_again(case, finished, project):
     file, damage, rules = DAMAGED[case]
     damage(project.folder / file)
-    said = project.run(DATASET, FIGURE)
-    assert set(jobs_in(said)) >= rules
+    message = project.run(DATASET, FIGURE)
+    assert set(jobs_in(message)) >= rules
     for path in (DATASET, FIGURE):
         assert (project.folder / path).read_bytes() == (finished.folder / path).read_bytes()
-    kept = project.folder / f"{DATASET}.damaged"
-    assert kept.exists() == (
+    files = project.folder / f"{DATASET}.damaged"
+    assert files.exists() == (
         case in ("a dataset cut short", "a dataset of another", "no stamp", "a bad stamp")
     )
     assert project.planned(DATASET, FIGURE) == {}
@@ -268,8 +268,8 @@ def test_a_damaged_batch_is_made_again_from_its_points(finished, project):
     batch, *_ = (project.folder / "results/batches/slide").glob("*.jsonl")
     whole = batch.read_bytes()
     os.truncate(batch, len(whole) - 30)
-    said = project.run(DATASET)
-    assert jobs_in(said) == {"solve": 1, "collect": 1}
+    message = project.run(DATASET)
+    assert jobs_in(message) == {"solve": 1, "collect": 1}
     assert batch.read_bytes() == whole
     assert len(project.solved()) == 9
     point, *_ = (project.folder / "results/points/transverse").rglob("*.json")
@@ -291,8 +291,8 @@ def test_a_dry_run_changes_no_content(project):
 
     before = contents()
     for arguments in (["-n"], ["--list"], ["--lint"]):
-        done = project.snakemake("--configfile", "tiny.yaml", *arguments)
-        assert done.returncode == 0, done.stderr
+        process = project.snakemake("--configfile", "tiny.yaml", *arguments)
+        assert process.returncode == 0, process.stderr
         assert contents() == before
 
 
@@ -319,6 +319,6 @@ def test_a_point_that_failed_is_a_gap_and_is_tried_again(project):
 
 def test_an_error_of_the_code_fails_the_run(project):
     project.append("src/microslip/adaptive/point.py", FAILING.format(error="TypeError"))
-    done = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
-    assert done.returncode != 0
-    assert "TypeError: no luck" in done.stderr
+    process = project.snakemake(DATASET, "-j2", "--configfile", "tiny.yaml")
+    assert process.returncode != 0
+    assert "TypeError: no luck" in process.stderr

@@ -39,8 +39,8 @@ def server():
     running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     address = f"http://127.0.0.1:{port}"
     for _ in range(600):
-        with socket.socket() as asked:
-            if asked.connect_ex(("127.0.0.1", port)) == 0:
+        with socket.socket() as request:
+            if request.connect_ex(("127.0.0.1", port)) == 0:
                 break
         time.sleep(0.1)
     client(address).create_bucket(Bucket=BUCKET)
@@ -50,8 +50,8 @@ def server():
 
 
 def client(address):
-    given = {name.lower(): value for name, value in KEYS.items() if "KEY" in name}
-    return boto3.client("s3", endpoint_url=address, region_name="us-east-1", **given)
+    settings = {name.lower(): value for name, value in KEYS.items() if "KEY" in name}
+    return boto3.client("s3", endpoint_url=address, region_name="us-east-1", **settings)
 
 
 def run(folder, address, *arguments):
@@ -62,9 +62,9 @@ def run(folder, address, *arguments):
         "SNAKEMAKE_STORAGE_S3_SECRET_KEY": "b",
     }
     environment = {**ENVIRONMENT, **KEYS, **plugin}
-    done = snakemake_server.start([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
-    assert done.returncode == 0, done.stderr
-    return done.stdout + done.stderr
+    process = snakemake_server.start([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
+    assert process.returncode == 0, process.stderr
+    return process.stdout + process.stderr
 
 
 def stored(address):
@@ -149,7 +149,7 @@ def test_a_certified_map_is_made_in_the_bucket_and_answers_another_machine(
     for machine in ("one", "two"):
         folder = empty_copy(finished, tmp_path / machine)
         (folder / "tiny.yaml").write_text(map_)
-        said = run(folder, server, "results/certified_transverse.nc")
+        message = run(folder, server, "results/certified_transverse.nc")
         datasets.append(stored(server)["results/certified_transverse.nc"])
-        assert ("rule map:" in said or "map " in said) == (machine == "one")
+        assert ("rule map:" in message or "map " in message) == (machine == "one")
     assert datasets[0] == datasets[1]

@@ -95,9 +95,9 @@ def test_a_looser_error_computes_nothing_anew(certified, tmp_path):
 def test_nothing_of_a_map_is_left_over(certified):
     results = certified.folder / "results"
     plan = Plan(load.load(certified.folder / "tiny.yaml"))
-    assert not any(leftovers.left_over(results, [plan]).values())
+    assert not any(leftovers.find_leftovers(results, [plan]).values())
     without = load.from_mapping({"sweeps": {"transverse": AXES}})
-    left = leftovers.left_over(results, [Plan(without)])
+    left = leftovers.find_leftovers(results, [Plan(without)])
     assert len(left[leftovers.KINDS[0]]) == len(certified.points())
     names = {path.name for path in left[leftovers.KINDS[2]]}
     assert names == {
@@ -112,9 +112,9 @@ def test_a_sweep_of_forces_makes_a_map_of_drift(tmp_path):
     data = microslip.open_map("certified_weights", project.folder / "results").load()
     assert float(data.cell_error.max()) <= data.error == 0.1
     answer = data.microslip.at(0.6, 1.2)
-    asked = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
-    off = abs(float(answer.velocity) - asked.velocity)
-    assert off <= float(answer.velocity_error) + asked.velocity_error
+    request = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
+    off = abs(float(answer.velocity) - request.velocity)
+    assert off <= float(answer.velocity_error) + request.velocity_error
     assert "Nothing to be done" in project.run("drives")
 
 
@@ -164,7 +164,7 @@ def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
             assert text.count(line) == 1
             text = text.replace(line, line.partition("=")[0] + numbers)
         path.write_text(text)
-    said = project.run("results/figures/claims_static.png")
+    message = project.run("results/figures/claims_static.png")
     results = project.folder / "results"
     with netcdf.whole(results / "claims.nc") as data:
         assert data["claim"].values.tolist() == list(range(1, 10))
@@ -173,11 +173,12 @@ def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
         assert set(data["run"].values) <= stored
         page = (results / "summaries/claims.html").read_text(encoding="utf-8")
         assert all(str(key) in page for key in data["run"].values)
-    assert "claim 9: " in said
+    assert "claim 9: " in message
     assert project.planned("claims") == {"draw": 1, "claims": 1}  # the other figure
     more = {**CLAIMS, "amplitude_bore": [1, 10]}
     before, after = (
-        Plan(load.from_mapping({"sweeps": PAPER, "claims": given})) for given in (CLAIMS, more)
+        Plan(load.from_mapping({"sweeps": PAPER, "claims": settings}))
+        for settings in (CLAIMS, more)
     )
     groups = before.products["claims"].groups
     new = {*after.batch_files(*groups)} - {*before.batch_files(*groups)}
@@ -261,8 +262,8 @@ def test_a_second_method_computes_its_own_trials_only(studies, tmp_path):
     write_method(project, "second_way")
     methods = ["shipped", "second-way", "my-method"]
     project.configure({**METHODS, "accuracy": {**METHODS["accuracy"], "methods": methods}})
-    said = project.run("results/accuracy_cost.nc")
-    assert jobs_in(said) == {"solve": 1, "collect": 1}
+    message = project.run("results/accuracy_cost.nc")
+    assert jobs_in(message) == {"solve": 1, "collect": 1}
     after = trials()
     assert {name: after[name] for name in before} == before
     assert len(after) == len(before) + 2

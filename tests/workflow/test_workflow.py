@@ -63,9 +63,9 @@ def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_coun
 def test_a_dry_run_says_how_much_there_is_to_solve(project):
     tolerance = {**AXES, "tolerance": 2e-2}
     project.configure({**TINY, "sweeps": {"transverse": tolerance, "bore": AXES}})
-    done = project.snakemake("--cores", 2, *RUN[1:], "--dry-run")
-    assert done.returncode == 0
-    (line,) = [line for line in done.stderr.splitlines() if line.startswith("To solve:")]
+    process = project.snakemake("--cores", 2, *RUN[1:], "--dry-run")
+    assert process.returncode == 0
+    (line,) = [line for line in process.stderr.splitlines() if line.startswith("To solve:")]
     assert re.match(r"To solve: 4 points, about \d+ seconds on 2 cores\.$", line)
 
 
@@ -76,9 +76,9 @@ def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
         path.unlink()
     assert project.planned(target) == {"draw": 1, target: 1}
     project.configure({**TINY, "sweeps": {"bore": AXES}})
-    done = project.snakemake(target, *RUN, "--dry-run")
-    line = done.stderr.strip().splitlines()[-1]
-    assert done.returncode == 1
+    process = project.snakemake(target, *RUN, "--dry-run")
+    line = process.stderr.strip().splitlines()[-1]
+    assert process.returncode == 1
     assert line == (
         "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
         "which the configuration does not have"
@@ -103,6 +103,6 @@ def test_points_that_do_not_converge_are_listed_and_drawn(project):
     project.append("src/microslip/adaptive/point.py", STALLING)
     axes = {**AXES, "amplitude": [1, 2]}
     project.configure({**TINY, "sweeps": {"transverse": axes}})
-    said = project.run(target)
-    assert "transverse: 4 points, 4 not converged" in said
-    assert "not converged: amplitude 1, velocity 0.5: stalled" in said
+    message = project.run(target)
+    assert "transverse: 4 points, 4 not converged" in message
+    assert "not converged: amplitude 1, velocity 0.5: stalled" in message

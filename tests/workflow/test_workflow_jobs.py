@@ -18,14 +18,14 @@ def loaded(script, more="pass"):
     """Names of the packages in a process after the imports of a script."""
     text = (SCRIPTS / f"{script}.py").read_text()
     imports = "; ".join(re.findall(r"^(?:from \S+ )?import .+$", text, re.MULTILINE))
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", LOADED.format(imports=imports, more=more)],
         env={**ENVIRONMENT, "PYTHONPATH": str(ROOT / "src")},
         capture_output=True,
         text=True,
         check=True,
     )
-    return set(done.stdout.split())
+    return set(process.stdout.split())
 
 
 def test_a_job_loads_no_library_before_it_has_something_to_solve():
@@ -35,9 +35,9 @@ def test_a_job_loads_no_library_before_it_has_something_to_solve():
 @pytest.mark.slow
 def test_a_job_that_solves_loads_nothing_that_draws_or_collects():
     solve = "import microslip; microslip.solve('bore', 0.5, 1.0, model='rigid', tolerance=0.01)"
-    found = loaded("solve", solve)
-    assert "numba" in found
-    assert not HEAVY & found
+    result = loaded("solve", solve)
+    assert "numba" in result
+    assert not HEAVY & result
 
 
 @pytest.mark.long

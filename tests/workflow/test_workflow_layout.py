@@ -46,8 +46,8 @@ def test_every_dataset_has_a_caption(wildcards):
 @cache
 def settings():
     """The default configuration with its defaults filled in."""
-    given = load.read_yaml(ROOT / "config" / "config.yaml")
-    return load.with_files_found(given, folders=[ROOT / "config"])
+    mapping = load.read_yaml(ROOT / "config" / "config.yaml")
+    return load.with_defaults_and_paths(mapping, folders=[ROOT / "config"])
 
 
 @cache

@@ -85,7 +85,7 @@ FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfil
 with refused_in_one_line():
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
     # With default values for captions, and absolute paths of files for jobs.
-    config = load.with_files_found(config, source=ORIGIN, folders=FOLDERS)
+    config = load.with_defaults_and_paths(config, source=ORIGIN, folders=FOLDERS)
 PLAN = Plan(CONFIGURATION)
 RESULTS = os.path.normpath(CONFIGURATION.results)
 

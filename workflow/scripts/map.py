@@ -24,8 +24,9 @@ if __name__ == "__main__":  # not in the worker processes
             snakemake.threads,
             lambda items, count: tqdm(items, name, count, unit="point", mininterval=1.0),
         )
-        done = batches.statistics(records, seconds)
-        store.write(snakemake.output[0], records, done["final"])
+        summary = batches.statistics(records, seconds)
+        store.write(snakemake.output[0], records, summary["final"])
         log.info(
-            "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done
+            "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time",
+            summary,
         )

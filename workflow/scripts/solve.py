@@ -18,6 +18,8 @@ with job_log(snakemake.log[0]) as log:
     batch = batches.Batch(**json.loads(snakemake.params.batch))
     if batch.name != snakemake.wildcards.batch:
         raise batches.SourcesEdited("the solver")
-    records, done = batches.run_batch(batch.requests, store.Store(snakemake.params.store))
-    store.write(snakemake.output[0], records, done["final"])
-    log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)
+    records, summary = batches.run_batch(batch.requests, store.Store(snakemake.params.store))
+    store.write(snakemake.output[0], records, summary["final"])
+    log.info(
+        "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", summary
+    )

@@ -24,7 +24,7 @@ ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 
 
-def known_exactly(request: Request) -> Result | None:
+def exact_result(request: Request) -> Result | None:
     """Result in closed form, or None if there is no closed form."""
     exact = no_vibration(request.problem)
     if exact is None and request.chosen and request.method == SHIPPED:

@@ -196,9 +196,9 @@ def verdict(request: Request, refined: Refined, largest: float | None) -> dict:
     if refined.converged and not within:
         where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
         reason = f"{where} is {error:.1e}, above the tolerance of {largest:g}"
-        left_open = by_source.get("model", 0.0) if request.problem.readings else 0.0
-        if left_open > 0.5 * error:
-            reason += f": the file's own resolution leaves {left_open:.1e} open"
+        file_error = by_source.get("model", 0.0) if request.problem.readings else 0.0
+        if file_error > 0.5 * error:
+            reason += f": the file's own resolution leaves {file_error:.1e} open"
     return {
         "converged": bool(refined.converged and within),
         "periodic": refined.periodic,

@@ -330,8 +330,8 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
     """First and last rows of the pieces of a path; `size` is the number of values in a state."""
     ends, first = np.cumsum(counts), 0
     while first < len(counts):
-        done = ends[first - 1] if first else 0
-        last = int(np.searchsorted(ends, done + MOST_VALUES / (2 * size)))
+        values_before = ends[first - 1] if first else 0
+        last = int(np.searchsorted(ends, values_before + MOST_VALUES / (2 * size)))
         last = min(max(last, first + 1), len(counts))
         yield first, last
         first = last

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
+from microslip.adaptive.closed_forms import CLOSED_FORM, exact_result
 from microslip.adaptive.request import Request
 from microslip.adaptive.result import Result
 from microslip.estimate.estimate import Estimate
@@ -46,7 +46,7 @@ def solve_each(request: Request) -> Result:
 
 def _solve(request: Request) -> Result:
     """Solve one contact, by a closed form if there is one, otherwise by runs of a model."""
-    exact = known_exactly(request)
+    exact = exact_result(request)
     if exact is not None:
         return exact
     # imported here because it loads compiled code

@@ -50,9 +50,9 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
         "point",
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
-        description="Mean forward friction force over mu F_z at one point, with an error estimate. "
-        "mu_macro is a ratio: 1 without an effect of the vibration, 0 without friction.  The "
-        "apparent coefficient of friction is mu_apparent = mu mu_macro.  "
+        description="Mean forward friction force divided by mu F_z at one point, with an error "
+        "estimate.  mu_macro is a ratio: 1 without an effect of the vibration, 0 without "
+        "friction.  The apparent coefficient of friction is mu_apparent = mu mu_macro.  "
         f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
@@ -107,16 +107,22 @@ F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
         "P",
-        "prescribed force in place of a velocity, over mu times the mean normal load; the "
+        "prescribed force in place of a velocity, divided by mu times the mean normal load; the "
         "result is the velocity",
     ),
-    "stiffness": ("K", f"of a spring whose far end has the velocity, over mu F_z / u_lim{F_Z}"),
-    "mass": ("M", f"of the body on the spring or force, over mu F_z / (u_lim omega^2){F_Z} (0)"),
-    "damping": ("C", f"of a dashpot beside the spring, over mu F_z / (u_lim omega){F_Z} (0)"),
+    "stiffness": (
+        "K",
+        f"of a spring whose far end has the velocity, divided by mu F_z / u_lim{F_Z}",
+    ),
+    "mass": (
+        "M",
+        f"of the body on the spring or force, divided by mu F_z / (u_lim omega^2){F_Z} (0)",
+    ),
+    "damping": ("C", f"of a dashpot beside the spring, divided by mu F_z / (u_lim omega){F_Z} (0)"),
     "contacts": (
         "TEXT",
         "several contacts of one body, such as 'phase=0;phase=180': for each, load (1, relative to "
-        "the others), phase in degrees (0) and amplitude (1, over A)",
+        "the others), phase in degrees (0) and amplitude (1, divided by A)",
     ),
     "pressure": (
         "NAME",
@@ -161,7 +167,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            action=option_parser.Said,
+            action=option_parser.StoreSpelling,
             default=DEFAULTS.get(name),
             metavar=metavar,
             help=text,
@@ -262,7 +268,7 @@ def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]
     line."""
     if argument == "motion":
         return "MOTION", options.motion
-    option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
+    option = getattr(options, "spellings", {}).get(argument, f"--{argument.replace('_', '-')}")
     return option, getattr(options, argument, None)
 
 

@@ -12,13 +12,13 @@ from microslip.studies import registry
 TARGETS = {
     "all": "the datasets and figures of the configuration's sweeps (default)",
     "extended": "datasets and figures of other motions and pressures (key extended)",
-    "drives": "datasets and figures of contacts pulled by a force or a spring (key drives)",
-    "certified": "maps with an error bound between the points, of the sweeps with the key adaptive",
+    "drives": "datasets and figures of contacts driven by a force or a spring (key drives)",
+    "certified": "maps with an error estimate everywhere, of the sweeps with the key adaptive",
     "accuracy": "accuracy and cost of all models and methods",
     "stability": "conditions under which methods fail",
-    "claims": "checks of the claims of the paper",
+    "claims": "check of the statements of the paper",
     "propulsion": "force of self-propelled motions, from stall to no load",
-    "explorer": "interactive page of the maps, with a period behind each point",
+    "explorer": "interactive page of the maps; a click on a point shows its period",
     "explorer_all": "the same page with all other sweeps of the configuration",
 }
 """Targets of the workflow for users, and the products of each."""

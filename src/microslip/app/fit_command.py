@@ -135,7 +135,7 @@ def _as_text(result: Fit) -> str:
     model = ", ".join(
         f"of {name.replace('_', ' ')} {_digits(100.0 * shares[name], 2)} %" for name in result.told
     )
-    share = f"{100.0 * result.confidence:g} %, and what the model may be off: {model}"
+    share = f"{100.0 * result.confidence:g} %, plus the model error: {model}"
     lines.append(line("intervals", share))
     if result.standard_error is not None:
         scatter = _scaled(result.standard_error, "N" if friction else "")
@@ -145,7 +145,7 @@ def _as_text(result: Fit) -> str:
         text = f"{result.chi_square:.3g} for {result.degrees_of_freedom} degrees of freedom{chance}"
         lines.append(line("chi square", text))
     if result.reason:
-        lines.append(f"NOT TOLD: {result.reason}")
+        lines.append(f"NOT DETERMINED: {result.reason}")
     return "\n".join(lines + [f"warning: {text}" for text in result.warnings])
 
 

@@ -77,7 +77,7 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
                     yield KINDS[2], folder / place / name
 
 
-def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
+def find_leftovers(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Files in a folder of results that none of the plans requests, by kind.
 
     Links, files behind links, and folders with the name of a file belong to the user and are not
@@ -114,7 +114,7 @@ def main(arguments: list[str]) -> int:
         files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
-        remaining = left_over(folder, map(Plan, configurations))
+        remaining = find_leftovers(folder, map(Plan, configurations))
         for kind, paths in remaining.items():
             size = sum(path.stat().st_size for path in paths) / 1e6
             print(f"{folder}: {len(paths)} {kind} that no configuration requests, {size:.1f} MB")

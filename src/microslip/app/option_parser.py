@@ -42,18 +42,18 @@ class OneLineParser(argparse.ArgumentParser):
     def _refuse_strange_words(self, words: Sequence[str]) -> None:
         """Refuse unknown words before argparse does.  Its message would name a missing argument
         instead."""
-        known = self._option_string_actions
+        candidates = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
         named: dict[str, list[str]] = {}
         for word in words:
             if commands and not word.startswith("-"):
                 return self._refuse_command(word, commands[0])
             name = word.partition("=")[0]
-            strange = word.startswith("-") and name.strip("-") and name not in known
+            strange = word.startswith("-") and name.strip("-") and name not in candidates
             if strange and not NEGATIVE.match(word):
-                self._refuse_option(name, [n for n in known if n.startswith("--")])
-            if name in known:
-                self._refuse_second(name, named.setdefault(known[name].dest, []))
+                self._refuse_option(name, [n for n in candidates if n.startswith("--")])
+            if name in candidates:
+                self._refuse_second(name, named.setdefault(candidates[name].dest, []))
         if commands and not {"-h", "--help", "--version"} & set(words):
             (command,) = commands
             self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices or ())}")
@@ -75,17 +75,19 @@ class OneLineParser(argparse.ArgumentParser):
             allowed = f"allowed is one of {', '.join(choices)}"
             self.error(f"{command.metavar} = {word!r}: {_hint(word, choices)}{allowed}")
 
-    def _refuse_option(self, name: str, known: list[str]) -> None:
-        hint = _hint(f"--{name.lstrip('-')}", known)
+    def _refuse_option(self, name: str, candidates: list[str]) -> None:
+        hint = _hint(f"--{name.lstrip('-')}", candidates)
         first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
-        allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
+        allowed = ", ".join(
+            [*candidates, *(f"{command} before other options" for command in first)]
+        )
         self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
-def _hint(name: str, known: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar known name, or '' if there is none."""
-    synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in known]
-    near = synonym or difflib.get_close_matches(name, known, n=1)
+def _hint(name: str, candidates: Iterable[str]) -> str:
+    """'did you mean NAME? ' for the most similar candidate, or '' if there is none."""
+    synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in candidates]
+    near = synonym or difflib.get_close_matches(name, candidates, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
@@ -107,7 +109,7 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
     return re.sub(rf"(?:\ba )?\b({names})\b", lambda match: option(match[1]), text)
 
 
-class Said(argparse.Action):
+class StoreSpelling(argparse.Action):
     """Action that stores a value, and the name of the option on the command line."""
 
     def __call__(
@@ -118,7 +120,7 @@ class Said(argparse.Action):
         option_string: str | None = None,
     ) -> None:
         setattr(namespace, self.dest, value)
-        namespace.said = getattr(namespace, "said", {}) | {self.dest: option_string}
+        namespace.spellings = getattr(namespace, "spellings", {}) | {self.dest: option_string}
 
 
 def joined(arguments: list[str]) -> list[str]:

@@ -8,7 +8,10 @@ from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 
-RATIO = "a ratio: mean forward force over mu F_z; the coefficient of friction is mu times mu_macro"
+RATIO = (
+    "a ratio: mean forward force divided by mu F_z; the coefficient of friction is mu times "
+    "mu_macro"
+)
 """Explanation of mu_macro for users."""
 OWN_EQUATIONS = (
     "an approximate model: the error estimate covers its discretisation, not the approximation"

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from microslip.app.option_parser import Said, format_as_options, option
+from microslip.app.option_parser import StoreSpelling, format_as_options, option
 from microslip.app.terminal import complain
 from microslip.foundation.errors import CacheError, InputError, shown
 
@@ -49,7 +49,7 @@ def add_options(
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
             dest=name.replace("-", "_"),
-            action=Said,
+            action=StoreSpelling,
             metavar=metavar,
             help=text,
             required=name in required,
@@ -65,7 +65,7 @@ def add_json(parser: Any) -> None:
 
 def typed_options(options: argparse.Namespace) -> dict[str, Any]:
     """Values of the options on the command line, by the name of the argument."""
-    return {name: getattr(options, name) for name in getattr(options, "said", {})}
+    return {name: getattr(options, name) for name in getattr(options, "spellings", {})}
 
 
 def respond(
@@ -100,10 +100,10 @@ def respond(
     try:
         result = answer(options)
     except InputError as error:
-        said, value = getattr(options, "said", {}), error.value
-        if error.argument in said or error.argument in titles:
+        spellings, value = getattr(options, "spellings", {}), error.value
+        if error.argument in spellings or error.argument in titles:
             value = getattr(options, error.argument)
-        name = titles.get(error.argument) or said.get(error.argument) or option(error.argument)
+        name = titles.get(error.argument) or spellings.get(error.argument) or option(error.argument)
         text = "" if error.value is None or error.value is True else f" = {shown(value)}"
         allowed = format_as_options(error.allowed, [] if error.argument == "table" else arguments)
         complain(" ".join(f"{command}: {name}{text}: {allowed}".split()))

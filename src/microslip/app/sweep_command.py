@@ -140,7 +140,7 @@ def _check(arguments: list[str]) -> None:
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
     for target in options.targets:
-        if not _may_be_made(target):
+        if not _is_target(target):
             hint = schema.near_miss(target, [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES])
             allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
             raise InputError("TARGET", target, hint + allowed)
@@ -178,7 +178,7 @@ def _check_configuration(options: argparse.Namespace) -> None:
         raise load.ConfigError(f"{source}: results: {error}") from None
 
 
-def _may_be_made(target: str) -> bool:
+def _is_target(target: str) -> bool:
     """True for a file, a target of the workflow or the name of a figure.
 
     All names of figures of groups or certified maps are accepted, since the configuration defines

@@ -54,7 +54,7 @@ def refuse_unsolvable(map_: CertifiedMap) -> None:
     motion, pressure = solver_names(map_.sweep)
     where = f"for {motion} under {pressure} at Poisson's ratio {nu:g}"
     allowed = (
-        f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 except for bore"
+        f"{', '.join(drift_threshold.MOTIONS)} under hertz, at Poisson's ratio 0 except for bore"
     )
     is_known = drift_threshold.is_known(motion, pressure, nu)
     _demand(is_known, f"{where}, whose threshold has no closed form", allowed)

@@ -105,7 +105,7 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
 # Settings
 
 
-def with_files_found(
+def with_defaults_and_paths(
     mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
 ) -> dict:
     """Fill in the defaults and the paths of files of a parsed configuration.

@@ -43,7 +43,7 @@ class Quantity:
 
 MU_MACRO = Quantity(
     *("mu_macro", "friction ratio", "", "mu~macro", r"\tilde{\mu}_\mathrm{macro}"),
-    "mean forward friction force over mu F_z",
+    "mean forward friction force divided by mu F_z",
 )
 FORCE_FORWARD = Quantity(
     "force_forward", "forward force", "", "F_forward/(mu F_z)", r"F_\mathrm{forward}/(\mu F_z)"
@@ -53,7 +53,7 @@ FORCE_LATERAL = Quantity(
 )
 TORQUE = Quantity(
     *("mu_torque", "torque", "", "M_z/M_z,0", r"M_z/M_{z,0}"),
-    "torque about the normal over its value at zero forward velocity",
+    "torque about the normal divided by its value at zero forward velocity",
 )
 LATERAL = Quantity(
     "lateral_position", "lateral position", "", "r_lateral/a", r"r_\mathrm{lateral}/a"
@@ -65,26 +65,26 @@ FORWARD = Quantity(
 VELOCITY = {
     "transverse": Quantity(
         *("velocity", "forward velocity", "v0 / (omega u_lim)", "v~0", r"\tilde{v}_0"),
-        "forward velocity over angular frequency and u_lim (Eq 4)",
+        "forward velocity divided by angular frequency and u_lim (Eq 4)",
     ),
     "bore": Quantity(
         *("velocity", "forward velocity", "v0 / (Omega phi0 a)", "v~", r"\tilde{v}"),
-        "forward velocity over largest rotational velocity of the contact's edge (Eq 28)",
+        "forward velocity divided by the largest rotational velocity of the contact's edge (Eq 28)",
     ),
     "continuous-bore": Quantity(
         *("velocity", "forward velocity", "v0 / (omega a)", "v~", r"\tilde{v}"),
-        "forward velocity over rotational velocity of the contact's edge (Eq 13)",
+        "forward velocity divided by the rotational velocity of the contact's edge (Eq 13)",
     ),
 }
 """Velocity for each motion of the paper."""
 AMPLITUDE = {
     "transverse": Quantity(
         *("amplitude", "amplitude", "y0 / u_lim", "y~0", r"\tilde{y}_0"),
-        "amplitude of the transverse oscillation over u_lim (Eq 2)",
+        "amplitude of the transverse oscillation divided by u_lim (Eq 2)",
     ),
     "bore": Quantity(
         *("amplitude", "amplitude", "phi0 / phi_lk(a/2)", "phi~0", r"\tilde{\varphi}_0"),
-        "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
+        "amplitude of the rotation divided by the one that leaves the stick radius a/2 (Eq 27)",
     ),
 }
 """Amplitude for each motion of the paper.  The steady motion has none."""
@@ -92,19 +92,19 @@ AMPLITUDE = {
 DRIVES = {
     "force": Quantity(
         *("force", "force", "P / (mu F_z)", "P~", r"\tilde{P}"),
-        "constant force that pulls, over mu times the mean normal load",
+        "prescribed force divided by mu times the mean normal load",
     ),
     "stiffness": Quantity(
         *("stiffness", "stiffness", "k u_lim / (mu F_z)", "k~", r"\tilde{k}"),
-        "stiffness of the spring that pulls, over mu F_z / u_lim",
+        "stiffness of the spring divided by mu F_z / u_lim",
     ),
     "mass": Quantity(
         *("mass", "mass", "m omega^2 u_lim / (mu F_z)", "m~", r"\tilde{m}"),
-        "mass of what is pulled, over mu F_z / (u_lim omega^2)",
+        "mass of the body divided by mu F_z / (u_lim omega^2)",
     ),
     "damping": Quantity(
         *("damping", "damping", "c omega u_lim / (mu F_z)", "c~", r"\tilde{c}"),
-        "damping of what is pulled, over mu F_z / (u_lim omega)",
+        "damping of the dashpot divided by mu F_z / (u_lim omega)",
     ),
 }
 """Parameters of the drive of a contact."""

@@ -44,16 +44,16 @@ class StrictLoader(yaml.SafeLoader):
         super().flatten_mapping(node)
 
     def _refuse_twice(self, node: yaml.MappingNode) -> None:
-        seen: list[object] = []
+        previous: list[object] = []
         for key_node, _ in node.value:
             if key_node.tag == "tag:yaml.org,2002:merge":
                 continue
             key = self.construct_object(key_node, deep=True)
-            if any(key == other or str(key) == str(other) for other in seen):  # 1 equals 1.0
+            if any(key == other or str(key) == str(other) for other in previous):  # 1 equals 1.0
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key {key} occurs twice", key_node.start_mark
                 )
-            seen.append(key)
+            previous.append(key)
 
     def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
         """Construct an integer.  A number that YAML reads to another base is refused."""

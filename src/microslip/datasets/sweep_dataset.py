@@ -88,7 +88,7 @@ GROUPS = {
     "velocity_curves": "Limits from theory on a fine axis of velocities",
     "amplitude_curves": "Limits from theory on a fine axis of amplitudes",
     "history": "Forces over time, the data of Figure 1",
-    "field": "Tractions all over the contact, the data of Figure 3",
+    "field": "Tractions in the whole contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
 """Titles of the groups in the file of a sweep.  Each motion has only some of the groups."""
@@ -217,7 +217,7 @@ def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
 
 def _force_history(record: dict) -> dict[str, tuple]:
     result, request = record["result"], record["request"]
-    step, friction = "history_step", "friction force over mu F_z"
+    step, friction = "history_step", "friction force divided by mu F_z"
     return {
         "history_phase": variable(step, result["phase"], "phase of the oscillation", units="rad"),
         "history_force_forward": variable(step, result["force_forward"], f"forward {friction}"),
@@ -228,17 +228,17 @@ def _force_history(record: dict) -> dict[str, tuple]:
 
 
 FIELD = {
-    "lateral_position": "lateral position over a",
-    "forward_position": "forward position over a",
-    "traction_lateral": "lateral traction over mu F_z/a^2",
-    "traction_forward": "forward traction over mu F_z/a^2",
-    "bound": "friction bound over mu F_z/a^2",
+    "lateral_position": "lateral position divided by a",
+    "forward_position": "forward position divided by a",
+    "traction_lateral": "lateral traction divided by mu F_z/a^2",
+    "traction_forward": "forward traction divided by mu F_z/a^2",
+    "bound": "friction bound divided by mu F_z/a^2",
 }
 
 
 def _traction_field(record: dict) -> dict[str, tuple]:
     result, velocity = record["result"], record["request"]["velocity"]
-    centre = "centre of rotation, lateral, over a"
+    centre = "centre of rotation, lateral, divided by a"
     variables = {f"field_{name}": variable("cell", result[name], FIELD[name]) for name in FIELD}
     return variables | {
         "field_velocity": variable((), velocity, "forward velocity of the traction field"),
@@ -249,7 +249,10 @@ def _traction_field(record: dict) -> dict[str, tuple]:
 def _transients(records: Sequence[dict]) -> dict[str, tuple]:
     velocity = float(records[0]["request"]["velocity"])
     starts = [record["request"]["start"] for record in records]
-    force, torque = "forward friction force over mu F_z", point_variables.DESCRIPTIONS["mu_torque"]
+    force, torque = (
+        "forward friction force divided by mu F_z",
+        point_variables.DESCRIPTIONS["mu_torque"],
+    )
 
     def runs(name: str, text: str, **about: str) -> tuple:
         values = [record["result"][name] for record in records]
@@ -261,7 +264,7 @@ def _transients(records: Sequence[dict]) -> dict[str, tuple]:
 
     return {
         "start": ("start", starts, {"long_name": "initial state of the transient"}),
-        "transient_displacement": runs("displacement_forward", "forward travel over u_lim"),
+        "transient_displacement": runs("displacement_forward", "forward travel divided by u_lim"),
         "transient_force_forward": runs("force_forward", force),
         "transient_torque": runs("torque", point_variables.TORQUE, description=torque),
         "transient_velocity": variable((), velocity, "forward velocity of the transients"),

@@ -138,7 +138,7 @@ def refine(
             goal = tolerance - rest
     except Spent as spent:
         if refined is None:
-            return unknown(f"{spent}: no error is known yet", ladder)
+            return unknown(f"{spent}: there is no error estimate yet", ladder)
         reason = f"{spent}: the error is still {refined.value.error:.1e}"
         return replace(refined, converged=False, reason=reason)
     assert refined is not None  # every ladder has a level

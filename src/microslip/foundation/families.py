@@ -153,9 +153,9 @@ class Registry(Generic[T]):
             If the name is unknown, if its file cannot be used, or if the class does not have or
             accept the numbers.
         """
-        known = [*self.classes, *self.others]
+        names = [*self.classes, *self.others]
         if not isinstance(text, str):
-            raise InputError(self.argument, text, f"allowed is one of {', '.join(known)}")
+            raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
         reason = self.broken.get(text.partition(":")[0].strip().replace("-", "_"))
         if reason:
             raise InputError(self.argument, text, reason)
@@ -163,11 +163,11 @@ class Registry(Generic[T]):
             raise InputError(
                 self.argument, text, f"allowed after it is a colon and a name: {text}:NAME"
             )
-        name, numbers = spec.split(text, self.argument, known)
+        name, numbers = spec.split(text, self.argument, names)
         cls: Any = self.classes[name]
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
         try:
-            return _made(cls, tuple(sorted(numbers.items())))
+            return _shared_object(cls, tuple(sorted(numbers.items())))
         except InputError as error:  # its text lacks numbers with default values
             raise InputError(self.argument, text, error.allowed) from None
         except Exception as error:  # in a file of the user
@@ -176,6 +176,6 @@ class Registry(Generic[T]):
 
 
 @lru_cache(maxsize=128)
-def _made(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
+def _shared_object(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
     """The object for these numbers.  Equal numbers share one object and its cached properties."""
     return cls(**dict(numbers))

@@ -136,13 +136,13 @@ class Sources:
         key = _sha256(self.contents[name])
         if not name.endswith(".py"):
             return key, []
-        if key not in self._known:
-            self._known[key] = _parse(self.contents[name])
+        if key not in self._parse_results:
+            self._parse_results[key] = _parse(self.contents[name])
             self._is_written = False
-        return self._known[key]
+        return self._parse_results[key]
 
     @cached_property
-    def _known(self) -> dict[str, tuple[str, list[str]]]:
+    def _parse_results(self) -> dict[str, tuple[str, list[str]]]:
         with contextlib.suppress(OSError, ValueError):
             reader, results = json.loads(self._file.read_bytes())
             return results if reader == _READER else {}
@@ -154,7 +154,7 @@ class Sources:
         if not self._is_written:
             self._is_written = True
             with contextlib.suppress(CacheError):
-                content = json.dumps([_READER, self._known])
+                content = json.dumps([_READER, self._parse_results])
                 write_atomically(self._file, content.encode())
 
     @property

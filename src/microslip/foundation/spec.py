@@ -98,11 +98,13 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
     return numbers
 
 
-def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Iterable[str]) -> None:
-    """Raise InputError about the argument `what` for a number that is not in `known`."""
-    unknown = sorted(numbers.keys() - set(known))
+def refuse_unknown(
+    text: str, what: str, numbers: dict[str, float], parameters: Iterable[str]
+) -> None:
+    """Raise InputError about the argument `what` for a number that is not in `parameters`."""
+    unknown = sorted(numbers.keys() - set(parameters))
     if unknown:
-        allowed = ", ".join(known) or "none"
+        allowed = ", ".join(parameters) or "none"
         raise InputError(what, text, f"unknown number {unknown[0]}; allowed: {allowed}")
 
 

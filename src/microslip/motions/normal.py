@@ -61,10 +61,10 @@ class Normal(Motion):
 
     summary = "sliding forward while the normal load oscillates, or the indentation"
     numbers = (
-        "such as lateral=1,phase=90: shares of A, load (1, over the mean) or indentation (0: the "
-        "load oscillates), lateral and forward (0, over u_lim), angle (0, over phi_lk(a/2)), phase "
-        "of these in degrees (0), normal_cycles, lateral_cycles, forward_cycles and angle_cycles "
-        "(1)"
+        "such as lateral=1,phase=90: fractions of A, load (1, divided by the mean) or indentation "
+        "(0: the load oscillates), lateral and forward (0, divided by u_lim), angle (0, divided by "
+        "phi_lk(a/2)), phase of these in degrees (0), normal_cycles, lateral_cycles, "
+        "forward_cycles and angle_cycles (1)"
     )
     loads = True
 

@@ -44,8 +44,8 @@ class TransverseBore(Motion):
 
     summary = "sliding forward while oscillating sideways and in rotation"
     numbers = (
-        "such as angle=0.5,phase=90: shares of A, lateral (1, over u_lim) and angle (1, over "
-        "phi_lk(a/2)), phase of the rotation in degrees (0)"
+        "such as angle=0.5,phase=90: fractions of A, lateral (1, divided by u_lim) and angle (1, "
+        "divided by phi_lk(a/2)), phase of the rotation in degrees (0)"
     )
     half_period_mirror = True
 

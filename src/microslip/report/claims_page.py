@@ -113,7 +113,7 @@ def _with_error(value: float, error: float) -> str:
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):
-        return f"{_number(value)}, no error known"
+        return f"{_number(value)}, without an error estimate"
     decimals = int(np.clip(1 - np.floor(np.log10(max(error, 1e-12))), 1, 6))
     rounded = f"{value:.{decimals}f}"
     return f"{rounded if float(rounded) else _number(value)} \N{PLUS-MINUS SIGN} {error:.2g}"

@@ -110,6 +110,6 @@ def _unit(motion: Motion) -> str | None:
     turned = float(np.abs(angle).max())
     if turned == 0.0:
         return "m"
-    moved = float(np.hypot(ahead, aside).max())
+    stroke = float(np.hypot(ahead, aside).max())
     of_bore = abs(turned / float(hertz.bore_angle(1.0)) - 1.0) <= SAME
-    return "rad" if moved == 0.0 and of_bore else None
+    return "rad" if stroke == 0.0 and of_bore else None

@@ -13,6 +13,7 @@ from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
 from microslip.pressures.by_name import pressure_named
+from microslip.si.drive_result import answer_of
 from microslip.si.energy import energy_fields
 from microslip.si.prediction import (
     Drift,
@@ -25,7 +26,6 @@ from microslip.si.prediction import (
     SteadySpin,
     Travel,
 )
-from microslip.si.pulled import answer_of
 from microslip.si.reduction import reduce_friction
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.request import Request, request_of

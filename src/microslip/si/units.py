@@ -193,7 +193,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 def stopped(read_so_far: str, rest: str) -> str:
     """A message with the place at which reading stopped, and a hint about the likely meaning."""
-    hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
+    hint = ", since decimals follow a point and thousands have no separator" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:
         value = exact(Decimal(read_so_far), Decimal(1), Decimal(fraction[1]))

@@ -82,7 +82,7 @@ def _adhesive(theory: str, *where: tuple) -> Rule:
     return Rule(
         (("pull_off", SMALL, "load"), *where),
         "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the "
-        f"load (Tabor's number {{tabor:.2g}}, Maugis's {{maugis:.2g}}: {theory}): adhesion counts",
+        f"load (Tabor's number {{tabor:.2g}}, Maugis's {{maugis:.2g}}: {theory}): adhesion matters",
     )
 
 

@@ -34,7 +34,7 @@ MOST_EDGES = 4
 SLIVER = 1e-3
 """Largest distance between two edges that is treated as scatter, divided by the contact radius.  If
 there is little slip, the shift of the rings on either side of an edge is almost 0."""
-NOTHING_LEFT = 1e-2
+LARGEST_SHIFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 
 
@@ -133,7 +133,7 @@ def edges_on_a_line(
         if unsolved(limit.solver_residual, limit.solves, STEP_SHARE * tolerance):
             return None
         bounds = np.broadcast_to(contact.bound, limit.residual[0].shape)
-        return np.hypot(*limit.residual) > NOTHING_LEFT * bounds.max()
+        return np.hypot(*limit.residual) > LARGEST_SHIFT * bounds.max()
 
     return _edges(problem, model, resolution, points_that_stick, settings, progress, radii=near)
 
@@ -200,7 +200,7 @@ def _on_these_points(
     periodic = limit.periodic
     if contact.sticks:
         bounds = bounds_at_phases(contact, path)
-        sticks = limit.shift[FORWARD] > NOTHING_LEFT * bounds.max()
+        sticks = limit.shift[FORWARD] > LARGEST_SHIFT * bounds.max()
     # the distance is part of the error
     near = periodic.converged or periodic.distance <= ENOUGH * distance
     periods = periods_of(periodic.marches, problem)

@@ -160,16 +160,19 @@ def state_norm(
     system: System,
     inertia: Inertia | None,
     change: np.ndarray,
-    moved: np.ndarray,
+    body_change: np.ndarray,
     scratch: np.ndarray,
 ) -> float:
-    """Upper bound on the force due to a change of tractions and a change of x and x' (`moved`)."""
+    """Upper bound on the force due to a change of tractions and of the body.
+
+    body_change: changes of x and x'.
+    """
     norm = force_norm(system, change, scratch)
     if inertia is None:
         return norm
     drive = inertia.drive
     if drive.mass > 0.0 or drive.damping > 0.0:
-        held = inertia.held * moved[0] ** 2 + inertia.mass * moved[1] ** 2
+        held = inertia.held * body_change[0] ** 2 + inertia.mass * body_change[1] ** 2
     elif drive.stiffness > 0.0:
         held = inertia.held * (forward_force(system, change) / drive.stiffness) ** 2
     else:
@@ -207,7 +210,7 @@ def search(
     n, steps, bound = state.size, len(goal.share), loading.bound[0]
     image, change, scratch = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     new_image, new_change, scale = np.zeros(n + 2), np.zeros(n + 2), np.empty(n + 2)
-    proposal, moved = np.empty(n + 2), np.zeros(2)
+    proposal, body_change = np.empty(n + 2), np.zeros(2)
     for i in range(state.shape[1]):
         scale[i] = scale[i + n // 2] = np.sqrt(system.weight[i] * system.scale[i])
     scale[n] = scale[n + 1] = 0.0
@@ -241,10 +244,10 @@ def search(
             for i in range(n):
                 change.ravel()[i] = image.ravel()[i] - state.ravel()[i]
             gained = abs(advance) * system.stiffness + force_norm(system, change, scratch)
-            moved[0] = inertia.place * advance
-            moved[1] = inertia.rate * (trace.body[last, 1] - trace.body[0, 1])
+            body_change[0] = inertia.place * advance
+            body_change[1] = inertia.rate * (trace.body[last, 1] - trace.body[0, 1])
             if not (d.mass > 0.0 or d.damping > 0.0):
-                moved[0], moved[1] = 0.0, 0.0
+                body_change[0], body_change[1] = 0.0, 0.0
                 if inertia.place > 1.0:
                     # from the motion of the body, more accurate than from the forces of the steps
                     force = trace.forces[0, 0] - inertia.place * d.stiffness * advance
@@ -256,8 +259,8 @@ def search(
             change_row[i] = image_row[i] - state_row[i]
             new_image[i], new_change[i] = image_row[i], change_row[i]
         for i in range(2):
-            new_image[n + i], new_change[n + i] = place[i] + moved[i], moved[i]
-        residual = state_norm(system, inertia, change, moved, scratch)
+            new_image[n + i], new_change[n + i] = place[i] + body_change[i], body_change[i]
+        residual = state_norm(system, inertia, change, body_change, scratch)
         if not np.isfinite(residual):
             best[3][0] = np.nan
             return True, False
@@ -292,8 +295,8 @@ def search(
         for i in range(n):
             change_row[i] = image_row[i] - state_row[i]
         for i in range(2):
-            moved[i] = proposal[n + i] - place[i]
-        distance = max(state_norm(system, inertia, change, moved, scratch), residual)
+            body_change[i] = proposal[n + i] - place[i]
+        distance = max(state_norm(system, inertia, change, body_change, scratch), residual)
         if goal.gain < np.inf:
             gained = residual if inertia is None else gained
             excess = largest_excess(mean, goal.static_force, goal.full)

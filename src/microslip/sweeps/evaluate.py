@@ -92,7 +92,7 @@ def _period(request: dict) -> dict:
     """Compute one period of the periodic state, packed by microslip.sweeps.period_codec."""
     from microslip.sweeps.period_codec import packed
 
-    return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
+    return _result_or_reason(lambda: packed(microslip.period(**_at(request)), request["angles"]))
 
 
 def _trial(request: dict) -> dict:
@@ -158,15 +158,15 @@ def _patches(request: dict) -> dict:
     """Compute the stick zone during a period."""
     from microslip.adaptive.stick_area import patches
 
-    return _found(lambda: patches(**_at(request)))
+    return _result_or_reason(lambda: patches(**_at(request)))
 
 
 def _propulsion(request: dict) -> dict:
     """Compute the force-velocity line of a self-propelled motion, from stall to no load."""
-    given = {name: float(request[name]) for name in ("poisson", "tolerance")}
+    numbers = {name: float(request[name]) for name in ("poisson", "tolerance")}
     amplitude = float(request["amplitude"])
     line = microslip.propulsion(
-        request["motion"], amplitude, points=request["points"], **given
+        request["motion"], amplitude, points=request["points"], **numbers
     ).to_dict()
     line.pop("solve_time_s")
     return line
@@ -204,8 +204,8 @@ def _place(request: dict) -> dict:
 
 
 def _of_single_run(request: dict) -> dict:
-    given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
-    return given | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
+    numbers = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
+    return numbers | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
 
 
 def _solved(request: dict, **settings: object) -> dict:
@@ -230,7 +230,7 @@ def _at(request: dict) -> dict:
     return _place(request) | {name: request[name] for name in ("cells", "angles", "steps")}
 
 
-def _found(look: Callable[[], dict]) -> dict:
+def _result_or_reason(look: Callable[[], dict]) -> dict:
     """Call a function that requires a periodic state; return the reason if there is none."""
     from microslip.adaptive.period import NoPeriodicState
 

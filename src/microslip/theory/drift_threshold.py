@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from microslip.theory.exact import STATIC_LIMITS
 
-KNOWN = ("transverse", "zigzag", "bore")
+MOTIONS = ("transverse", "zigzag", "bore")
 """Motions with an exact threshold under Hertz's pressure."""
 WIDEST = 1e3
 """Amplitude at which the threshold is practically zero, used as the upper end of the search."""
@@ -20,7 +20,7 @@ WIDEST = 1e3
 def is_known(motion: str, pressure: str, poisson: float) -> bool:
     """True if the threshold of a motion under a pressure is known exactly. Both arguments are
     names."""
-    if pressure != "hertz" or motion not in KNOWN:
+    if pressure != "hertz" or motion not in MOTIONS:
         return False
     return poisson == 0.0 or STATIC_LIMITS[motion].any_poisson
 

@@ -41,11 +41,11 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
         return 0.0
     c = float(pressure.radius(1.0 - amplitude))
 
-    def left(r: np.ndarray) -> np.ndarray:
+    def remainder(r: np.ndarray) -> np.ndarray:
         inner = pressure.bound(r, c)
         return np.sqrt(inner * np.maximum(2.0 * pressure.bound(r, 1.0) - inner, 0.0))
 
-    return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
+    return min(_over_the_circle(remainder, c, _kink(pressure)), 1.0)
 
 
 def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
@@ -157,12 +157,12 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     if c in (0.0, 1.0):
         return c
 
-    def left(r: np.ndarray) -> np.ndarray:
+    def remainder(r: np.ndarray) -> np.ndarray:
         bound = pressure.bound(r, 1.0)
         share = np.clip(torsion_traction(pressure, r, c) / bound, 0.0, 1.0)
         return 2.0 / np.pi * bound * np.arccos(share)
 
-    return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
+    return min(_over_the_circle(remainder, c, _kink(pressure)), 1.0)
 
 
 def _kink(pressure: IndenterPressure) -> float:

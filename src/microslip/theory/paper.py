@@ -258,8 +258,8 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
     """
     amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
     step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
-    left = np.sqrt(inner * (2 * bound - inner))
-    return np.minimum(3 * np.sum(step * inner * bound * left, axis=-1), 1.0)
+    remainder = np.sqrt(inner * (2 * bound - inner))
+    return np.minimum(3 * np.sum(step * inner * bound * remainder, axis=-1), 1.0)
 
 
 def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:

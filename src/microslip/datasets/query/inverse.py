@@ -25,7 +25,7 @@ OUTCOMES = (
 )
 """Outcomes of a search.  The variable `outcome` contains their indices.  A value is possible if the
 map reaches it only to within the error."""
-(FOUND, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
+(SINGLE, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
 """Numbers of places at which a search evaluates friction first, in equal steps and in equal ratios.
 Between two neighbouring places friction is assumed to cross the requested value at most once."""
@@ -148,7 +148,7 @@ def _search(
     has_place = np.bincount(row, np.isfinite(place), count) > 0
     outcome = np.select(
         [has_place & (number > 1), has_place, number > 0, off[:, 0] > 0.0],
-        [SEVERAL, FOUND, POSSIBLE, LARGER],
+        [SEVERAL, SINGLE, POSSIBLE, LARGER],
         SMALLER,
     )
     return np.stack([row, place, *ends, bounded], axis=1), outcome

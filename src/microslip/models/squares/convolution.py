@@ -197,13 +197,13 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
     """Fill out with A q; q and out are forward and lateral parts of the resolved squares, (2, rows,
     columns); scratch: from `workspace`."""
     (first, second), radices, roots = scratch, operator.radices, operator.roots
-    columns, kept = q.shape[1], second.shape[2]
+    columns, width = q.shape[1], second.shape[2]
     _spread(operator, q, first)
     forward(first[0], first[1], columns, radices, roots)
     _turn_over(operator, columns, first, second)
-    forward(second[0], second[1], kept, radices, roots)
+    forward(second[0], second[1], width, radices, roots)
     _multiply(operator, first, second)
-    backward(second[0], second[1], kept, radices, roots)
+    backward(second[0], second[1], width, radices, roots)
     _turn_back(operator, columns, second, first)
     backward(first[0], first[1], columns, radices, roots)
     _gather(operator, first, out)

@@ -134,9 +134,9 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
 
 def axis_label(dataset: xr.Dataset, dim: str) -> str:
     """Return the name and the formula of an axis as HTML for plotly."""
-    said = dataset[dim].attrs
-    text = said.get("long_name", dim).split(",")[0]
-    return f"{text}  {html(said.get('formula', ''))}".strip()
+    attributes = dataset[dim].attrs
+    text = attributes.get("long_name", dim).split(",")[0]
+    return f"{text}  {html(attributes.get('formula', ''))}".strip()
 
 
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:

@@ -14,7 +14,7 @@ function numberIn(label, text, example) {
   if (read === null) refuse(label, `'${given}'`, `stopped at its beginning; ${allowed}`);
   const rest = given.slice(read[0].length);
   if (rest) {
-    const hint = rest.includes(",") ? ", since decimals follow a point and nothing parts thousands" : "";
+    const hint = rest.includes(",") ? ", since decimals follow a point and thousands have no separator" : "";
     refuse(label, `'${given}'`, `read ${read[0]} and stopped at '${rest.trim()}'${hint}; ${allowed}`);
   }
   return read[0];

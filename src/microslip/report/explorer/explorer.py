@@ -80,7 +80,7 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
     names = maps_of(configuration)
     if not names:
         return (
-            "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+            "sweeps: no map for the explorer; allowed: transverse or bore with two "
             "amplitudes and two velocities above 0"
         )
     for name in names:
@@ -88,13 +88,13 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
         count = len(sweep.amplitude) * len(sweep.velocity)
         if count > MOST_POINTS:
             return (
-                f"sweeps.{name}: {count:,} points have no room in the explorer; "
+                f"sweeps.{name}: {count:,} points do not fit into the explorer; "
                 f"allowed: up to {MOST_POINTS:,}"
             )
     others = sum(_count(configuration.grids[name]) for name in sweeps_of(configuration, page))
     if others > MOST_OTHERS:
         return (
-            f"sweeps: {others:,} points have no room in {page}; allowed: up to {MOST_OTHERS:,}, "
+            f"sweeps: {others:,} points do not fit into {page}; allowed: up to {MOST_OTHERS:,}, "
             "at all of Poisson's ratios together"
         )
     return None

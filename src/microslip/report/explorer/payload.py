@@ -73,7 +73,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
         else:
             content["lines"] += brief.lines(name, dataset)
     return content | {
-        "made": {name: _made(datasets[name], periods.get(name, ())) for name in datasets},
+        "made": {name: _provenance(datasets[name], periods.get(name, ())) for name in datasets},
         "certified": [packed(dataset) for dataset in certified],
         "si": si_form.packed(),
         "errors": ERRORS,
@@ -158,7 +158,7 @@ def _unsigned(values: ArrayLike) -> np.ndarray:
     return np.round(UNSIGNED * np.clip(values, 0.0, 1.0)).astype(np.uint16)
 
 
-def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
+def _provenance(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
     """Return the provenance of a map and its periods as pairs of a name and a text."""
     provenance = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
     if "configuration" in provenance:

@@ -16,8 +16,8 @@ NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
 LEAST_RANGE = 10.0
 """Smallest upper end of the axis of a profile."""
 GROWTH = {
-    "iterations": "iterations a step  (dimensionless)",
-    "seconds": "time a step (s)",
+    "iterations": "iterations per step  (dimensionless)",
+    "seconds": "time per step (s)",
     "memory": "memory (bytes)",
 }
 """Quantities of the panels of `scaling`, with their labels."""
@@ -67,8 +67,8 @@ def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
         ink |= {"lw": 1.8 if name in ("shipped", "auto") else 1.3, "gid": f"profile {name}"}
         label = NAMES.get(name, name) + ("" if at.size else ": never")
         axes.plot([1.0, *at, high], shares, label=label, **ink)
-    axes.set(xscale="log", xlim=(1.0, high), ylabel="share of points  (dimensionless)")
-    axes.set_xlabel(r"CPU time over the least  $t/t_\mathrm{best}$")
+    axes.set(xscale="log", xlim=(1.0, high), ylabel="fraction of points  (dimensionless)")
+    axes.set_xlabel(r"CPU time divided by the smallest  $t/t_\mathrm{best}$")
     panels.logarithmic(axes.xaxis)
     panels.unit_range(axes)
 

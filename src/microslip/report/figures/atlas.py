@@ -22,10 +22,10 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
 
 OUTCOMES = {
-    1: ("converged", "#CDE7DC", "\N{CHECK MARK}", "#00664A", "as near the reference as it claims"),
-    2: ("slow", "#F0B84B", "S", look.BLACK, "gives up within its budget, and says so"),
-    3: ("wrong", "#C04F00", "W", "white", "claims to have converged, but misses the reference"),
-    4: ("diverged", "#222222", "D", "white", "tractions blew up, or no number came out"),
+    1: ("converged", "#CDE7DC", "\N{CHECK MARK}", "#00664A", "within its error estimate"),
+    2: ("slow", "#F0B84B", "S", look.BLACK, "not converged within its budget, as reported"),
+    3: ("wrong", "#C04F00", "W", "white", "reported as converged, but too far from the reference"),
+    4: ("diverged", "#222222", "D", "white", "diverged, or no result"),
 }
 """Outcomes by code: name, fill colour, symbol, symbol colour, meaning. The fill colours darken from
 good to bad, so that they differ in grey as well."""

@@ -23,7 +23,7 @@ from microslip.report.figures.groups import CONTOURS
 from microslip.report.figures.map_panel import fill
 from microslip.sweeps.drift_coordinates import DriftCoordinates
 
-BOUND = "bound of the error,\nthousandths  (dimensionless)"
+BOUND = "error estimate,\nthousandths  (dimensionless)"
 DIMENSIONLESS = "(dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
@@ -44,10 +44,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     poisson = float(dataset["poisson"].min())
     if certified_map.is_of_drift(dataset):
-        across, bound = "force", r"bound of the error over $\sqrt{1 + v^2}$"
+        across, bound = "force", r"error estimate divided by $\sqrt{1 + v^2}$"
         _drift(left, right, dataset)
     else:
-        across, bound = "velocity", "bound of the error"
+        across, bound = "velocity", "error estimate"
         grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
         grid = grid.assign(converged=np.isfinite(grid["mu_macro"]))
         filled, *_ = fill(left, grid, lines=CONTOURS)

@@ -53,7 +53,7 @@ def static(name: str, dataset: xr.Dataset) -> Figure:
         upper.set(xlabel=look.axis(quantity), ylabel=look.FRICTION)
         panels.legend_above(upper, "ab"[column], title)
         _shares(lower, dataset, motion, quantity)
-        panels.legend_above(lower, "cd"[column], "share of the friction bound")
+        panels.legend_above(lower, "cd"[column], "fraction of the friction bound")
         panels.unit_range(upper)
         panels.unit_range(lower)
     return figure
@@ -93,7 +93,9 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) ->
         axes.plot(radius, rest, color=color, ls=look.DASHED, gid="left")
     for ls, label in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
         axes.plot([], [], color=look.BLACK, ls=ls, label=label)
-    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound  (dimensionless)")
+    axes.set(
+        xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="fraction of the bound  (dimensionless)"
+    )
 
 
 def patches(name: str, dataset: xr.Dataset) -> Figure:
@@ -105,7 +107,7 @@ def patches(name: str, dataset: xr.Dataset) -> Figure:
         shade = _contact(axes, dataset.isel(patch_moment=moment))
         panels.letter(axes, which, note)
     contacts[0].set_ylabel(look.axis(FORWARD))
-    label = "traction over bound  $|q|/(\\mu p)$\nwhere it sticks"
+    label = "traction divided by bound  $|q|/(\\mu p)$\nwhere it sticks"
     panels.colour_bar(shade, contacts, label, shrink=0.8, pad=0.015, aspect=24)
     _areas(grid["d"], dataset)
     return figure
@@ -143,7 +145,7 @@ def _areas(axes: Axes, dataset: xr.Dataset) -> None:
     symbols = BORE_AMPLITUDE.latex, VELOCITY["bore"].latex
     values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
     at = look.conditions(zip(symbols, values, strict=True))
-    panels.legend_above(axes, "d", f"area that sticks, {at}", ncols=3)
+    panels.legend_above(axes, "d", f"stick area, {at}", ncols=3)
     axes.set(xlim=phase[[0, -1]], xlabel=r"phase  $\Omega t/\pi$")
-    axes.set_ylabel("share of the contact  (dimensionless)")
+    axes.set_ylabel("fraction of the contact  (dimensionless)")
     panels.unit_range(axes)

@@ -70,7 +70,7 @@ def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float
         raise ValueError(f"mu_macro has no dimension {missing[0]!r}; it has {present}")
     for extra in set(present) - set(dims):
         if dataset.sizes[extra] > 1:
-            raise ValueError(f"mu_macro has a further dimension {extra!r}: select one entry of it")
+            raise ValueError(f"mu_macro has another dimension {extra!r}: select one entry of it")
         dataset = dataset.isel({extra: 0})
     return dataset.sortby(list(dims)), poisson
 

@@ -39,7 +39,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         Patch(fc=_pale(n), ec=look.BLACK, lw=0.6, label=rf"$\bf{{{look.model(n)[2]}}}$  {n}")
         for n in models
     ]
-    handles += [Patch(label="none is that accurate", **NONE)] if "" in names else []
+    handles += [Patch(label="no model within the tolerance", **NONE)] if "" in names else []
     panels.legend_of_figure(figure, handles, "lower center", ncols=4)
     return figure
 

@@ -46,7 +46,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """
     if not has_room(datasets):
         allowed = f"up to {MOST} maps, each at two to {len(LOOKS)} Poisson's ratios"
-        raise ValueError(f"figure {name}: no room for the datasets; allowed: {allowed}")
+        raise ValueError(f"figure {name}: too many datasets; allowed: {allowed}")
     figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
     grid = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
     letters = iter(look.letters(2 * len(datasets)))

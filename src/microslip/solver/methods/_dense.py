@@ -104,8 +104,8 @@ class DenseContact:
         """March along a path, see Contact; raises StepFailure if a step is not solved."""
         q = state.reshape(2, -1).copy()
         at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
-        found = np.empty((path.steps + 1, 3))
-        found[0] = forces(self.contact, at_end.reshape(self.shape))
+        all_forces = np.empty((path.steps + 1, 3))
+        all_forces[0] = forces(self.contact, at_end.reshape(self.shape))
         slips = np.empty((path.stages.shape[1], *q.shape))
         total, iterations = 0.0, 0
         for k, stages in enumerate(path.stages):
@@ -117,9 +117,9 @@ class DenseContact:
             now = b - slips[-1] - rigid
             z = z + (now - z) / path.end
             at_end = q.copy() if path.end == 1.0 else at_end + (q - at_end) / path.end
-            found[k + 1] = forces(self.contact, at_end.reshape(self.shape))
+            all_forces[k + 1] = forces(self.contact, at_end.reshape(self.shape))
         solves = path.solves
-        return March(at_end.reshape(self.shape), found, total, iterations, solves)
+        return March(at_end.reshape(self.shape), all_forces, total, iterations, solves)
 
     def _solved(
         self, b: np.ndarray, q: np.ndarray, slip: np.ndarray, tolerance: float
@@ -174,10 +174,10 @@ def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
 @kernel
 def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> float:
     """Compute slip = b - A q, arrays of shape (2, K), and return the residual of the step."""
-    moved, n = points.matrix @ q.ravel(), q.shape[1]
+    product, n = points.matrix @ q.ravel(), q.shape[1]
     for c in range(2):  # loops, since array assignments take seconds to compile
         for i in range(n):
-            slip[c, i] = b[c, i] - moved[c * n + i]
+            slip[c, i] = b[c, i] - product[c * n + i]
     shape = (2, 1, q.shape[1])
     rows = q.reshape(shape), slip.reshape(shape)
     return coulomb_residual(rows[0], rows[1], points.bound, points.weight, points.scale)

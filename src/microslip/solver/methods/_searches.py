@@ -94,8 +94,8 @@ class Marches:
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
-        moved = energy_norm(self.contact, proposal - interval.state)
-        distance = max(moved, interval.residual)
+        step = energy_norm(self.contact, proposal - interval.state)
+        distance = max(step, interval.residual)
         if self.drift_rate is not None:
             rate, mean = self.drift_rate, float(self.path.mean(interval.march.forces[:, 0]))
             excess = largest_excess(mean, rate.static_force, rate.full)

@@ -39,19 +39,19 @@ def _solve(points: Points, stage: Stage, shortest: float) -> tuple[int, float]:
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
             return iteration, residual
-        moved, changed = -q, slip.copy()
+        step, changed = -q, slip.copy()
         q += length * slip
         project_in_place(q, bound)
         residual = judge(points, b, q, slip)
-        moved += q
+        step += q
         changed -= slip
-        share = (weight * moved * changed).sum()
+        share = (weight * step * changed).sum()
         if residual < 0.5 * best:
             best, best_at = residual, iteration
         if iteration - best_at > PATIENCE or not share > 0.0:
             length = shortest
         else:
-            length = (weight * moved * moved).sum() / share
+            length = (weight * step * step).sum() / share
     return MAX_ITERATIONS, residual
 
 

@@ -39,8 +39,8 @@ def _solve(points: Points, stage: Stage, settings: float) -> tuple[int, float]:
             size = np.sqrt(x * x + y * y)
             if size > 0.0:
                 q[0, i], q[1, i] = bound[i] * x / size, bound[i] * y / size
-        known = np.flatnonzero(sticks)
-        both = np.concatenate((known, known + n))
+        indices = np.flatnonzero(sticks)
+        both = np.concatenate((indices, indices + n))
         if len(both) > 0:
             flat = q.copy().ravel()
             flat[both] = 0.0

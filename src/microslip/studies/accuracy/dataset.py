@@ -101,7 +101,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
         for row in _trials(settings, name, point, references[name], answers)
     ]
     tolerances = settings.map.tolerance[::-1]  # from loose to tight
-    titles = [given.title for given in settings.points.values()]
+    titles = [setting.title for setting in settings.points.values()]
     about_points = zip(points, titles, points.values(), references.values(), strict=True)
     variables = table("point", about_points, POINT_COLUMNS)
     variables |= table("trial", ((row,) for row in trials), TRIAL_COLUMNS)

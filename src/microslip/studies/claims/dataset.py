@@ -126,12 +126,14 @@ In PART_COLUMNS the arguments of the function are a part and all its checks.
 
 def _parts(checks: dict[str, list[Check]]) -> dict:
     rows = [checks[part.name] for part in PARTS]
-    made = table("part", zip(PARTS, rows, strict=True), PART_COLUMNS)
+    entries = table("part", zip(PARTS, rows, strict=True), PART_COLUMNS)
     for outcome, name in enumerate(verdicts.OUTCOMES):
         counts = [sum(check.outcome == outcome for check in row) for row in rows]
-        made[f"part_{name}"] = variable("part", counts, f"number of checks: {name}", np.int32)
+        entries[f"part_{name}"] = variable("part", counts, f"number of checks: {name}", np.int32)
     values = [verdicts.of_part(row) for row in rows]
-    return made | {"part_verdict": flags("part", values, "verdict on the part", verdicts.VERDICTS)}
+    return entries | {
+        "part_verdict": flags("part", values, "verdict on the part", verdicts.VERDICTS)
+    }
 
 
 def _shown_by(row: list[Check]) -> str:
@@ -216,24 +218,24 @@ def _patches(settings: Claims, runs: Runs) -> dict:
             break
     else:
         return {}
-    made = {
+    entries = {
         "patch_velocity": variable((), velocity, "velocity of the patches"),
         "patch_amplitude": variable((), amplitude, "amplitude of the patches"),
     }
-    share = "size of the traction over the friction bound, 1 where a point slips"
+    share = "size of the traction divided by the friction bound, 1 where a point slips"
     sides = {side: np.asarray(result[f"stick_{side}"], float) for side in ("right", "left")}
     for side, values in sides.items():
         long_name = f"sticking fraction of the contact area, {SIDES[side]} lateral positions"
-        made[f"patch_stick_{side}"] = variable("patch_step", values, long_name)
+        entries[f"patch_stick_{side}"] = variable("patch_step", values, long_name)
     both = sides["right"] + sides["left"]
-    made["patch_stick"] = variable("patch_step", both, "sticking fraction of the contact area")
-    made["patch_phase"] = variable("patch_step", result["phase"], "phase", units="rad")
+    entries["patch_stick"] = variable("patch_step", both, "sticking fraction of the contact area")
+    entries["patch_phase"] = variable("patch_step", result["phase"], "phase", units="rad")
     for name in ("lateral", "forward"):
         values = result[f"{name}_position"]
-        made[f"patch_{name}"] = variable("patch_point", values, f"{name} position over a")
+        entries[f"patch_{name}"] = variable("patch_point", values, f"{name} position divided by a")
     moments = np.asarray(result["moment_phase"], float)
     dims = ("patch_moment", "patch_point")
-    return made | {
+    return entries | {
         "patch_moment_phase": variable("patch_moment", moments, "phase of the moment", units="rad"),
         "patch_share": variable(dims, result["moment_share"], share),
         **_edges(amplitude, moments),
@@ -267,7 +269,7 @@ def _edges(amplitude: float, moments: np.ndarray) -> dict:
     dims = ("patch_moment", "patch_edge")
     return {
         f"patch_edge_{name}": variable(
-            dims, [edge[i] for edge in edges], f"{name} position of the edge, over a"
+            dims, [edge[i] for edge in edges], f"{name} position of the edge, divided by a"
         )
         for i, name in enumerate(("lateral", "forward"))
     }

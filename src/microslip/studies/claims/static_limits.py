@@ -89,12 +89,12 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 def variables(study: Claims, runs: Runs) -> dict:
     """Return the variables of the dataset for the static limits of the two motions."""
-    made: dict[str, tuple] = {}
+    entries: dict[str, tuple] = {}
     for motion in study.amplitude:
-        made |= _curves(motion) | _shares(motion) | _split(study, runs, motion)
+        entries |= _curves(motion) | _shares(motion) | _split(study, runs, motion)
     slowest, excess = claims.velocities(study)[0], 1.5 / (0.75 * (1.0 - j0(np.pi))) - 1.0
     about = "excess of Eq 33 over the static limit at large amplitudes, over the limit"
-    return made | {
+    return entries | {
         "claims_slowest": variable((), slowest, "smallest velocity of this study"),
         "claims_paper_velocity": variable(
             (), claims.PAPER_VELOCITY, "smallest velocity of the paper"
@@ -108,7 +108,7 @@ def _curves(motion: str) -> dict:
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     dim = f"{motion}_curve_amplitude"
     exact = FORMS[motion][STATIC].function(amplitude)
-    made = {
+    entries = {
         dim: variable(dim, amplitude, f"amplitude of the curves, motion {motion}"),
         f"{motion}_curve_limit": variable(dim, exact, "static friction, exact limit"),
     }
@@ -117,12 +117,12 @@ def _curves(motion: str) -> dict:
         gap = values - exact
         most = int(np.argmax(gap))
         where = f"amplitude of the largest excess of {long_name}"
-        made |= {
+        entries |= {
             f"{motion}_curve_{name}": variable(dim, values, long_name),
             f"{motion}_gap_{name}": variable((), gap[most], f"largest excess of {long_name}"),
             f"{motion}_gap_{name}_at": variable((), amplitude[most], where),
         }
-    return made
+    return entries
 
 
 def _shares(motion: str) -> dict:
@@ -133,7 +133,7 @@ def _shares(motion: str) -> dict:
     used = "fraction of the friction bound that the oscillation uses at its turning points"
     left = "fraction of the friction bound that remains for the forward direction, mean over angle"
     return {
-        "share_radius": variable("share_radius", radius, "radius over a"),
+        "share_radius": variable("share_radius", radius, "radius divided by a"),
         dims[0]: variable(dims[0], amplitudes, f"amplitude, motion {motion}"),
         f"{motion}_used_share": variable(dims, used_share(*at), used),
         f"{motion}_left_share": variable(dims, left_share(*at), left),
@@ -167,19 +167,19 @@ def _split(study: Claims, runs: Runs, motion: str) -> dict:
     amplitudes = claims.limited(study, motion)
     rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]
     dim = f"{motion}_amplitude"
-    made = {dim: variable(dim, amplitudes, f"amplitude, motion {motion}")}
+    entries = {dim: variable(dim, amplitudes, f"amplitude, motion {motion}")}
     for name, long_name in SPLIT.items():
         values = [row[name] for row in rows]
-        made[f"{motion}_{name}"] = variable(dim, values, long_name)
+        entries[f"{motion}_{name}"] = variable(dim, values, long_name)
     for name, (formula, long_name) in FORMULAS[motion].items():
         values = [float(FORMS[motion][formula].function(amplitude)) for amplitude in amplitudes]
-        made[f"{motion}_{name}"] = variable(dim, values, long_name)
-    zone = np.array(made[f"{motion}_zone"][1], float)
+        entries[f"{motion}_{name}"] = variable(dim, values, long_name)
+    zone = np.array(entries[f"{motion}_zone"][1], float)
     with np.errstate(invalid="ignore", divide="ignore"):
         lost = 1.0 - np.array([row["limit"] for row in rows]) / zone
     about = "fraction of the bound inside the stick zone that the oscillation uses"
-    made[f"{motion}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), about)
-    return made
+    entries[f"{motion}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), about)
+    return entries
 
 
 def _row(study: Claims, runs: Runs, motion: str, amplitude: float) -> dict[str, float]:

@@ -15,7 +15,7 @@ GROUPS: dict = {}
 """Groups of the dataset. There are no groups, because all variables are in one table."""
 
 LINE_COLUMNS: dict[str, tuple] = {
-    "stall_force": ("load that stops the motion, over mu times the mean normal load", float),
+    "stall_force": ("load that stops the motion, divided by mu times the mean normal load", float),
     "stall_force_error": ("error estimate of stall_force", float),
     "no_load_velocity": ("forward velocity without a load, in the unit of the motion", float),
     "no_load_velocity_error": ("error estimate of no_load_velocity", float),
@@ -32,16 +32,16 @@ COORDINATES: dict[str, tuple] = {
     "amplitude": (lambda _, motion: motion.amplitude, "amplitude of the motion"),
     "poisson": (lambda _, motion: motion.poisson, "Poisson's ratio"),
 }
-POWER = "over mu times the mean normal load, u_lim and omega"
+POWER = "divided by mu times the mean normal load, u_lim and omega"
 POINT_COLUMNS = {
     "velocity": "forward velocity, in equal steps from 0 to no_load_velocity",
-    "force": "mean propelling force, over mu times the mean normal load",
+    "force": "mean propelling force, divided by mu times the mean normal load",
     "force_error": "error estimate of force",
     "power_out": f"force times velocity, {POWER}",
     "power_out_error": "error estimate of power_out",
     "power_in": f"mean power of the oscillation, {POWER}",
     "power_in_error": "error estimate of power_in",
-    "efficiency": "power_out over power_in",
+    "efficiency": "power_out divided by power_in",
     "efficiency_error": "error estimate of efficiency",
 }
 """Results at every point of a line: long_name by name. They are NaN if the motion does not propel

@@ -58,10 +58,10 @@ def test_a_pulled_march_is_the_plain_one(name, body, integrator):
         plain(contact), of_points, phases, start, numbers, START, stages
     )
     path = make_path(displacement, phases, integrator)
-    found = contact.march(path, start, 1e-12, body=Body(*numbers), start=START)
-    assert found.state == pytest.approx(expected[-1], abs=2e-8)
-    assert found.body[:, 0] == pytest.approx(places, abs=2e-8)
-    assert found.forces[:, 0] == pytest.approx(
+    result = contact.march(path, start, 1e-12, body=Body(*numbers), start=START)
+    assert result.state == pytest.approx(expected[-1], abs=2e-8)
+    assert result.body[:, 0] == pytest.approx(places, abs=2e-8)
+    assert result.forces[:, 0] == pytest.approx(
         (contact.weight * expected[:, 0]).sum(axis=(1, 2)), abs=2e-8
     )
 
@@ -90,8 +90,8 @@ def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
     contact, label = build(), motion_named(motion)
     path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
     start = 0.5 * forward_slip(contact)
-    found = contact.march(path, start, 1e-11, body=Body(0.0, 0.0, 0.0, 0.6), start=START)
-    assert found.forces[1:, 0] == pytest.approx(0.6, abs=1e-10)
+    result = contact.march(path, start, 1e-11, body=Body(0.0, 0.0, 0.0, 0.6), start=START)
+    assert result.forces[1:, 0] == pytest.approx(0.6, abs=1e-10)
     soft = contact.march(path, start, 1e-11, body=Body(0.5, 0.0, 0.0, 0.6), start=START)
     assert soft.forces[:, 0] == pytest.approx(0.6 - 0.5 * soft.body[:, 0], abs=1e-10)
 
@@ -106,14 +106,14 @@ def test_the_work_of_the_drive_is_stored_or_dissipated(name):
     phases = half_period_phases(1)
     path = make_path(displacement, phases, EULER)
     start, force = 0.5 * forward_slip(contact), 0.7
-    found = contact.march(path, start, 1e-12, body=Body(0.0, 0.0, 0.0, force), start=START)
-    q, travel = found.state, of_points(phases[1]) - of_points(phases[0])
+    result = contact.march(path, start, 1e-12, body=Body(0.0, 0.0, 0.0, force), start=START)
+    q, travel = result.state, of_points(phases[1]) - of_points(phases[0])
     strained = contact.displacement(q - start)
     slip = travel - strained
-    slip[0] += found.body[1, 0]
+    slip[0] += result.body[1, 0]
     ahead = np.diff(displacement(phases)[0])[0]
     turned = travel - np.array([ahead, 0.0])[:, None, None]
-    forward = force * (ahead + found.body[1, 0])
+    forward = force * (ahead + result.body[1, 0])
     work = forward + np.sum(contact.weight * q * turned)
     stored = np.sum(contact.weight * q * strained)
     dissipated = np.sum(contact.weight * contact.bound * np.hypot(*slip))
@@ -134,8 +134,8 @@ def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
         phases = np.linspace(0.0, 2.0, steps + 1)
         path = make_path(lambda phase: np.zeros((3, *np.shape(phase))), phases, integrator)
         start, at = np.zeros((2, 1, 8)), np.array([0.0, place * rate])
-        found = contact.march(path, start, 1e-22, body=Body(spring, 0.0, mass, 0.0), start=at)
-        ends.append(np.hypot(*(found.body[-1] / unit - swung)))
+        result = contact.march(path, start, 1e-22, body=Body(spring, 0.0, mass, 0.0), start=at)
+        ends.append(np.hypot(*(result.body[-1] / unit - swung)))
     assert ends[1] < 0.2
     assert np.log2(ends[0] / ends[1]) == pytest.approx(integrator.order, abs=0.35)
 
@@ -149,8 +149,8 @@ def test_a_very_stiff_or_heavy_body_follows_the_path(name, large):
     path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
     start, heavy = 0.5 * forward_slip(contact), 1e7
     numbers = {"stiffness": 0.0, "damping": 0.0, "mass": 0.0, "load": 0.0} | {large: heavy}
-    found = contact.march(path, start, 1e-11, body=Body(**numbers))
-    told = contact.march(path, start, 1e-11)
-    assert np.abs(found.body[:, 0]).max() <= (0.5 * np.pi**2 if large == "mass" else 1.0) / heavy
+    result = contact.march(path, start, 1e-11, body=Body(**numbers))
+    run = contact.march(path, start, 1e-11)
+    assert np.abs(result.body[:, 0]).max() <= (0.5 * np.pi**2 if large == "mass" else 1.0) / heavy
     # the contact follows a displacement by no more than its stiffness
-    assert found.forces[:, 0] == pytest.approx(told.forces[:, 0], abs=1e-5)
+    assert result.forces[:, 0] == pytest.approx(run.forces[:, 0], abs=1e-5)
