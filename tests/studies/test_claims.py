@@ -271,6 +271,14 @@ def test_friction_of_a_flat_end_is_extrapolated_to_a_single_spring(claims):
     assert value == pytest.approx(exact, abs=5e-6)
 
 
+def test_largest_error_of_eq_37():
+    ratios = np.linspace(0.005, 0.995, 199)
+    errors = [single_spring(1.0, ratio) - eq37(1.0, ratio) for ratio in ratios]
+    assert max(errors) == pytest.approx(0.0144, abs=5e-5)
+    assert ratios[np.argmax(errors)] == pytest.approx(0.105)
+    assert min(errors) >= 0.0
+
+
 def test_what_the_papers_run_is_off_by_is_split(claims):
     for motion in ("transverse", "bore"):
         of = {n: claims[f"{motion}_{n}"].values for n in ("paper_shift", "limit", "slow")}

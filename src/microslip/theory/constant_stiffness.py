@@ -22,7 +22,7 @@ def sum_of_powers(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
         Velocity divided by omega u_lim, where omega is the angular frequency.
     """
     left = _remainder(amplitude, velocity)
-    return 1.0 - amplitude * (0.75 * left**2 + 0.25 * left**4)
+    return 1.0 - np.asarray(amplitude) * (0.75 * left**2 + 0.25 * left**4)
 
 
 def single_power(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
@@ -30,8 +30,8 @@ def single_power(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
 
     The arguments are those of sum_of_powers.
     """
-    return 1.0 - amplitude * _remainder(amplitude, velocity) ** 2.4
+    return 1.0 - np.asarray(amplitude) * _remainder(amplitude, velocity) ** 2.4
 
 
 def _remainder(amplitude: ArrayLike, velocity: ArrayLike) -> np.ndarray:
-    return np.maximum(1.0 - np.asarray(velocity) / amplitude, 0.0)
+    return np.maximum(1.0 - np.asarray(velocity) / np.asarray(amplitude), 0.0)
