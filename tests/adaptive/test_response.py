@@ -127,20 +127,6 @@ def test_random_planar_paths_with_varying_load(seed):
     assert np.all(difference <= answer.force_error[:, :2] + np.abs(fine - coarse))
 
 
-CONTACT = [  # E. Vollebregt's CONTACT: poisson, shift over u_lim, Fx / (mu Fn), friction work
-    pytest.param(0.42, 0.7484, 0.875, 0.06861, id="cattaneo"),
-    pytest.param(0.28, 0.50983, 0.657, 0.01919, id="catt_to_cart"),
-    pytest.param(0.28, 0.74929, 0.8751, 0.06893, id="testbank"),
-]
-
-
-@pytest.mark.parametrize(("poisson", "shift", "force", "work"), CONTACT)
-def test_shifts_of_contact(poisson, shift, force, work):
-    answer = response([0.0, shift], poisson=poisson, tolerance=1e-3)
-    assert answer.force_forward[-1] == pytest.approx(force, abs=2e-3)
-    assert answer.dissipated_energy[-1] == pytest.approx(work, abs=2e-3)
-
-
 @pytest.mark.parametrize(
     ("name", "arguments"),
     [

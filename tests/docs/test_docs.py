@@ -88,6 +88,7 @@ NOT_RUN = {
     ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 5"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/error_estimates.py --seed 3"): BENCHMARK,
+    ("docs/explanation/published_numbers.md", "python benchmarks/published"): BENCHMARK,
     ("docs/how-to/certified_maps.md", "python benchmarks/certified.py"): BENCHMARK,
     ("docs/how-to/certified_maps.md", "python benchmarks/other_maps.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,

@@ -1,16 +1,13 @@
 """References in docs/measured: their points, proved bounds, and error estimates."""
 
-import sys
 from collections import Counter
-from functools import cache
-from pathlib import Path
 
 import pytest
+from stubs.benchmark import ROOT, module
 
 import microslip
 from microslip.theory import bounds
 
-ROOT = Path(__file__).parents[2]
 SEED = 3
 MEASURED = ROOT / "docs" / "measured"
 TABLE = MEASURED / f"references-{SEED}.csv"
@@ -23,15 +20,6 @@ PROVED = {
 }
 LEAST = 24
 """Number of cheap points that are solved."""
-
-
-@cache
-def module(name):
-    """A module of the folder of benchmarks."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "benchmarks")
-        __import__(name)
-    return sys.modules[name]
 
 
 @pytest.fixture(scope="module", params=SEEDS)

@@ -36,7 +36,7 @@ def requests():
 def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
     top = page[: page.index('<h2 id="claim1"')]
     rows = re.findall(r"<tr><td.*?</tr>", top, flags=re.DOTALL)
-    assert len(rows) == 9
+    assert len(rows) == 10
     for row, verdict in zip(rows, data["verdict"].values, strict=True):
         assert claims_page.WORDS[int(verdict)] in row
         assert re.search(r'href="#run\d+"', row)
@@ -67,8 +67,10 @@ def test_numbers_and_runs_are_those_of_the_dataset(page, data):
 def test_the_command_of_a_point_requests_that_point(request_):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
+    words, motion = cli._split_motion(words)
     options = cli.build_parser("point").parse_args(words)
-    assert options.motion == request_["motion"]
+    assert motion == request_["motion"]
+    assert options.pressure == request_.get("pressure", options.pressure)
     amplitude = getattr(options, "amplitude", None)
     parsed = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
     parsed["amplitude"] = None if amplitude is None else number(float(amplitude))

@@ -4,8 +4,9 @@ import numpy as np
 from stubs.studies_stub import SWEEPS
 
 from microslip.config import load
+from microslip.pressures.by_name import pressure_named
 from microslip.sweeps import batches
-from microslip.theory import paper
+from microslip.theory import oscillating_load, paper
 
 CLAIMS = {
     "tolerance": 0.001,
@@ -25,11 +26,15 @@ LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limi
 
 
 def friction(request):
-    """Friction that increases with velocity from the exact limit to above Eq 6 or Eq 29."""
+    """Friction that increases with velocity from the exact limit to above Eq 6 or Eq 29; exact for
+    an oscillating indentation."""
     motion, velocity = request["motion"], float(request["velocity"])
     if motion == "continuous-bore":
         return float(paper.bore_forward(velocity))
     amplitude = float(request["amplitude"])
+    if motion == "normal:indentation=1":
+        pressure = pressure_named(request["pressure"])
+        return oscillating_load.friction(velocity, amplitude, False, pressure)
     limit = float(LIMITS[motion](amplitude))
     if motion == "bore":
         large = float(paper.large_amplitude_bore(velocity))

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
 from stubs.claims_stub import answered, configured, friction, result
 
 from microslip.datasets import netcdf, sweep_dataset
@@ -10,7 +12,7 @@ from microslip.studies.claims import claims as requests
 from microslip.studies.claims import verdicts
 from microslip.studies.claims.parts import PARTS
 from microslip.studies.claims.statements import STATEMENTS
-from microslip.theory import paper
+from microslip.theory import constant_stiffness, paper
 
 NOT_DECIDED, HOLDS, PARTLY, NOT = verdicts.WORDS
 
@@ -63,6 +65,7 @@ def test_verdicts_on_made_up_results(claims):
         7: HOLDS,
         8: HOLDS,
         9: HOLDS,
+        10: PARTLY,  # Eq 38 crosses the friction at a ratio of about 0.35
     }
 
 
@@ -132,6 +135,13 @@ def even_sides(request, changed):
     return {"stick_left": [0.2] * 9, "stick_right": [0.2] * 9}
 
 
+def beyond_eq38(velocity, amplitude):
+    power = constant_stiffness.single_power(amplitude, velocity)
+    return power + np.copysign(0.1, power - eq37(amplitude, velocity))
+
+
+STIFF, eq37 = "normal:indentation=1", constant_stiffness.sum_of_powers
+
 FLIPPED = {
     "Eq 6 a little low everywhere": (
         1,
@@ -152,6 +162,8 @@ FLIPPED = {
     "stick on both sides": (7, of_kind("patches", even_sides), PARTLY),
     "no friction left": (8, of_points("bore", lambda v, a: 0.0, static=True), NOT),
     "bore falls with velocity": (9, of_points("bore", lambda v, a: 1 / (1 + v)), PARTLY),
+    "Eq 37 exact": (10, of_points(STIFF, lambda v, a: eq37(a, v)), HOLDS),
+    "beyond Eq 38": (10, of_points(STIFF, beyond_eq38), NOT),
 }
 
 
@@ -184,7 +196,7 @@ def test_runs_without_a_certificate_decide_nothing(broken):
         return result(request) | (broken if request["kind"] == "point" else {})
 
     verdict = words(judged(results))
-    assert {verdict[claim] for claim in (1, 2, 5, 6, 8, 9)} == {NOT_DECIDED}
+    assert {verdict[claim] for claim in (1, 2, 5, 6, 8, 9, 10)} == {NOT_DECIDED}
     assert {verdict[claim] for claim in (3, 4, 7)} == {HOLDS}
 
 
@@ -196,7 +208,7 @@ def test_a_solver_that_gives_up_leaves_gaps_and_no_more():
 
     data = judged(results)
     verdict = words(data)
-    assert {verdict[claim] for claim in (1, 2, 5, 6, 7, 8, 9)} == {NOT_DECIDED}
+    assert {verdict[claim] for claim in (1, 2, 5, 6, 7, 8, 9, 10)} == {NOT_DECIDED}
     assert np.isnan(data["bore_paper"]).all()
     assert "patch_share" not in data
     assert "none" in studies_page(data)
@@ -232,6 +244,39 @@ def test_margins_are_of_the_numbers_beside_them(claims):
     assert value == pytest.approx([friction(request) for request in requests])
     assert margin == pytest.approx(value - against)
     assert (claims["check_error"].values[own] == 1e-4).all()
+
+
+def single_spring(amplitude, velocity):
+    """Friction of a spring under the indentation 1 + amplitude sin t (M. Popov 2020, Eqs 25, 31).
+
+    The spring sticks when the indentation begins to rise faster than the spring is stretched, until
+    its force equals the friction bound again.
+    """
+    start = -np.arccos(velocity / amplitude)
+
+    def lack(t):
+        return amplitude * (np.sin(t) - np.sin(start)) - velocity * (t - start)
+
+    end = brentq(lack, -start, start + 2.0 * np.pi)
+    return 1.0 - quad(lack, start, end)[0] / (2.0 * np.pi)
+
+
+def test_friction_of_a_flat_end_is_extrapolated_to_a_single_spring(claims):
+    own = claims["check_part"].values == "sine_near"
+    value, error, amplitude, velocity = (
+        claims[f"check_{n}"].values[own] for n in ("value", "error", "amplitude", "velocity")
+    )
+    exact = list(map(single_spring, amplitude, velocity))
+    assert np.all(np.abs(value - exact) <= error)
+    assert value == pytest.approx(exact, abs=5e-6)
+
+
+def test_largest_error_of_eq_37():
+    ratios = np.linspace(0.005, 0.995, 199)
+    errors = [single_spring(1.0, ratio) - eq37(1.0, ratio) for ratio in ratios]
+    assert max(errors) == pytest.approx(0.0144, abs=5e-5)
+    assert ratios[np.argmax(errors)] == pytest.approx(0.105)
+    assert min(errors) >= 0.0
 
 
 def test_what_the_papers_run_is_off_by_is_split(claims):

@@ -167,7 +167,7 @@ def test_the_claims_are_a_dataset_a_page_and_figures(tmp_path):
     message = project.run("results/figures/claims_static.png")
     results = project.folder / "results"
     with netcdf.whole(results / "claims.nc") as data:
-        assert data["claim"].values.tolist() == list(range(1, 10))
+        assert data["claim"].values.tolist() == list(range(1, 11))
         assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
         stored = {path.stem for path in results.rglob("*/*/??/*.json")}
         assert set(data["run"].values) <= stored

@@ -1,4 +1,4 @@
-"""Requests for the runs by which the statements of the paper are judged.
+"""Requests for the runs by which the statements are judged.
 
 The module `parts` judges the results and gets the requests from the functions of this module. Most
 requests are points at the tolerance of the study. The others are single runs: the paper's own runs,
@@ -33,6 +33,10 @@ contact."""
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
+STIFF_EXPONENTS = (25, 50, 100)
+"""Exponents of the indenters from which a flat end, with a constant stiffness, is extrapolated."""
+STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
+"""Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
 RUNS_PER_JOB = 2
 """Number of the paper's own runs in one job."""
 
@@ -93,6 +97,17 @@ def transient(start: str, cells: str) -> dict:
         "travel": number(TRAVEL),
         "cells": CELLS[cells],
     }
+
+
+def stiff(study: Claims, amplitude: float, velocity: float, exponent: int) -> dict:
+    """Return the request for a point with an oscillating indentation of a power-law indenter."""
+    place = point(study, "normal:indentation=1", velocity, amplitude)
+    return place | {"pressure": f"power:exponent={exponent}"}
+
+
+def stiff_points() -> list[tuple[float, float]]:
+    """Return pairs (amplitude, velocity) of the points with an oscillating indentation."""
+    return [(a, a * ratio) for a in STIFF_AMPLITUDES for ratio in STIFF_RATIOS]
 
 
 def field(velocity: float, cells: str) -> dict:
@@ -170,6 +185,7 @@ def pieces(study: Claims) -> tuple[list, list]:
         for a in limited(study, motion)
         for ask in (resolved_limit, limit_on_squares)
     ]
+    statics += [stiff(study, *p, n) for p in stiff_points() for n in STIFF_EXPONENTS]
     two = [transient(start, cells) for start in STARTS for cells in CELLS]
     two += [field(velocity, cells) for velocity in FIELD_VELOCITIES for cells in CELLS]
     short = [request for row in fast for request in row] + statics + steady(study) + two

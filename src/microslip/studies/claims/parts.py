@@ -35,7 +35,7 @@ from microslip.studies.claims.statements import (
 )
 from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import value_of
-from microslip.theory import paper
+from microslip.theory import constant_stiffness, paper
 
 Checks = Callable[[Claims, Runs], Iterable[Check]]
 Margin = Callable[[float, float], float]
@@ -204,6 +204,24 @@ def _tractions(run: Run) -> tuple[float, float]:
     return float((size / bound).min()), float(np.degrees(np.abs(turned).max()))
 
 
+def _flat_end(study: Claims, runs: Runs) -> Iterator[tuple]:
+    """Source of friction under an oscillating indentation of a contact with constant stiffness.
+
+    With the exponent n of the indenter, the friction differs from that of a flat end by a power
+    series in 1/n. The value has an error of third order. The error estimate is its difference from
+    the extrapolation of first order.
+    """
+    for amplitude, velocity in claims.stiff_points():
+        behind = [
+            runs(claims.stiff(study, amplitude, velocity, n)) for n in claims.STIFF_EXPONENTS[::-1]
+        ]
+        (fine, error), (middle, second), (coarse, third) = map(friction, behind)
+        first_order = 2.0 * fine - middle
+        value = (8.0 * fine - 6.0 * middle + coarse) / 3.0
+        error = abs(value - first_order) + (8.0 * error + 6.0 * second + third) / 3.0
+        yield {"amplitude": amplitude, "velocity": velocity}, value, error, behind
+
+
 # Formulas
 
 
@@ -224,6 +242,15 @@ def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
             float(eq(place["amplitude"])) for eq in (paper.static_slider, paper.static_transverse)
         )
         yield check(mu, zone, abs(slider - mu) - abs(zone - mu), error, behind, **place)
+
+
+def _sine_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
+    for place, mu, error, behind in _flat_end(study, runs):
+        sums, power = (
+            float(eq(*place.values()))
+            for eq in (constant_stiffness.sum_of_powers, constant_stiffness.single_power)
+        )
+        yield check(mu, sums, abs(power - mu) - abs(sums - mu), 2.0 * error, behind, **place)
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -381,6 +408,9 @@ CHECKS: dict[str, Checks] = {
     "rises_transverse": _rises_on_map("transverse"),
     "rises_bore": _rises_on_map("bore"),
     "rises_continuous_bore": _rises(lambda study: [claims.steady(study)], "velocity"),
+    "sine_near": _judge(_flat_end, constant_stiffness.sum_of_powers, within(GOOD)),
+    "sine_nearer": _sine_nearer,
+    "sine_below": _judge(_flat_end, constant_stiffness.sum_of_powers, above),
 }
 """Functions that return the checks of a part, by the name of the part."""
 

@@ -55,6 +55,7 @@ def command(request: dict) -> str:
         words = ["microslip point", motion, f"--velocity {request['velocity']}"]
         words += [f"--amplitude {request['amplitude']}"] if request["amplitude"] else []
         words += [f"--poisson {request['poisson']}"] if request["poisson"] != "0" else []
+        words += [f"--pressure {request['pressure']}"] if "pressure" in request else []
         words += [f"--model {request['model']}"] if request["model"] != "auto" else []
         words += [f"--{n} {request[n]}" for n in ("tolerance", "cells", "steps") if request[n]]
         return " ".join(words)

@@ -1,4 +1,4 @@
-"""The statements of the paper in plain words, and the criteria of their parts.
+"""The statements of the paper and one of M. Popov (2020) in plain words, and their criteria.
 
 A part is one aspect of a statement that numbers can confirm or refute. The checks of each part are
 in `parts`.
@@ -46,6 +46,8 @@ STATEMENTS = {
     "between left and right.",
     8: "However slow the forward motion, the oscillating bore never takes all friction away.",
     9: "Under any superposed motion friction rises with the forward velocity.",
+    10: "M. Popov (2020): if the indentation oscillates and the stiffness is constant, Eq 37 "
+    "approximates the friction and is more accurate than Eq 38.",
 }
 
 CRITERIA = {
@@ -107,11 +109,16 @@ CRITERIA = {
         "rises_bore": "oscillating bore: friction rises from one velocity to the next",
         "rises_continuous_bore": "continuous bore: friction rises from one velocity to the next",
     },
+    10: {
+        "sine_near": f"Eq 37 is within {GOOD:g} of the computed friction",
+        "sine_nearer": "Eq 37 is nearer to the computed friction than Eq 38",
+        "sine_below": "Eq 37 lies below the computed friction",
+    },
 }
 """Criterion of each part, by the number of the statement and the name of the part."""
 BESIDE = {
     *("rigid_below_squares", "slider_above_march", "zone_above", "force_steady", "steady_nears"),
     *("steady_near_below", "bore_zone_seen", "bore_zone_above_march", "bore_zone_printed"),
-    *("limit_positive_rings",),
+    *("limit_positive_rings", "sine_below"),
 }
 """Parts that do not affect the verdict on their statement."""
