@@ -272,6 +272,108 @@ def test_a_spreadsheet_with_decimal_commas_in_windows_1252_is_read_if_declared(t
     assert "such as utf-8 or cp1252" in refusal(f"file:{tmp_path / 'p.csv'},encoding=klingon")
 
 
+# Matrices without coordinates
+
+TEKSCAN = """DATA_TYPE FRAME
+ROWS 3
+COLS 4
+ROW_SPACING 0.5 mm
+ASCII_DATA @@
+
+Frame 1
+B,B,0,0
+B,1,2,0
+0,3,4,0
+@@
+"""
+MATRIX_LOADS = np.array([[0.1, 0.2], [0.3, 0.4]])
+
+
+@pytest.mark.parametrize(
+    ("content", "options"),
+    [
+        ("1,2\n3,4\n", ""),
+        ("# film, 2 x 2\n\n1 2\n3 4\n", ""),
+        ("1.0\t2.0\t\r\n3.0\t4.0\t\r\n", ""),
+        ("left;right\n1,0; 2,0\n3,0; 4,0\n;;\n", ",decimal=comma"),
+        ("1,0 2,0\n3,0 4,0\n", ",decimal=comma"),
+        (BOM + b"1,2\n3,4", ""),
+        (TEKSCAN, ""),
+        (TEKSCAN.replace("\n", "\r\n"), ""),
+    ],
+)
+def test_a_matrix_is_read_with_forward_down_the_lines(tmp_path, content, options):
+    name = f"{text(tmp_path / 'p.csv', content)},pitch=0.5 mm{options}"
+    assert pressure_named(name).cell_loads(2) == pytest.approx(MATRIX_LOADS, abs=1e-12)
+
+
+def test_a_matrix_is_the_grid_with_these_coordinates(tmp_path):
+    """Cells of 0.5 mm x 1 mm are those of the same file with coordinates."""
+    values = np.array([[1.0, 2.0, 3.0], [4.0, 7.0, 5.0]])
+    np.savetxt(tmp_path / "m.txt", values)
+    grid = pressure_named(csv(tmp_path / "p.csv", [0.0, 0.5], [0.0, 1.0, 2.0], values))
+    for pitch in ("0.5 mm x 1 mm", "0.5 mm x 0.1 cm", "500 um x 1 mm", "0.5 x 1"):
+        matrix = pressure_named(f"file:{tmp_path / 'm.txt'},pitch={pitch}")
+        assert matrix.cell_loads(12) == pytest.approx(grid.cell_loads(12), abs=1e-15), pitch
+        assert f",pitch={pitch}" in matrix.name
+
+
+def test_the_units_of_a_file_give_its_size_and_its_load(tmp_path):
+    """A uniform pressure of 5 MPa on 3 x 2 cells of 0.5 mm x 1 mm is 15 N on 1.5 mm x 2 mm."""
+    head = "forward [mm],lateral [um],pressure [N/mm^2]\n"
+    rows = [f"{x},{y},5\n" for x in (0.0, 0.5, 1.0) for y in (0, 1000)]
+    record = pressure_named(text(tmp_path / "p.csv", head + "".join(rows)))
+    assert record.size_m == pytest.approx(1e-3, rel=1e-12)
+    assert record.load_N == pytest.approx(15.0, rel=1e-12)
+    for other in record.readings[1:]:
+        assert other.load_N == pytest.approx(15.0, rel=1e-12)
+    samples = pressure_named(f"file:{tmp_path / 'p.csv'},grid=samples")
+    assert samples.size_m == pytest.approx(0.5e-3, rel=1e-12)  # from point to point
+    assert samples.load_N == pytest.approx(5.0, rel=1e-12)
+    units = {"forward": "um", "lateral": "um"}
+    assert pressure_named(netcdf(tmp_path / "p.nc", units=units)).load_N is None
+    text(tmp_path / "m.csv", "1,1\n1,1\n")
+    assert pressure_named(f"file:{tmp_path / 'm.csv'},pitch=2 um").size_m == pytest.approx(2e-6)
+    assert pressure_named(f"file:{tmp_path / 'm.csv'},pitch=2").size_m is None
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "problem"),
+    [
+        ("", "pitch=1 mm", "no row of numbers"),
+        ("0,5;1,2\n0,5;1,2\n", "pitch=1 mm", "line 1: '0,5' has a decimal comma"),
+        ("0.5;1.2\n0.5;1.2\n", "pitch=1 mm,decimal=comma", "no points where commas are decimal"),
+        ("1,2\n3\n", "pitch=1 mm", "line 2: 1 cells, but 2 in line 1"),
+        ("1,2\n3,x\n", "pitch=1 mm", "line 2: pressure is 'x'; allowed: a number"),
+        ("1,\n3,4\n", "pitch=1 mm", "line 2: 2 cells, but 1 in line 1"),
+        ("1,x\n3,4\n5,6\n", "pitch=1 mm", "line 1: 'x' between numbers"),
+        ("1,,2\n3,4,5\n", "pitch=1 mm", "line 1: '' between numbers"),
+        ("1,2\n3,-4\n", "pitch=1 mm", "line 2: pressure is -4; allowed: a finite number"),
+        ("1,2\n3,nan\n", "pitch=1 mm", "line 2: pressure is nan"),
+        ("1,2\n\n3,4\n", "pitch=1 mm", "line 2: no row of the matrix"),
+        ("1,2\n# x\n3,4\n", "pitch=1 mm", "line 2: no row of the matrix"),
+        ("1;1.100\n900;1\n", "pitch=1 mm", "part thousands"),
+        ("1,2\n", "pitch=1 mm", "a matrix of 1 x 2; allowed: two rows and two columns"),
+        (TEKSCAN.replace("@@\n", "Frame 2\n", 2), "pitch=1 mm", "line 11: 2 cells, but 4"),
+        ("x,0,1,2,3\n0,5,6,8,5\n1,5,7,8,5\n", "pitch=1 mm", "line 1: 'x' between numbers"),
+        ("0,0,.33,.67,1\n0,5,6,8,5\n1,5,7,8,5\n", "pitch=1 mm", "first row look like coordinates"),
+        ("9,4\n3,6\n2,8\n1,5\n0,6\n", "pitch=1 mm", "first column look like coordinates"),
+        (PLAIN, "pitch=1 mm", "line 1: a heading of columns; allowed without pitch only"),
+        ("1,2\n3,4\n", "pitch=-1 mm", "pitch is '-1 mm'; allowed: a length such as 0.5 mm"),
+        ("1,2\n3,4\n", "pitch=0 mm", "pitch is '0 mm'"),
+        ("1,2\n3,4\n", "pitch=1 mm x 1 mm x 1 mm", "pitch is '1 mm x 1 mm x 1 mm'"),
+        ("1,2\n3,4\n", "pitch=1 N", "[N] is no known unit of length"),
+        ("1,2\n3,4\n", "pitch=1 mm x 2", "forward alone has a unit"),
+        ("1,2\n3,4\n", "pitch=1 mm,pitch=1 mm", "pitch occurs twice"),
+        ("1,2\n3,4\n", "pitch=0,5 mm", "allowed after the path: grid=cells or grid=samples, and"),
+        ("1,2\n3,4\n", "grid=cells", "or a matrix of pressures alone, with pitch=0.5 mm"),
+        (b"CDF\x01", "pitch=1 mm", "pitch is for a matrix in a CSV file"),
+    ],
+)
+def test_a_file_that_is_no_clear_matrix_is_refused(tmp_path, content, options, problem):
+    assert problem in refusal(f"{text(tmp_path / 'p.csv', content)},{options}")
+
+
 @pytest.mark.parametrize(
     ("content", "problem"),
     [

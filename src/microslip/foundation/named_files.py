@@ -26,7 +26,7 @@ DIGITS = 16
 """Number of hexadecimal digits of a digest in a name."""
 MOST_BYTES = 100_000_000
 """Largest size of a file."""
-OPTIONS = re.compile(r"(?:^|,)(grid|sha256|decimal|encoding)=([^,]*)$")
+OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
 """Decimal marks, by the words that represent them in names."""
 EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,grid=samples"
@@ -49,6 +49,9 @@ class NamedFile:
         First DIGITS hexadecimal digits of the SHA-256 of the content.  It is empty if unknown.
     decimal, encoding : str
         Decimal mark, which is a key of DECIMALS, and encoding of the file.
+    pitch : str
+        Distance between the cells of a matrix of pressures, see pressures.grid_units.pitch.  It is
+        empty for a file with coordinates.
     """
 
     path: str
@@ -56,6 +59,7 @@ class NamedFile:
     digest: str = ""
     decimal: str = "point"
     encoding: str = "utf-8"
+    pitch: str = ""
 
     @property
     def name(self) -> str:
@@ -69,7 +73,7 @@ class NamedFile:
 
     def _text(self, file: str) -> str:
         usual = NamedFile("")
-        options = {name: getattr(self, name) for name in ("grid", "decimal", "encoding")}
+        options = {name: getattr(self, name) for name in ("grid", "pitch", "decimal", "encoding")}
         unusual = [f",{k}={v}" for k, v in options.items() if v != getattr(usual, k)]
         return f"{PREFIX}{file}" + "".join(unusual)
 
@@ -155,7 +159,9 @@ def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> 
         except OSError:  # a name that the system does not accept
             pass
     looked = ", ".join(str(place) for place in places)
-    hint = "; allowed after the path: grid=cells or grid=samples" if "," in file.path else ""
+    hint = ""
+    if "," in file.path:
+        hint = "; allowed after the path: grid=cells or grid=samples, and pitch=0.5 mm"
     raise InputError(
         "pressure", name, f"{file.path} cannot be read: No such file; looked for {looked}{hint}"
     )

@@ -5,8 +5,8 @@ A CSV file has a heading with the columns forward, lateral and pressure, and one
 point.  A netCDF file has a variable `pressure` with the coordinates `forward` and `lateral`.  By
 default a value is the mean over the cell around its point, as sensors measure it; the load is then
 the sum of values times cell areas.  With ",grid=samples" after the path, values apply at the points
-and are interpolated bilinearly. ",decimal=comma" and ",encoding=cp1252" describe the format of a
-CSV file."""
+and are interpolated bilinearly. ",pitch=0.5 mm" reads a matrix of pressures without coordinates
+(see grid_matrix.py). ",decimal=comma" and ",encoding=cp1252" describe the format of a CSV file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import PurePath
 
 from microslip.foundation import csv_text, named_files
 from microslip.foundation.errors import InputError
-from microslip.pressures import grid_csv, grid_netcdf
+from microslip.pressures import grid_csv, grid_matrix, grid_netcdf
 from microslip.pressures.grid import READINGS
 from microslip.pressures.pressure import Measured, Pressure
 
@@ -66,13 +66,20 @@ def _of_content(file: named_files.NamedFile, content: bytes) -> Measured:
     for begins, kind in PACKED.items():
         if content.startswith(begins):
             raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
+    text = named_files.DECIMALS[file.decimal], file.encoding
     if content.startswith(grid_netcdf.BEGINNINGS):
-        return Measured.on_grid(file.name, *grid_netcdf.grid(content), file.grid)
-    if PurePath(file.path).suffix.lower() in NETCDF:
+        if file.pitch:
+            raise ValueError("pitch is for a matrix in a CSV file; allowed for netCDF: coordinates")
+        values, units = grid_netcdf.grid(content)
+    elif PurePath(file.path).suffix.lower() in NETCDF:
         raise ValueError("not a netCDF file that can be read: it does not begin as one does")
-    decimal = named_files.DECIMALS[file.decimal]
-    try:
-        csv_text.check_format(decimal, file.encoding)
-    except InputError as error:
-        raise InputError("pressure", file.encoding, error.allowed) from None
-    return Measured.on_grid(file.name, *grid_csv.grid(content, decimal, file.encoding), file.grid)
+    else:
+        try:
+            csv_text.check_format(*text)
+        except InputError as error:
+            raise InputError("pressure", file.encoding, error.allowed) from None
+        if file.pitch:
+            values, units = grid_matrix.grid(content, file.pitch, *text)
+        else:
+            values, units = grid_csv.grid(content, *text)
+    return Measured.on_grid(file.name, *values, file.grid, units)

@@ -57,9 +57,11 @@ def read_grids(
     axes = [np.asarray(axis, float) for axis in (forward, lateral)]
     points = [_even(label, axis) for label, axis in zip(AXES, axes, strict=True)]
     _refuse(axes[0], axes[1], values)
-    values = values / values.max()
-    points = _in_steps(points)
-    grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
+    peak, (points, step) = float(values.max()), _in_steps(points)
+    grid, other = (
+        _grid(points, values / peak, kind, step, peak)
+        for kind in sorted(READINGS, key=reading.__ne__)
+    )
     return {
         "": grid,
         f"read as {other.reading}": other,
@@ -100,9 +102,9 @@ def _even(label: str, axis: np.ndarray) -> np.ndarray:
     )
 
 
-def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
+def _in_steps(points: Sequence[np.ndarray]) -> tuple[list[np.ndarray], float]:
     """Return coordinates that start at 0, in units of the longer step, so that areas neither
-    overflow nor underflow.
+    overflow nor underflow, and this step.
 
     Raises InputError if one step is more than 1e12 times the other.
     """
@@ -114,10 +116,11 @@ def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
             tuple(map(float, steps)),
             "allowed are steps in one unit of length",
         )
-    return [
+    scaled = [
         np.arange(len(places)) * (step / longest)
         for places, step in zip(points, steps, strict=True)
     ]
+    return scaled, float(longest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,11 +172,16 @@ class _Axis:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Values (n, m) on a grid over the smallest rectangle that contains all pressure."""
+    """Values (n, m) on a grid over the smallest rectangle that contains all pressure.
+
+    step, peak: length 1 in the unit of the coordinates, and value 1 in the unit of the pressure.
+    """
 
     forward: _Axis
     lateral: _Axis
     values: np.ndarray
+    step: float = 1.0
+    peak: float = 1.0
 
     @property
     def reading(self) -> str:
@@ -207,8 +215,12 @@ class Grid:
 
     def largest(self) -> float:
         """Largest pressure divided by F_z / a^2."""
-        edges = (side.edges(1) for side in (self.forward, self.lateral))
-        return float(self.values.max()) * self.half**2 / float(self.loads(*edges).sum())
+        return float(self.values.max()) * self.half**2 / self.total
+
+    @property
+    def total(self) -> float:
+        """Integral of the values over the rectangle."""
+        return float(self.loads(self.forward.edges(1), self.lateral.edges(1)).sum())
 
     def mean_distance(self) -> float:
         """Mean distance from the centre, weighted with the pressure and divided by a.  It is exact
@@ -220,7 +232,9 @@ class Grid:
         return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
 
 
-def _grid(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
+def _grid(
+    points: Sequence[np.ndarray], values: np.ndarray, reading: str, unit: float, peak: float
+) -> Grid:
     axes = []
     for number, places in enumerate(points):
         loaded = np.flatnonzero(values.any(axis=1 - number))
@@ -234,13 +248,14 @@ def _grid(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Gri
         axes.append(_Axis(places[first : last + 1], low, high, step, reading))
         values = values.take(range(first, last + 1), axis=number)
     forward, lateral = axes
-    return Grid(forward, lateral, values)
+    return Grid(forward, lateral, values, unit, peak)
 
 
 def _coarsened(grid: Grid) -> Grid:
     forward, along = grid.forward.coarsened()
     lateral, across = grid.lateral.coarsened()
-    return Grid(forward, lateral, along @ grid.values @ across.T)
+    values = along @ grid.values @ across.T
+    return replace(grid, forward=forward, lateral=lateral, values=values)
 
 
 def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:

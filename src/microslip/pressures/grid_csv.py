@@ -9,19 +9,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from microslip.foundation import csv_text
-from microslip.pressures import grid_units
-from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
+from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_units
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 SAME = 1e-9
 """Coordinates count as equal if they differ by less than this fraction of their range."""
-ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
+ALLOWED = (
+    "forward,lateral,pressure in any order, with units such as forward [mm] if at all; or a matrix "
+    "of pressures alone, with pitch=0.5 mm after the path"
+)
 
 
 def grid(
     content: bytes, decimal: str = ".", encoding: str = "utf-8"
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
+    """Return the coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m), and their
+    units.
 
     Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
     ignored.
@@ -48,15 +51,16 @@ def grid(
         words = [
             csv_text.with_point(where, name, cells[i], decimal) for i, name in places_and_names
         ]
-        rows.append([_number(where, *word) for word in zip(COLUMNS, words, strict=True)])
+        rows.append([number(where, *word) for word in zip(COLUMNS, words, strict=True)])
         places.append(where)
         thousands.see(where, words)
         if len(rows) > MOST_POINTS:
             raise ValueError(f"line {where}: more than {MOST_POINTS} points; allowed: at most that")
     thousands.refuse()
     table = np.array(rows, float).reshape(-1, 3)
-    table *= grid_units.factors(units)
-    return _filled(table, places)
+    ratio, sizes = read_units(units)
+    table[:, 1] *= ratio
+    return _filled(table, places), sizes
 
 
 def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
@@ -72,7 +76,9 @@ def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]
     raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
 
 
-def _number(where: int, name: str, word: str) -> float:
+def number(where: int, name: str, word: str) -> float:
+    """The number of a word.  Raises ValueError unless it is finite, and at least 0 for a
+    pressure."""
     if not NUMBER.fullmatch(word):
         raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
     value = float(word)

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from microslip.pressures import grid_units
-from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
+from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,8 +24,9 @@ MB."""
 ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 
-def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m).
+def grid(content: bytes) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
+    """Return the coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m), and
+    their units.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def _refuse_oversized(path: Path) -> None:
                 )
 
 
-def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _grid(data: xr.Dataset) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
     missing = [name for name in COLUMNS if name not in data.variables]
     if missing:
         raise ValueError(f"there is no variable {missing[0]}; {ALLOWED}")
@@ -85,14 +85,13 @@ def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise ValueError(f"{data['pressure'].size} points; allowed: at most {MOST_POINTS}")
     if not data["pressure"].size:
         raise ValueError("no points; allowed: two or more along each coordinate")
-    factors = grid_units.factors([_unit(name, data[name].attrs) for name in COLUMNS])
+    ratio, units = read_units([_unit(name, data[name].attrs) for name in COLUMNS])
     forward, lateral, values = (
         np.array(data[name].transpose(*(d for d in COLUMNS if d in data[name].dims)), float)
-        * factor
-        for name, factor in zip(COLUMNS, factors, strict=True)
+        for name in COLUMNS
     )
     along, across = np.argsort(forward), np.argsort(lateral)
-    return forward[along], lateral[across], values[np.ix_(along, across)]
+    return (forward[along], lateral[across] * ratio, values[np.ix_(along, across)]), units
 
 
 def _unit(name: str, attributes: Mapping[str, object]) -> str | None:

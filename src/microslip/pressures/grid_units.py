@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Sequence
+
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
 EXAMPLES = {"forward": "mm", "lateral": "mm", "pressure": "MPa"}
 MOST_POINTS = 1_000_000
 LONGEST = 24
 """Largest number of characters of a unit."""
+PITCH = re.compile(r"(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(.*)", re.A)
+"""Pattern of a number with or without a unit."""
+ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.5 mm x 0.6 mm"
 
 
-def factors(units: list[str | None]) -> list[float]:
-    """Factors for each of COLUMNS that convert both coordinates to the same unit.
+Units = tuple[float | None, float | None]
+"""Unit of the coordinates, m, and unit of the pressure, Pa; None for dimensionless values."""
+NO_UNITS: Units = None, None
 
-    The unit of the pressure is checked, but its factor is always 1.
+
+def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
+    """Unit of the lateral coordinate divided by that of the forward coordinate, and the Units.
 
     Parameters
     ----------
-    units : list of str or None
-        Unit of each column; None or "" if a column has no unit.
+    units : sequence of str or None
+        Unit of each of COLUMNS; None or "" if a column has no unit.
 
     Raises
     ------
@@ -29,15 +39,31 @@ def factors(units: list[str | None]) -> list[float]:
     if bool(texts[0]) != bool(texts[1]):
         with_unit = COLUMNS[0] if texts[0] else COLUMNS[1]
         raise ValueError(f"{with_unit} alone has a unit; allowed: one for both coordinates or none")
-    along, across, _ = (_factor(name, text) for name, text in zip(COLUMNS, texts, strict=True))
+    along, across, size = (_factor(name, text) for name, text in zip(COLUMNS, texts, strict=True))
     if (along is None) != (across is None):
         raise ValueError(
             f"forward [{texts[0]}] and lateral [{texts[1]}] are not the same kind; allowed: two "
             "lengths, or two numbers"
         )
     if along is None or across is None or texts[0] == texts[1]:
-        return [1.0, 1.0, 1.0]
-    return [1.0, across / along, 1.0]
+        return 1.0, (along, size)
+    return across / along, (along, size)
+
+
+def read_pitch(text: str) -> tuple[float, float, Units]:
+    """Forward and lateral distance between the cells of a matrix in one unit, and the Units.
+
+    text: a length such as "0.5 mm" for both distances, or "0.5 mm x 0.6 mm".
+
+    Raises ValueError if the text has another form, or if a distance is not above 0.
+    """
+    matches = [PITCH.fullmatch(part.strip()) for part in text.split(" x ")]
+    lengths = [(float(one[1]), one[2]) for one in matches if one]
+    if not len(lengths) == len(matches) <= 2 or not all(0.0 < one < math.inf for one, _ in lengths):
+        raise ValueError(f"pitch is {text[:40]!r}; {ALLOWED_PITCH}")
+    (forward, unit), (lateral, other) = lengths[0], lengths[-1]
+    ratio, units = read_units([unit, other, None])
+    return forward, lateral * ratio, units
 
 
 def _factor(name: str, text: str) -> float | None:

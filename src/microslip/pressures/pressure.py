@@ -27,6 +27,7 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.grid import READINGS, Grid, read_grids
+from microslip.pressures.grid_units import NO_UNITS, Units
 
 
 @dataclass(frozen=True)
@@ -242,11 +243,14 @@ class Measured(Pressure):
         Name of the pressure, with a digest of the values.
     grid : grid.Grid
         The values.
+    units : tuple
+        Units of the coordinates and of the values, see grid_units.Units.
     """
 
     text: str
     grid: Grid
     readings: tuple[Measured, ...] = ()
+    units: Units = NO_UNITS
 
     summary = "a pressure on a grid"
     mirrored = False
@@ -259,11 +263,14 @@ class Measured(Pressure):
         lateral: np.ndarray,
         values: np.ndarray,
         reading: str = "cells",
+        units: Units = NO_UNITS,
     ) -> Measured:
-        """Create a pressure with this name; the other arguments are those of `grid.read_grids`."""
+        """Create a pressure with this name and these Units; the other arguments are those of
+        `grid.read_grids`."""
         grids = read_grids(forward, lateral, values, reading)
         grid = grids.pop("")
-        return cls(name, grid, tuple(cls(f"{name} ({kind})", one) for kind, one in grids.items()))
+        others = [cls(f"{name} ({kind})", one, units=units) for kind, one in grids.items()]
+        return cls(name, grid, tuple(others), units)
 
     @property
     def name(self) -> str:
@@ -287,6 +294,20 @@ class Measured(Pressure):
     @cached_property
     def largest(self) -> float:
         return self.grid.largest()
+
+    @property
+    def size_m(self) -> float | None:
+        """Half the longer side of the contact, m; None if the coordinates have no unit."""
+        metre = self.units[0]
+        return None if metre is None else self.grid.half * self.grid.step * metre
+
+    @property
+    def load_N(self) -> float | None:
+        """Integral of the pressure over the contact, N; None without units."""
+        metre, pascal = self.units
+        if metre is None or pascal is None:
+            return None
+        return self.grid.total * self.grid.peak * pascal * (self.grid.step * metre) ** 2
 
     def cell_loads(self, cells: int) -> np.ndarray:
         """Compute the load on each square, (cells, cells)."""
