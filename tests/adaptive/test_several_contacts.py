@@ -6,7 +6,7 @@ import pytest
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.models.driven_body import Body
-from microslip.motions.body_contacts import contacts_of
+from microslip.motions.body_contacts import BodyContact, contacts_of
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
@@ -378,3 +378,60 @@ def test_loads_in_antiphase_let_a_body_walk_that_two_in_phase_hold():
     for contacts in ("phase=0", "phase=0;phase=0"):
         together = microslip.solve(motion, contacts=contacts, **settings)
         assert "runs away" in together.reason and not together.converged
+
+
+ASPERITIES = 40
+DEPTHS = -np.log((np.arange(ASPERITIES) + 0.5) / ASPERITIES)
+"""Depths of asperities with exponential heights, divided by the standard deviation."""
+
+
+def rough(motion, velocity, amplitude):
+    """Friction of these asperities, which have equal radii.  Velocity and amplitude are in the
+    units of an asperity of depth 1."""
+    loads = DEPTHS**1.5 / np.mean(DEPTHS**1.5)
+    contacts = tuple(BodyContact(load=load) for load in loads)
+    unit = np.mean(DEPTHS**1.5) ** (2.0 / 3.0)
+    problem = Problem(motion_named(motion), velocity / unit, amplitude / unit, contacts=contacts)
+    return microslip.solve(problem)
+
+
+def mean_force_of_springs(velocity, amplitude, springs=400, steps=20_000):
+    """Mean force of Mindlin's contact under a forward drift and oscillation, from sliders in series
+    with springs.
+
+    Mindlin's force is the integral of min(u, y) 3/4 (1 - y)^(-1/2) over the slip displacements y
+    from 0 to 1.  With y = 1 - s^2, the density over s is constant, 3/2.
+    """
+    slip = 1.0 - ((np.arange(springs) + 0.5) / springs) ** 2
+    phase = np.linspace(-0.5, 1.5, steps + 1) * np.pi
+    change = np.diff(velocity * phase + amplitude * np.sin(phase))
+    stretch, periods = np.zeros(springs), 2 + int(2.0 / (2.0 * np.pi * velocity))
+    for _ in range(periods):
+        forces = [1.5 * stretch.mean()]
+        for step in change:
+            stretch = np.clip(stretch + step, -slip, slip)
+            forces.append(1.5 * stretch.mean())
+    return np.trapezoid(forces) / steps
+
+
+def test_the_friction_of_a_rough_contact_is_the_sum_over_its_asperities():
+    """The static limit of exponential heights is exp(-A) (Greenwood and Williamson)."""
+    weights = DEPTHS**1.5 / np.sum(DEPTHS**1.5)
+    for amplitude in (0.2, 1.0):
+        static = rough("longitudinal", 0.0, amplitude)
+        mindlin = np.sum(weights * np.maximum(1.0 - amplitude / DEPTHS, 0.0) ** 1.5)
+        assert static.mu_macro == pytest.approx(mindlin, abs=1e-9)
+        assert static.mu_macro == pytest.approx(np.exp(-amplitude), abs=0.02)
+
+
+@pytest.mark.slow
+def test_a_sliding_rough_contact_is_the_sum_over_springs_with_sliders():
+    weights = DEPTHS**1.5 / np.sum(DEPTHS**1.5)
+    some = slice(2, None, 9)
+    assert mean_force_of_springs(0.2, 1e-9) == pytest.approx(1.0, abs=1e-4)  # it slides everywhere
+    for depth in DEPTHS[some]:
+        alone = microslip.solve("longitudinal", 0.2 / depth, 0.8 / depth).mu_macro
+        springs = mean_force_of_springs(0.2 / depth, 0.8 / depth)
+        assert alone == pytest.approx(springs, abs=2e-4), depth
+    each = [microslip.solve("longitudinal", 0.2 / d, 0.8 / d).mu_macro for d in DEPTHS]
+    assert rough("longitudinal", 0.2, 0.8).mu_macro == pytest.approx(weights @ each, abs=1e-9)

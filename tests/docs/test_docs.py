@@ -57,6 +57,7 @@ LONG_PAGES = (
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
     "docs/how-to/force_and_spring.md",
+    "docs/how-to/rough_contacts.md",
     "docs/tutorials/datasets.md",
     "docs/tutorials/real_contact.md",
 )
@@ -102,6 +103,11 @@ NOT_RUN = {
 }
 """Reason for not running a block, by its page and the start of its first line."""
 
+PEERS = ("ContactMechanics", "tamaas")
+"""Packages of the extra `peers`.  A block that imports a missing one is compiled and not run."""
+SKIPPED = object()
+"""Output of a block that is not run."""
+
 Block = namedtuple("Block", "kind text line")
 
 
@@ -133,6 +139,12 @@ def reason_not_to_run(page, block):
         if where == page and block.text.startswith(start):
             return reason
     return ""
+
+
+def needs_missing_peer(block):
+    """Whether a Python block imports one of PEERS that is not installed."""
+    imported = re.findall(r"^(?:from|import) (\w+)", block.text, re.M)
+    return block.kind == "python" and any(p in imported and not find_spec(p) for p in PEERS)
 
 
 # The folder that pages run in
@@ -321,6 +333,10 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
             run_command(["bash", "-n", "-c", block.text], page, block, environment)
             message = None
             continue
+        if needs_missing_peer(block):
+            compile(block.text, page, "exec")
+            message = SKIPPED
+            continue
         file = file_of(block)
         if file:
             Path(file).parent.mkdir(parents=True, exist_ok=True)
@@ -335,6 +351,8 @@ def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
             message = run_snakefile(block, page, environment)
         elif block.kind == "text":
             assert message is not None, f"{where}: no block before it prints text"
+            if message is SKIPPED:
+                continue
             try:
                 assert_said(message, block.text, where)
             except AssertionError:
