@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+from dataclasses import replace
 
 import pytest
 from scipy.integrate import dblquad, quad
@@ -153,6 +154,52 @@ def test_the_largest_pressure_of_a_file_is_its_largest_value(grid, mean_height, 
     assert contact.largest_pressure == pytest.approx(BALL.load / 1e-8 / mean_height, rel=1e-12)
 
 
+UNIFORM = "".join(f"{x},{y},5\n" for x in range(40) for y in range(20))
+"""A pressure of 5 on 40 x 20 cells: half the longer side is 20, and the load is 4000."""
+
+
+@pytest.mark.parametrize(
+    ("heading", "options", "size", "load", "differences"),
+    [
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4e3, ()),
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.03e3, ()),
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.1e3, ("load",)),
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 3e3, ("load",)),
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 40e-3, 4e3, ("contact radius",)),
+        ("forward [mm],lateral [mm],pressure [MPa]", "", 2e-3, 4e6, ("contact radius", "load")),
+        ("forward [um],lateral [um],pressure [MPa]", "", 20e-6, 4e-3, ()),
+        ("forward [mm],lateral [mm],pressure", "", 20e-3, 3e3, ()),
+        ("forward [mm],lateral [mm],pressure", "", 40e-3, 3e3, ("contact radius",)),
+        ("forward,lateral,pressure [MPa]", "", 40e-3, 3e3, ()),
+        ("", ",pitch=1 mm", 20e-3, 4e3, ()),
+        ("", ",pitch=1 mm", 10e-3, 4e3, ("contact radius",)),
+        ("", ",pitch=1", 10e-3, 4e3, ()),
+    ],
+)
+def test_a_pressure_file_whose_units_contradict_the_inputs_is_reported(
+    heading, options, size, load, differences, tmp_path
+):
+    text = f"{heading}\n{UNIFORM}" if heading else 40 * f"{20 * '5 '}\n"
+    (tmp_path / "pad.csv").write_text(text)
+    contact = of_size(replace(BALL, load=load), size, f"file:{tmp_path / 'pad.csv'}{options}")
+    texts = contact.contradictions
+    assert [text.split(" is ")[0].removeprefix("the ") for text in texts] == [*differences]
+    if "load" in differences and load == 3e3:
+        assert texts[-1].startswith("the load is 3 kN, but 4 kN in the pressure file")
+
+
+def test_a_prediction_warns_of_a_pressure_file_that_contradicts_the_load(tmp_path):
+    (tmp_path / "pad.csv").write_text(f"forward [um],lateral [um],pressure [MPa]\n{UNIFORM}")
+    pad = {"pressure": f"file:{tmp_path / 'pad.csv'}", "contact_radius": "20 um"}
+    rigid = {"speed": "1 km/s", "tolerance": 0.1}
+    (text,) = [
+        t for t in microslip.predict("transverse", **ASKED | pad | rigid).warnings if "file" in t
+    ]
+    assert text.startswith("the load is 10 N, but 4 mN in the pressure file")
+    right = ASKED | pad | rigid | {"load": "4 mN"}
+    assert not any("file" in text for text in microslip.predict("transverse", **right).warnings)
+
+
 def test_a_cone_yields_at_its_tip_and_says_so_once():
     cone = {"contact_radius": "0.1 mm", "pressure": "power:exponent=1"}
     for hardness in ({}, {"hardness": "7 GPa"}):
@@ -161,7 +208,7 @@ def test_a_cone_yields_at_its_tip_and_says_so_once():
         assert "largest pressure  infinite, at the tip" in str(result)
         (about,) = [text for text in result.warnings if "pressure" in text and "tip" in text]
         mean = 10.0 / (math.pi * 1e-8)
-        assert f"the mean pressure is {mean:.2g} Pa" in about
+        assert f"the mean pressure is {float(f'{mean / 1e6:.2g}'):g} MPa" in about
         texts = [*result.warnings, *result.not_checked]
         assert not any("inf" in text.replace("infinite", "") for text in texts)
         assert not any("stay elastic" in text for text in texts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from microslip.foundation.errors import InputError
@@ -58,6 +59,11 @@ class TwoBodies:
     def with_load(self, load: float) -> TwoBodies:
         """Copy of the contact under another load, N."""
         return replace(self, load=load)
+
+    @property
+    def contradictions(self) -> Sequence[str]:
+        """Sentences for inputs that disagree."""
+        return ()
 
     @property
     def bodies(self) -> tuple[Material, Material]:

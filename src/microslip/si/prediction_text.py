@@ -20,6 +20,7 @@ from microslip.si.printed_lines import (
     prefixed,
     probability_text,
     runs_away,
+    speed_unit,
     unit_for,
 )
 from microslip.si.regimes import REGIMES
@@ -213,6 +214,11 @@ def _spread(record: Any, show: Show) -> list[str]:
     return show("spread", f"{', '.join(parts)}: {text}")
 
 
+def _largest_speed(record: Any) -> float:
+    """The speed with its error, m/s."""
+    return abs(record.speed_m_s) + (getattr(record, "speed_error_m_s", None) or 0.0)
+
+
 class _Texts(dict[str, Any]):
     """Texts of the columns of a Prediction: numbers with errors and units."""
 
@@ -220,8 +226,9 @@ class _Texts(dict[str, Any]):
         length, force = length_unit(record.u_lim_m), force_unit(record.friction_force_still_N)
         powers = [record.drag_power_W or 0.0, record.vibration_power_W or 0.0]
         watts = prefixed(max(map(abs, powers)) or 1.0, "W")
-        speed, self.record = (f"{length[0]}/s", length[1]), record
-        self.units = {"_m_s": speed, "_m": length, "_N": force, "_W": watts, "_Pa": ("MPa", 1e6)}
+        speed, self.record = speed_unit(_largest_speed(record), record.u_lim_m), record
+        pressure = prefixed(record.largest_pressure_Pa, "Pa")
+        self.units = {"_m_s": speed, "_m": length, "_N": force, "_W": watts, "_Pa": pressure}
         super().__init__(understood=record.understood, added=ADDED.get(record.motion, "vibration"))
         self["zero_N"] = in_unit(0.0, 0.0, force)
         less = 100.0 * record.force_reduction, 100.0 * record.mu_macro_error

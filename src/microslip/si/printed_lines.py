@@ -24,6 +24,8 @@ LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
 """Smallest value of u_lim in the unit of all lengths of an answer.  The contact radius is some
 hundred times larger, so that its value is between 1 and a few thousand."""
+LEAST_SPEED = 0.1
+"""Smallest value of the largest speed in the unit of all speeds of an answer."""
 NEWTONS = 1e-2, 1e4
 """Range of forces that are printed in a unit without a prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (
@@ -84,6 +86,16 @@ def in_unit(value: float, error: float, unit: tuple[str, float]) -> str:
 def length_unit(u_lim: float) -> tuple[str, float]:
     """The unit of all lengths of an answer."""
     return unit_for(u_lim, LENGTHS, LEAST_LENGTH)
+
+
+def speed_unit(speed: float, u_lim: float) -> tuple[str, float]:
+    """The unit of all speeds of an answer.
+
+    speed: largest speed, m/s; u_lim: replaces a speed that is 0 or not finite.
+    """
+    usual = speed and math.isfinite(speed)
+    name, size = unit_for(speed, LENGTHS, LEAST_SPEED) if usual else length_unit(u_lim)
+    return f"{name}/s", size
 
 
 def not_converged(prediction: Any) -> list[str]:

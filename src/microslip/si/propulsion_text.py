@@ -15,6 +15,7 @@ from microslip.si.printed_lines import (
     length_unit,
     line,
     prefixed,
+    speed_unit,
 )
 
 
@@ -30,7 +31,8 @@ def propulsion_text(real: Any) -> str:
         lines.append(line("groups", REFERENCE_LOADS_OF_DRIVING))
     stall = in_unit(real.stall_force_N, real.stall_force_error_N, force)
     lines.append(line("stall force", stall))
-    speed = ("mm/s", 1e-3)
+    speeds = np.abs(np.nan_to_num([*real.speed_m_s, real.no_load_speed_m_s]))
+    speed = speed_unit(float(speeds.max()), real.u_lim_m)
     if math.isfinite(real.no_load_speed_m_s):
         text = in_unit(real.no_load_speed_m_s, real.no_load_speed_error_m_s, speed)
         lines.append(line("no-load speed", text))
@@ -38,7 +40,7 @@ def propulsion_text(real: Any) -> str:
         power = prefixed(float(np.max(np.abs(real.power_in_W))), "W")
         watts = power[1]
         columns = {
-            "speed mm/s": (real.speed_m_s / speed[1], None),
+            f"speed {speed[0]}": (real.speed_m_s / speed[1], None),
             f"force {force[0]}": (real.force_N / force[1], real.force_error_N / force[1]),
             f"power out {power[0]}": (real.power_out_W / watts, real.power_out_error_W / watts),
             f"power in {power[0]}": (real.power_in_W / watts, real.power_in_error_W / watts),

@@ -7,13 +7,22 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
 from microslip.si.bodies import TwoBodies
+from microslip.si.printed_lines import prefixed
 
 ROUND = 1e-6
 """Largest relative difference of two radii that count as equal."""
+AGREES = 0.01
+"""Largest relative difference of sizes and loads that agree, for rounding to two or three
+digits."""
+DISAGREES = (
+    "the {what} is {value}, but {measured} in the pressure file: only the shape of the pressure in "
+    "the file is used"
+)
 
 
 @dataclass(frozen=True)
@@ -63,6 +72,26 @@ class ShapedContact(TwoBodies):
     def largest_pressure(self) -> float:
         """Largest pressure, Pa; infinite at the tip of a cone."""
         return self._record.largest * (self.load / self.size**2)
+
+    @property
+    def contradictions(self) -> list[str]:
+        """Sentences for a size or a load that differs from that of a pressure file with units.
+
+        A difference within the error of the reading of the file is accepted, see AGREES.
+        """
+        texts, readings = [], (self._record, *self._record.readings)
+        inputs = (("contact radius", self.size, "size_m", "m"), ("load", self.load, "load_N", "N"))
+        for what, value, name, unit in inputs:
+            sizes = [getattr(one, name, None) or value for one in readings]
+            if not (1.0 - AGREES) * min(sizes) <= value <= (1.0 + AGREES) * max(sizes):
+                text = {"value": _printed(value, unit), "measured": _printed(sizes[0], unit)}
+                texts.append(DISAGREES.format(what=what, **text))
+        return texts
+
+
+def _printed(value: float, unit: str) -> str:
+    name, size = prefixed(value, unit)
+    return number_text(value / size, unit=name)
 
 
 def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:

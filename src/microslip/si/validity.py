@@ -7,11 +7,14 @@ for contacts beyond this limit.  The page of the explorer also evaluates the rul
 from __future__ import annotations
 
 import math
+import re
 import sys
 from typing import NamedTuple
 
+from microslip.foundation.number_text import number_text
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, largest_slip_speed, mean_load
+from microslip.si.printed_lines import prefixed
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  The
@@ -55,11 +58,15 @@ class Rule(NamedTuple):
         or the name of a measure.  The rule applies if all conditions are true.  A condition on a
         missing measure is false.
     text : str
-        The sentence, a template of str.format with the measures.
+        The sentence, with measures as in {load:.2g} N, see MEASURE.
     """
 
     where: tuple[tuple, ...]
     text: str
+
+
+MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
+"""Pattern of a measure in a sentence: its name, the number of its digits, and its SI unit."""
 
 
 def _too_hard(side: str) -> Rule:
@@ -181,7 +188,21 @@ def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     """The warnings for a contact and its motion."""
     values = measures(contact, motion)
     first = (next((rule for rule in rules if _applies(rule, values)), None) for rules in CHECKS)
-    return [rule.text.format(**values) for rule in first if rule is not None]
+    texts = [_text(rule.text, values) for rule in first if rule is not None]
+    return [*contact.contradictions, *texts]
+
+
+def _text(template: str, values: dict[str, float | None]) -> str:
+    """The sentence of a rule.  A measure with a unit is printed with a prefix."""
+
+    def number(match: re.Match) -> str:
+        value, digits, unit = float(values[match[1]] or 0.0), int(match[2]), match[3]
+        if unit is None:
+            return f"{value:.{digits}g}"
+        name, size = prefixed(value, unit)
+        return number_text(value / size, unit=name, digits=digits)
+
+    return MEASURE.sub(number, template)
 
 
 def _applies(rule: Rule, values: dict[str, float | None]) -> bool:

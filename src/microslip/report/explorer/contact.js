@@ -170,8 +170,14 @@ function warningsOf(si, measures) {
   const holds = (rule) => rule.where.every(([left, factor, right]) =>
     value(left) !== null && value(right) !== null && value(left) > factor * value(right));
   return si.checks.map((rules) => rules.find(holds)).filter((rule) => rule !== undefined)
-    .map((rule) => rule.text.replace(/\{(\w+):\.(\d+)g\}/g, (_, name, count) =>
-      general(measures[name], Number(count))));
+    .map((rule) => rule.text.replace(/\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?/g, (_, name, count, unit) =>
+      unit ? withPrefix(si, measures[name], Number(count), unit) : general(measures[name], Number(count))));
+}
+
+// A number with the largest prefix of its unit that leaves it at least 1.
+function withPrefix(si, value, count, unit) {
+  const [prefix, size] = si.prefixes.find(([, one]) => value >= one) ?? si.prefixes.at(-1);
+  return `${Number(general(value / size, count))} ${prefix}${unit}`;
 }
 
 function uncheckedOf(si, { bodies }) {

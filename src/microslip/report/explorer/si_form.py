@@ -15,6 +15,7 @@ from microslip.si import validity
 from microslip.si.inputs import LARGEST_MU
 from microslip.si.materials import MATERIALS, Material
 from microslip.si.motions import MOTIONS
+from microslip.si.printed_lines import PREFIXES
 from microslip.si.quantities import read
 from microslip.theory.hertz import D_half
 
@@ -92,6 +93,7 @@ def packed() -> dict:
         "of_numbers": OF_NUMBERS,
         "materials": {name: _material(body) for name, body in MATERIALS.items()},
         "checks": [[rule._asdict() for rule in rules] for rules in validity.CHECKS],
+        "prefixes": PREFIXES,
         "properties": validity.PROPERTIES,
         "not_given": validity.MISSING,
         "whose": validity.SIDES,
