@@ -1,8 +1,10 @@
 # From the configuration to the figures:
 #
-#   config.yaml --> batches of points --> solve --> results/batches --> collect --> results/NAME.nc
-#                       results/points (the store) <--'    ^             draw --> results/figures
-#                       certified maps --> map ------------'          explore --> results/*.html
+#   config.yaml --> batches --> solve, map --> results/batches --> collect --> results/NAME.nc
+#                     results/points (the store) <--'               draw --> results/figures
+#                                                                explore --> results/*.html
+#
+# CONTRIBUTING.md follows one point along this way.
 #
 # The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
 # Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which
@@ -28,8 +30,6 @@ onstart:
 
 
 wildcard_constraints:
-    group="|".join(PLAN.groups),
-    certified="|".join(CONFIGURATION.certified) or "(?!)",
     batch="[0-9a-f]+",
     dataset="|".join(PLAN.datasets),
     figure="|".join(PLAN.figures),
@@ -83,6 +83,8 @@ rule solve:
         f"{RESULTS}/batches/{{group}}/{{batch}}.jsonl",
     log:
         f"{RESULTS}/logs/solve/{{group}}/{{batch}}.log",
+    wildcard_constraints:
+        group="|".join(PLAN.groups),
     conda:
         "workflow/envs/microslip.yaml"
     resources:
@@ -95,27 +97,16 @@ rule solve:
         "workflow/scripts/solve.py"
 
 
-# Solves all points of a certified map by several processes.
-rule map:
-    input:
-        ancient(lambda wildcards: kernels_for(wildcards.certified)),
-        again=lambda wildcards: made_again(
-            is_whole(f"batches/{wildcards.certified}/{wildcards.batch}.jsonl")
-        ),
-    output:
-        f"{RESULTS}/batches/{{certified}}/{{batch}}.jsonl",
+# Solves all points of a certified map, by several processes.
+use rule solve as map with:
     log:
-        f"{RESULTS}/logs/map/{{certified}}/{{batch}}.log",
-    conda:
-        "workflow/envs/microslip.yaml"
+        f"{RESULTS}/logs/map/{{group}}/{{batch}}.log",
+    wildcard_constraints:
+        group="|".join(CONFIGURATION.certified) or "(?!)",
     threads: 8
     resources:
         mem_mb=lambda wildcards, attempt, threads: 500 * attempt * (threads + 1),
         runtime=lambda wildcards, attempt: 120 * attempt,
-    params:
-        store=lambda wildcards, output: output[0].rpartition("/batches/")[0],
-    script:
-        "workflow/scripts/map.py"
 
 
 rule collect:
@@ -167,7 +158,6 @@ rule draw:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        names=lambda wildcards: PLAN.figures[wildcards.figure],
         made_of=lambda wildcards: PLAN.made_of(f"figures/{wildcards.figure}"),
     script:
         "workflow/scripts/draw.py"
@@ -195,7 +185,6 @@ rule explore:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        names=lambda wildcards: PLAN.products[f"pages/{wildcards.page}"].datasets,
         made_of=lambda wildcards: PLAN.made_of(f"pages/{wildcards.page}"),
     script:
         "workflow/scripts/explore.py"

@@ -28,8 +28,8 @@ from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.drift import Drift
-from microslip.sweeps import evaluate, map_refinement
-from microslip.sweeps.batches import PointRequests, answer
+from microslip.sweeps import batches, evaluate, map_refinement
+from microslip.sweeps.batches import answer
 from microslip.sweeps.store import Store
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "config.yaml"
@@ -84,7 +84,7 @@ def points_of(map_, number, seed):
             point["velocity"] = (float(f"{velocity:.6g}"),)
         else:
             point["drives"] = (("force", (_digits(0.0, map_.force, share),), True),)
-        requests += PointRequests(replace(map_.sweep, tolerance=tolerance, **point))
+        requests += batches.points_of(replace(map_.sweep, tolerance=tolerance, **point)).requests
     return requests
 
 

@@ -17,7 +17,7 @@ def summary(jobs, folder, cores, compiles=False):
 
 def jobs(group="bore", **changed):
     grid = load.from_mapping({"sweeps": {group: AXES | changed}}).sweeps[group]
-    return [(group, Batch(list(batches.PointRequests(grid))))]
+    return [(group, batches.points_of(grid))]
 
 
 def seconds_in(lines):

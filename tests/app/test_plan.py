@@ -73,7 +73,7 @@ def test_a_map_with_another_error_has_another_batch_and_the_sweep_has_not():
         return plan(sweeps={"transverse": {**AXES, "adaptive": adaptive}})
 
     before, after = certified(error=0.05), certified(error=0.06)
-    assert before.map_batch("certified_transverse") != after.map_batch("certified_transverse")
+    assert before.batch_files("certified_transverse") != after.batch_files("certified_transverse")
     assert before.batch_files("transverse") == after.batch_files("transverse")
     assert before.products_of("certified") == [
         "certified_transverse",

@@ -22,7 +22,7 @@ def configured(**drives):
 
 def test_axes_and_numbers_become_requests_in_the_order_of_the_dataset():
     sweep = configured(springs=SPRINGS | {"mass": 2}).drives["springs"]
-    requests = batches.PointRequests(sweep)
+    requests = batches.points_of(sweep).requests
     places = [(r["stiffness"], r["velocity"]) for r in requests]
     assert places == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
     assert {r["mass"] for r in requests} == {"2"}
@@ -30,7 +30,7 @@ def test_axes_and_numbers_become_requests_in_the_order_of_the_dataset():
 
 
 def test_a_force_stands_in_the_place_of_the_velocity():
-    requests = batches.PointRequests(configured(weights=WEIGHTS).drives["weights"])
+    requests = batches.points_of(configured(weights=WEIGHTS).drives["weights"]).requests
     assert [(r["amplitude"], r["force"], r["velocity"]) for r in requests][2:4] == [
         ("0.5", "1", None),
         ("1", "0.2", None),
@@ -39,7 +39,9 @@ def test_a_force_stands_in_the_place_of_the_velocity():
 
 def test_what_is_moved_is_asked_for_as_before():
     """Requests name their results by hashes, so one without a drive must not mention a drive."""
-    (request,) = batches.PointRequests(load.from_mapping({"sweeps": PAPER}).sweeps["transverse"])
+    (request,) = batches.points_of(
+        load.from_mapping({"sweeps": PAPER}).sweeps["transverse"]
+    ).requests
     names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
     assert set(request) == names | {"poisson", "amplitude", "velocity"}
     assert "drives" not in load.from_mapping({"sweeps": PAPER}).of_sweep("transverse")["sweep"]
@@ -86,7 +88,7 @@ def test_a_name_is_taken_once():
 def written(tmp_path, name, settings):
     configuration = configured(**{name: settings | {"tolerance": 1e-2}})
     sweep, store = configuration.drives[name], Store(tmp_path / "results")
-    records = [batches.answer(r, store)[0] for r in batches.PointRequests(sweep)]
+    records = [batches.answer(r, store)[0] for r in batches.points_of(sweep).requests]
     path = tmp_path / f"{name}.nc"
     sweep_dataset.write_sweep(path, sweep, records, [], configuration.of_sweep(name))
     return path
@@ -152,7 +154,7 @@ PAIR = {
 def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path):
     configuration = configured(pair=PAIR)
     sweep, store = configuration.drives["pair"], Store(tmp_path)
-    (request,) = batches.PointRequests(sweep)
+    (request,) = batches.points_of(sweep).requests
     assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
     points = [batches.answer(request, store)[0]]
     assert points[0]["result"]["velocity"] == 0.0  # the force is below the static limit, 0.7^1.5

@@ -89,7 +89,7 @@ from microslip.sweeps import batches
 given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
     "motion": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
 found = load.from_mapping(given, ask_solver=False)
-list(batches.PointRequests(found.sweeps["bore"]))
+batches.points_of(found.sweeps["bore"]).requests
 print("numpy" in sys.modules)
 """
 
@@ -110,12 +110,12 @@ def test_a_static_limit_is_allowed_where_the_solver_knows_it():
 
 
 def requests_of(**changes):
-    return list(sweep.PointRequests(configured(circle=CIRCLE | changes).extended["circle"]))
+    return sweep.points_of(configured(circle=CIRCLE | changes).extended["circle"]).requests
 
 
 def test_a_plain_point_is_asked_for_as_ever():
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
-    (expected,) = sweep.PointRequests(plain.sweeps["bore"])
+    (expected,) = sweep.points_of(plain.sweeps["bore"]).requests
     assert "pressure" not in expected
     (result,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
     assert result == expected
@@ -195,7 +195,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
         (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
     ):
         result = load.load(with_pressure(folder, name))
-        batches.append([*sweep.PointRequests(result.extended["pad"])])
+        batches.append(sweep.points_of(result.extended["pad"]).requests)
         assert str(tmp_path) not in json.dumps(result.of_sweep("pad"))
     assert all(requests == batches[0] for requests in batches)
     assert batches[0][0]["pressure"].startswith("file:sha256=")
@@ -205,7 +205,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
     result = load.from_mapping(handed, ask_solver=False)
-    assert [*sweep.PointRequests(result.extended["pad"])] == batches[0]
+    assert sweep.points_of(result.extended["pad"]).requests == batches[0]
     assert load.with_defaults_and_paths(handed) == handed
 
 
@@ -214,7 +214,7 @@ def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
     (tmp_path / "pad.csv").write_text(EVEN)
     grid = load.load(with_pressure(tmp_path, "file:pad.csv")).extended["pad"]
     store, path = Store(tmp_path / "results"), tmp_path / "pad.nc"
-    records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+    records = [sweep.answer(request, store)[0] for request in sweep.points_of(grid).requests]
     sweep_dataset.write_sweep(path, grid, records, [], {})
     with xr.open_dataset(path) as data:
         assert data.attrs["pressure"] == grid.pressure
@@ -227,7 +227,7 @@ def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
 def built(folder, name="circle", **changes):
     configuration = configured(**{name: CIRCLE | changes})
     grid, store = configuration.grids[name], Store(folder)
-    points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
+    points = (sweep.answer(request, store)[0] for request in sweep.points_of(grid).requests)
     path = folder / f"{name}.nc"
     sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
     with xr.open_dataset(path) as data:

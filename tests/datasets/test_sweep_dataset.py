@@ -38,7 +38,7 @@ def write(name, folder, path, grids=GRIDS):
     sweep_dataset.write_sweep(
         path,
         grid,
-        (batches.answer(request, store)[0] for request in batches.PointRequests(grid)),
+        (batches.answer(request, store)[0] for request in batches.points_of(grid).requests),
         [batches.answer(request, store)[0] for request in requests],
         configuration.of_sweep(name),
     )
@@ -207,7 +207,7 @@ def test_equal_results_give_equal_bytes(name, tmp_path, solver):
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
     configuration = load.from_mapping({"sweeps": GRIDS})
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
-    records = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+    records = [batches.answer(request, store)[0] for request in batches.points_of(grid).requests]
     for wrong in (records[:-1], [*records, records[0]]):
         with pytest.raises(ValueError, match="results for 6 points"):
             sweep_dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})

@@ -165,7 +165,7 @@ def write_sweeps(folder, names):
     store = Store(place)
     for name in names:
         grid = configuration.sweeps[name]
-        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+        points = [batches.answer(request, store)[0] for request in batches.points_of(grid).requests]
         settings = configuration.of_sweep(name)
         sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
         shutil.copy(place / f"{name}.nc", folder)

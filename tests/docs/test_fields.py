@@ -77,7 +77,10 @@ def written(name, folder):
     store, grid = Store(folder), configuration.sweeps[name]
     records = [
         [batches.answer(request, store)[0] for request in requests]
-        for requests in (batches.PointRequests(grid), batches.history_requests(configuration, name))
+        for requests in (
+            batches.points_of(grid).requests,
+            batches.history_requests(configuration, name),
+        )
     ]
     path = folder / f"{name}.nc"
     sweep_dataset.write_sweep(path, grid, *records, configuration.of_sweep(name))

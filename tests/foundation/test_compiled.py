@@ -42,7 +42,7 @@ def run(program, package, **environment):
 
 def of_kernels(package):
     """Digest in the name of the folder of compiled code, for a package."""
-    return Sources(package).of_kernels()
+    return Sources(package).kernels_digest
 
 
 @pytest.fixture(scope="module")

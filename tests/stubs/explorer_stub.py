@@ -26,7 +26,7 @@ def computed(folder, store):
     configuration = configured()
     datasets, periods = {}, {}
     for name, grid in configuration.sweeps.items():
-        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+        points = [batches.answer(request, store)[0] for request in batches.points_of(grid).requests]
         requests = explorer.period_requests(configuration, name)
         periods[name] = [batches.answer(request, store)[0] for request in requests]
         if name == BAD_POINT[0]:
@@ -74,7 +74,7 @@ def made_up_sweep(folder, configuration, name):
     result |= {"mu_torque": 0.5, "mu_torque_error": 1e-4, "model": "polar"}
     points = [
         {"result": result | {"mu_macro": 1 / (3 + k), "velocity": float(k)}, "versions": {}}
-        for k in range(len(batches.PointRequests(grid)))
+        for k in range(len(batches.points_of(grid).requests))
     ]
     path = folder / f"{name}.nc"
     sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))

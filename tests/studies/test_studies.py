@@ -76,9 +76,9 @@ def test_references_are_ordinary_points_and_tight():
     study = configured().accuracy
     request = accuracy_cost.truth(study.points["mid"])
     sweep_of_it = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
-    (point,) = batches.PointRequests(
+    (point,) = batches.points_of(
         load.from_mapping({"sweeps": {"transverse": sweep_of_it}}).sweeps["transverse"]
-    )
+    ).requests
     assert request == point
     assert accuracy_cost.truth(Point("transverse", 0.1, 0.5, 0.5))["tolerance"] == "3e-5"
     on_map = accuracy_cost.map_truth(study, study.points["mid"])
@@ -88,7 +88,7 @@ def test_references_are_ordinary_points_and_tight():
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     requests = [json.loads(text) for text in asked(study, configured())]
-    names = {batches.result_key(request, "d") for request in requests}
+    names = {batches.key_of(request, "d") for request in requests}
     assert len(names) == len({canonical_json(request) for request in requests})
     for request in requests:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())

@@ -25,7 +25,7 @@ def configured(**transverse):
 
 
 def requests_of(**transverse):
-    return list(sweep.PointRequests(configured(**transverse).sweeps["transverse"]))
+    return points_of(**transverse).requests
 
 
 @pytest.fixture
@@ -54,26 +54,26 @@ def test_single_runs_for_the_figures():
 
 
 def points_of(**transverse):
-    return sweep.PointRequests(configured(**transverse).sweeps["transverse"])
+    return sweep.points_of(configured(**transverse).sweeps["transverse"])
 
 
 @pytest.mark.parametrize("size", [1, 2, 4, 6, 50])
 def test_batches_of_points_hold_every_request_once_and_in_order(size):
     for points in (points_of(), points_of(velocity=list(range(1, 30)), poisson=[0, 0.3])):
-        cut = sweep.batches_of_points(points, size)
-        assert [request for batch in cut for request in batch.requests] == list(points)
+        cut = sweep.divide(points, size)
+        assert [request for batch in cut for request in batch.requests] == points.requests
         assert len({batch.name for batch in cut}) == len(cut)
 
 
 def test_the_mean_size_of_batches_is_the_one_asked_for():
     points = points_of(amplitude=list(range(1000)))
     for size in (1, 10, 100):
-        assert len(sweep.batches_of_points(points, size)) == pytest.approx(2000 / size, rel=0.5)
-    assert len(sweep.cut(list(points), 10)) == pytest.approx(200, rel=0.5)
+        assert len(sweep.divide(points, size)) == pytest.approx(2000 / size, rel=0.5)
+    assert len(sweep.cut(points.requests, 10)) == pytest.approx(200, rel=0.5)
 
 
 def names_of(size, **transverse):
-    return {batch.name for batch in sweep.batches_of_points(points_of(**transverse), size)}
+    return {batch.name for batch in sweep.divide(points_of(**transverse), size)}
 
 
 @pytest.mark.parametrize("amplitude", [0.5, 11.5, 40])
@@ -92,7 +92,7 @@ def test_a_velocity_more_changes_a_part_of_each_long_row():
 
 
 def test_a_batch_is_named_by_its_requests_and_the_code(monkeypatch):
-    (batch,) = sweep.batches_of_points(points_of(amplitude=[1]), 50)
+    (batch,) = sweep.divide(points_of(amplitude=[1]), 50)
     assert sweep.Batch(**json.loads(json.dumps(batch._asdict()))).name == batch.name
     name = batch.name
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
@@ -107,17 +107,17 @@ REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1
     [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
 )
 def test_everything_in_a_request_counts_for_the_name_of_its_result(name, value):
-    key = sweep.result_key(REQUEST, "d")
-    assert sweep.result_key({**REQUEST, name: value}, "d") != key
-    assert sweep.result_key(REQUEST, "e") != key
-    assert sweep.result_key(dict(reversed(REQUEST.items())), "d") == key
+    key = sweep.key_of(REQUEST, "d")
+    assert sweep.key_of({**REQUEST, name: value}, "d") != key
+    assert sweep.key_of(REQUEST, "e") != key
+    assert sweep.key_of(dict(reversed(REQUEST.items())), "d") == key
 
 
 def test_swapped_values_and_the_format_of_records_count(monkeypatch):
-    key = sweep.result_key(REQUEST, "d")
-    assert sweep.result_key({**REQUEST, "velocity": "1", "amplitude": "0.1"}, "d") != key
+    key = sweep.key_of(REQUEST, "d")
+    assert sweep.key_of({**REQUEST, "velocity": "1", "amplitude": "0.1"}, "d") != key
     monkeypatch.setattr(sweep, "RECORD_FORMAT", 99)
-    assert sweep.result_key(REQUEST, "d") != key
+    assert sweep.key_of(REQUEST, "d") != key
 
 
 def failing_at(monkeypatch, error, amplitude=2.0):

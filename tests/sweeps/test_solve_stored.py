@@ -47,7 +47,7 @@ def test_sweep_command_line_and_python_find_each_others_points(tmp_path, monkeyp
     calls = counting(monkeypatch)
     axes = {"velocity": [0.5], "amplitude": [1], "poisson": 0.3, "tolerance": 1e-2}
     grid = load.from_mapping({"sweeps": {"bore": axes}}).sweeps["bore"]
-    batches.run_batch(batches.PointRequests(grid), Store(tmp_path))
+    batches.run_batch(batches.points_of(grid).requests, Store(tmp_path))
     assert len(calls) == 1
     result = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
     options = ["--velocity", "0.5", "--amplitude", "1", "--poisson", "0.3", "--tolerance", "1e-2"]

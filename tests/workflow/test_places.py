@@ -228,7 +228,7 @@ def test_the_report_is_made_offline_and_holds_captions_and_what_made_the_dataset
     ]
     assert [name[:4] for name in raw if name.startswith("fig")] == [f"fig{i}" for i in range(1, 7)]
     assert "Figure 1.</strong>" in page and "Figure 2.</strong>" in page
-    assert "How far friction falls" in page
+    assert "how much vibration reduces the friction" in page
     assert "transverse: 4 points, all converged" in about
     assert f"source_digest: {source_digest.of_solver()}" in about
     assert "amplitude: [0.0, 1.0]" in about

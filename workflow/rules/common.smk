@@ -89,6 +89,7 @@ with refused_in_one_line():
 PLAN = Plan(CONFIGURATION)
 RESULTS = os.path.normpath(CONFIGURATION.results)
 
+# The end of the Snakefile defines PLACE: RESULTS with the prefix of a module.
 HERE = exists(os.devnull)  # False for results in a storage, where stamps cannot be read
 AGAIN = f"{RESULTS}/{stamps.AGAIN}"
 in_place = update if HERE else str  # keeps the old file until a job has written the new one
@@ -142,14 +143,14 @@ def datasets_for(product):
 
 
 def batch_of(group, name):
-    """A batch as JSON: the requests of a job."""
-    batch = PLAN.batches_in(group).get(name)
-    if batch is None:  # in a job on another machine
+    """A batch as JSON: the requests of a job; null for a certified map."""
+    if name not in PLAN.batches_in(group):  # in a job on another machine
         sys.exit(
             f"Error: the batch {name} of {group} was planned with another solver, or its times on "
             "another CPU: run again, on one kind of CPU"
         )
-    return canonical_json(batch._asdict())
+    batch = PLAN.batches_in(group)[name]
+    return canonical_json(batch and batch._asdict())
 
 
 def kernels_for(group):

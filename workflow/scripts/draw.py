@@ -9,8 +9,8 @@ from microslip.report.figures.data import loaded
 
 name = snakemake.wildcards.figure
 
-with product_job(snakemake, f"figures/{name}"):
-    files = zip(snakemake.params.names, snakemake.input.datasets, strict=True)
+with product_job(snakemake, f"figures/{name}") as (plan, _):
+    files = zip(plan.figures[name], snakemake.input.datasets, strict=True)
     figure = drawing.draw(name, {dataset: loaded(path) for dataset, path in files})
     for path in snakemake.output[:2]:
         drawing.save(figure, path)

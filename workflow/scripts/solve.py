@@ -1,4 +1,5 @@
-"""Compute a batch of requests: points of a sweep, single runs for a figure, or part of a study.
+"""Compute a batch: points of a sweep, single runs for a figure, part of a study, or all points of a
+certified map.
 
 Output: the records of the batch in the order of the requests, as JSON lines.  All numbers in them
 are dimensionless, except times (s) and memory (byte) of trials and scaling.  Each record is also
@@ -11,15 +12,37 @@ from microslip.app.job_log import job_log
 from microslip.foundation import named_files
 from microslip.sweeps import batches, store
 
-with job_log(snakemake.log[0]) as log:
+group, name = snakemake.wildcards.group, snakemake.wildcards.batch
+folder = store.Store(snakemake.params.store)
+
+
+def solved_batch(batch: batches.Batch) -> tuple[list[dict], dict]:
+    """Records of a batch of requests, and their statistics."""
     # Requests name files by their content.
     for sweeps in ("extended", "drives"):
         named_files.remember(sweep["pressure"] for sweep in snakemake.config[sweeps].values())
-    batch = batches.Batch(**json.loads(snakemake.params.batch))
-    if batch.name != snakemake.wildcards.batch:
+    if batch.name != name:
         raise batches.SourcesEdited("the solver")
-    records, summary = batches.run_batch(batch.requests, store.Store(snakemake.params.store))
-    store.write(snakemake.output[0], records, summary["final"])
-    log.info(
-        "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", summary
-    )
+    return batches.run_batch(batch.requests, folder)
+
+
+def solved_map() -> tuple[list[dict], dict]:
+    """Records of the points of a certified map, and their statistics."""
+    from microslip.app.plan import Plan
+    from microslip.config import load
+    from microslip.sweeps import map_refinement
+
+    plan = Plan(load.from_mapping(snakemake.config, ask_solver=False))
+    if name not in plan.batches_in(group):
+        raise batches.SourcesEdited("the solver")
+    map_ = plan.configuration.certified[group]
+    return map_refinement.solve_points(map_, folder, snakemake.threads)
+
+
+if __name__ == "__main__":  # not in the processes that solve points of a map
+    with job_log(snakemake.log[0]) as log:
+        batch = json.loads(snakemake.params.batch)
+        records, summary = solved_batch(batches.Batch(**batch)) if batch else solved_map()
+        store.write(snakemake.output[0], records, summary["final"])
+        line = "%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time"
+        log.info(line, summary)

@@ -31,17 +31,9 @@ def summary(
 ) -> list[str]:
     """Lines about the work of a run.
 
-    Parameters
-    ----------
-    jobs : iterable of (str, Batch or None)
-        Group and batch of each job that solves points.  The batch is None for a certified map.
-    folder : path
-        Folder of results.  Requests with a result in its store are not counted.  Its logs contain
-        the computing times of earlier batches.
-    cores : int
-        Number of jobs that run at the same time.
-    compiles : bool
-        Whether the run compiles the solver.
+    jobs: group and batch of each job that solves points; the batch is None for a certified map.
+    folder: folder of results, with the store and the logs of earlier batches.  cores: number of
+    jobs at the same time.  compiles: whether the run compiles the solver.
     """
     store, mean_time = Store(folder), cache(lambda group: _mean_time(Path(folder), group))
     count, slow, maps, seconds = Counter(points=0), 0, False, [0.0]

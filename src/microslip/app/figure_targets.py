@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Callable
 
-from microslip.config.records import Configuration
+from microslip.config.records import Configuration, Sweep
+from microslip.foundation.canonical import number
 from microslip.report.figures import drawing
 from microslip.studies import registry
 
@@ -24,66 +24,64 @@ TARGETS = {
 """Targets of the workflow for users, and the products of each."""
 
 
+def _span_maps(*grids: Sweep) -> bool:
+    return all(grid.spans_a_map for grid in grids)
+
+
+def _have_few_poissons(*grids: Sweep) -> bool:
+    few = all(1 < len(grid.poisson) <= drawing.MOST_POISSONS for grid in grids)
+    return few and _span_maps(*grids)
+
+
+def _have_one_amplitude(*grids: Sweep) -> bool:
+    return len({grid.amplitude for grid in grids}) == 1
+
+
+def _share_a_point(reference: Sweep, *drives: Sweep) -> bool:
+    pairs = [(reference.amplitude, drives[-1].amplitude), (reference.velocity, drives[-1].velocity)]
+    points = [({*map(number, axis or ())}, [*map(number, values or ())]) for axis, values in pairs]
+    return _have_one_amplitude(*drives) and all(
+        len(values) == 1 and axis.issuperset(values) for axis, values in points
+    )
+
+
+CONDITIONS: dict[str, tuple[Callable[..., bool], str]] = {
+    "fig2_transverse_map": (_span_maps, "several velocities and amplitudes"),
+    "fig6_bore_map": (_span_maps, "several velocities and amplitudes"),
+    "poisson": (
+        _have_few_poissons,
+        f"several velocities and amplitudes, and 2 to {drawing.MOST_POISSONS} Poisson's ratios",
+    ),
+    "drives": (_share_a_point, "one amplitude, and for the last one velocity, of the first"),
+    "pairs": (_have_one_amplitude, "equal amplitudes"),
+}
+"""Condition on the sweeps of a figure, and its text for a message."""
+
+
 def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
     """Figures for which the configuration has data, and the names of the datasets of each
     figure."""
-    datasets = _datasets(configuration)
     figures = {
         figure: names
         for figure, names in drawing.FIGURES.items()
-        if datasets >= set(names) and _is_drawable(figure, names, configuration)
+        if not why_no_figure(configuration, figure)
     }
     figures |= {drawing.figure_of(group): names for group, names in configuration.groups.items()}
     return figures | {name: (name,) for name in configuration.certified}
 
 
-def _datasets(configuration: Configuration) -> set[str]:
-    """Names of the datasets of all figures, except figures of groups and certified maps."""
-    return {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
-
-
-def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
-    """True if the datasets of a figure contain enough points to draw it.
-
-    A figure of a map needs several velocities and amplitudes.  A comparison needs datasets with
-    the same amplitude and velocity.
-    """
-    if figure == "drives":
-        reference, *drives, body = (configuration.grids[name] for name in names)
-        same = {grid.amplitude for grid in (*drives, body)} == {body.amplitude}
-        return (
-            same
-            and _has(reference.amplitude, body.amplitude)
-            and _has(reference.velocity, body.velocity)
-        )
-    if figure == "pairs":
-        return len({configuration.grids[name].amplitude for name in names}) == 1
-    if figure not in ("fig2_transverse_map", "fig6_bore_map", "poisson"):
-        return True
-    grids = [configuration.sweeps[name] for name in names]
-    if not all(grid.spans_a_map for grid in grids):
-        return False
-    few = all(1 < len(grid.poisson) <= drawing.MOST_POISSONS for grid in grids)
-    return few or figure != "poisson"
-
-
-def _has(axis: Sequence[float] | None, values: Sequence[float] | None) -> bool:
-    """True if `values` has a single value, and an axis contains it up to rounding."""
-    if axis is None or values is None:
-        return False
-    return len(values) == 1 and any(math.isclose(value, values[0]) for value in axis)
-
-
-def why_no_figure(configuration: Configuration, figure: str) -> str:
-    """The reason why a figure, a key of drawing.FIGURES, has no data in a configuration."""
+def why_no_figure(configuration: Configuration, figure: str) -> str | None:
+    """The reason why a configuration has no data for a figure, a key of drawing.FIGURES, or
+    None if it has."""
     names = drawing.FIGURES[figure]
-    missing = [name for name in names if name not in _datasets(configuration)]
-    if missing:
-        return f"{figure} needs the sweep {missing[0]}, which the configuration does not have"
-    return (
-        f"{figure} cannot be drawn from {' and '.join(names)}: a map needs several velocities and "
-        "amplitudes, and some figures need equal or several values of other axes"
-    )
+    datasets = {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
+    for name in names:
+        if name not in datasets:
+            return f"{figure} needs the sweep {name}, which the configuration does not have"
+    condition, text = CONDITIONS.get(figure, (None, ""))
+    if condition is None or condition(*(configuration.grids[name] for name in names)):
+        return None
+    return f"{figure} cannot be drawn from {' and '.join(names)}; needed: {text}"
 
 
 def heading_of(configuration: Configuration, dataset: str) -> str:

@@ -41,8 +41,8 @@ def requested(plan: Plan, folder: Path) -> set[str]:
     paths = {file for product in plan.products.values() for file in product.files}
     paths |= {stamps.stamp_of(product) for product in plan.products}
     paths |= {*plan.batch_files(*plan.groups, *certified)}
-    cut = [batch for group in plan.groups for batch in plan.batches_in(group).values()]
-    paths |= {_path_of(request) for batch in cut for request in batch.requests}
+    planned = [batch for group in plan.groups for batch in plan.batches_in(group).values()]
+    paths |= {_path_of(request) for batch in planned if batch for request in batch.requests}
     for name, map_ in certified.items():
         (file,) = plan.batch_files(name)
         try:

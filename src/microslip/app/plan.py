@@ -1,8 +1,7 @@
-"""Plan of a configuration.  It contains batches of requests, products, and the inputs of each
-product.
+"""Plan of a configuration: its batches of requests, its products, and the inputs of each product.
 
-The rules of the workflow use it.  It does not import Snakemake.  Its import is fast, since every
-process of Snakemake parses the workflow.
+The module does not import Snakemake.  Its import is fast, since every process of Snakemake parses
+the workflow.
 
 A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
 explorer ("pages/explorer").  A group of batches is named after its sweep, study or certified map.
@@ -13,7 +12,7 @@ of the explorer.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, cached_property
 from typing import Any, NamedTuple
@@ -81,7 +80,7 @@ class Plan:
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
         self.figures = figure_targets.drawable(configuration)
         self.products = dict(self._products())
-        self.batches_in = cache(self._batches_in)
+        self.batches_in = cache(self._batches_in)  # not @cache, which would keep every plan
         self.made_of = cache(self._made_of)
 
     # Batches
@@ -96,13 +95,17 @@ class Plan:
             *self.studies.values(),
         ]
 
-    def _batches_in(self, group: str) -> dict[str, Batch]:
-        """Batches of a group by name, in the order of the requests; {} for a certified map."""
+    def _batches_in(self, group: str) -> dict[str, Batch | None]:
+        """Batches of a group by name, in the order of the requests.
+
+        A certified map has one batch with all of its points.  It is None, since the requests depend
+        on the results.
+        """
         configuration = self.configuration
         name, _, runs = group.rpartition("_")
         if group in configuration.grids:
-            points = batches.PointRequests(configuration.grids[group])
-            blocks = batches.batches_of_points(points, configuration.points_per_job[group])
+            points = batches.points_of(configuration.grids[group])
+            blocks = batches.divide(points, configuration.points_per_job[group])
         elif runs == "histories":
             histories = batches.history_requests(configuration, name)
             blocks = [Batch(histories)] if histories else []
@@ -110,26 +113,19 @@ class Plan:
             periods = explorer.period_requests(configuration, name)
             blocks = [Batch(part) for part in batches.cut(periods, explorer.PERIODS_PER_JOB)]
         elif group in configuration.certified:
-            blocks = []
+            map_ = configuration.certified[group]
+            solver = source_digest.of_request(batches.points_of(map_.sweep).rows[0])
+            code = source_digest.of_modules(*REFINEMENT_CODE)
+            return {fingerprint(map_.settings, code, solver)[:20]: None}
         else:
             slow, fast = registry.pieces(group, configuration)
             blocks = [Batch(piece) for piece in (*slow, *fast)]
         return {batch.name: batch for batch in blocks}
 
-    def map_batch(self, name: str) -> str:
-        """Name of the batch with all points of a certified map."""
-        map_ = self.configuration.certified[name]
-        solver = source_digest.of_request(batches.PointRequests(map_.sweep).rows[0])
-        code = source_digest.of_modules(*REFINEMENT_CODE)
-        return fingerprint(map_.settings, code, solver)[:20]
-
     def batch_files(self, *groups: str) -> list[str]:
         """Paths of all batches of these groups, in the order of the groups."""
-        certified = self.configuration.certified
         return [
-            f"batches/{group}/{name}.jsonl"
-            for group in groups
-            for name in ([self.map_batch(group)] if group in certified else self.batches_in(group))
+            f"batches/{group}/{name}.jsonl" for group in groups for name in self.batches_in(group)
         ]
 
     # Products
@@ -178,7 +174,13 @@ class Plan:
             "certified": [name for name in configuration.certified if name not in drift],
         } | {study: [dataset] for dataset, study in self.studies.items()}
         if target in datasets:
-            return [*datasets[target], *self._figures_of(datasets[target])]
+            inputs, paper = set(datasets[target]), set(configuration.sweeps)
+            figures = [
+                f"figures/{figure}"
+                for figure, names in self.figures.items()
+                if (set(names) - paper or set(names)) <= inputs  # maps of the paper may be added
+            ]
+            return [*datasets[target], *figures]
         page = f"{target}.html"
         if page in explorer.PAGES:
             if problem := explorer.refusal(configuration, page):
@@ -189,30 +191,19 @@ class Plan:
             raise ConfigError(figure_targets.why_no_figure(configuration, figure))
         return [f"figures/{figure}"]
 
-    def _figures_of(self, datasets: Iterable[str]) -> list[str]:
-        """Figures drawn from these datasets alone, or from these datasets and maps of the paper."""
-        paper = set(self.configuration.sweeps)
-        return [
-            f"figures/{figure}"
-            for figure, names in self.figures.items()
-            if (set(names) - paper or set(names)) <= set(datasets)
-        ]
-
     # Fingerprints of the inputs of products
 
     def _made_of(self, product: str) -> str:
-        """Fingerprint of the code, settings and points of a product.  It does not depend on the
-        division into batches."""
+        """Fingerprint of the code, settings and points of a product, but not of the division of
+        points into batches."""
         _, modules, datasets, groups, settings = self.products[product]
         inputs = [self.made_of(dataset) for dataset in datasets]
-        points = [self._points_in(group) for group in groups]
+        grids = self.configuration.grids
+        points = [
+            batches.points_of(grids[group]).name if group in grids else self.batch_files(group)
+            for group in groups
+        ]
         return fingerprint(product, source_digest.of_modules(*modules), settings, inputs, points)
-
-    def _points_in(self, group: str) -> object:
-        if group not in self.configuration.grids:
-            return self.batch_files(group)
-        requests = batches.PointRequests(self.configuration.grids[group])
-        return [requests.rows, requests.last, source_digest.of_request(requests.rows[0])]
 
 
 @contextmanager
@@ -224,12 +215,8 @@ def product_job(
     It renames damaged files of the product first, and writes the stamp last.  Raises SourcesEdited
     if the fingerprint of the product has changed since it was planned.
 
-    Parameters
-    ----------
-    job : object
-        The variable `snakemake` of the script.  Its last output is the stamp.
-    shown : int
-        Lowest level of messages on standard error.
+    job: the variable `snakemake` of the script, whose last output is the stamp; shown: lowest level
+    of messages on standard error.
     """
     outputs, made_of = job.output[:-1], job.params.made_of
     with job_log(job.log[0], shown) as log:

@@ -1,9 +1,6 @@
 """The command `microslip sweep`: run the workflow of this package by Snakemake in the current
 folder.
 
-An installed package has the workflow in its folder `bundle`, a source tree at its top.  Both use
-the same results, since the names of results depend only on the code.
-
 For bad input, Snakemake prints a list of all its options or a traceback, and returns exit code 1.
 So the arguments and the configuration are checked here first.  Bad input then gives one line and
 exit code 2.
@@ -74,8 +71,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    hint = extras.missing("snakemake")
-    if hint:
+    if hint := extras.missing("snakemake"):
         complain(f"microslip sweep: {hint}")
         return 2
     try:
@@ -100,7 +96,8 @@ def _run(arguments: list[str]) -> int:
 
 
 def snakefile() -> Path:
-    """Path of the workflow of this package.  Raises FileNotFoundError."""
+    """Path of the workflow of this package, which is in the folder `bundle` of an installed package
+    or at the top of a source tree.  Raises FileNotFoundError."""
     places = (PACKAGE / "bundle", PACKAGE.parents[1])
     for place in places:
         if (place / "Snakefile").is_file():
@@ -139,9 +136,12 @@ def _check(arguments: list[str]) -> None:
         count = getattr(options, name)
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
+    known = [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES]
+    of_configuration = drawing.figure_of(""), drawing.CERTIFIED  # beginnings of further names
     for target in options.targets:
-        if not _is_target(target):
-            hint = schema.near_miss(target, [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES])
+        is_file = bool({".", "/"} & set(target))
+        if not (is_file or target in known or target.startswith(of_configuration)):
+            hint = schema.near_miss(target, known)
             allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
             raise InputError("TARGET", target, hint + allowed)
     for entry in options.config or ():
@@ -176,18 +176,6 @@ def _check_configuration(options: argparse.Namespace) -> None:
         files.refuse_unusable([results], [])
     except CacheError as error:
         raise load.ConfigError(f"{source}: results: {error}") from None
-
-
-def _is_target(target: str) -> bool:
-    """True for a file, a target of the workflow or the name of a figure.
-
-    All names of figures of groups or certified maps are accepted, since the configuration defines
-    them.
-    """
-    figures = (*drawing.FIGURES, *drawing.SHORT_NAMES)
-    of_configuration = target.startswith((drawing.figure_of(""), drawing.CERTIFIED))
-    is_file = bool({".", "/"} & set(target))
-    return is_file or of_configuration or target in (*TARGETS, *figures)
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:

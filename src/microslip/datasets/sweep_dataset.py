@@ -46,7 +46,7 @@ def write_sweep(
     sweep : records.Sweep
         The sweep.
     points : iterable of dict
-        Records of the points in the order of batches.PointRequests.  They are read in blocks.
+        Records of the points in the order of batches.points_of.  They are read in blocks.
     histories : list of dict
         Records of single runs in the order of batches.history_requests.
     settings : dict

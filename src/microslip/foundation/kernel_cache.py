@@ -70,7 +70,7 @@ def folder() -> Path:
     The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the cache folder
     of the user, or a temporary folder.  A temporary folder is reported once on standard error.
     """
-    name = FOLDER_NAME + source_digest.of_kernels()[:16]
+    name = FOLDER_NAME + source_digest.LOADED.kernels_digest[:16]
     for place in places():
         if _is_usable(place / name):
             return place / name

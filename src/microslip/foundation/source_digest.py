@@ -44,15 +44,10 @@ FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "press
 
 
 class Sources:
-    """The modules of a package.  They are read when the object is constructed.
+    """The modules of a package, and the templates and scripts of its pages, as they were when the
+    object was constructed.
 
-    Attributes
-    ----------
-    package : Path
-        Folder of the package.
-    contents : dict of str to bytes
-        Contents of files, by their paths inside the package.  The files are modules that Python
-        can import, and templates and scripts of pages.
+    contents: dict of the bytes of each file, by its path inside the package.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
@@ -60,6 +55,7 @@ class Sources:
         files = dict(_modules(self.package))
         self._dates = {name: os.stat(path).st_mtime_ns for name, path in files.items()}
         self.contents = {name: Path(path).read_bytes() for name, path in files.items()}
+        self._parsed, self._imports = cache(self._read_parsed), cache(self._read_imports)
 
     def closure(
         self, names: Iterable[str], inside: Callable[[str], bool] = lambda name: True
@@ -95,7 +91,8 @@ class Sources:
         files |= {n for n in self.contents if is_physics(n) and os.path.dirname(n) not in FAMILIES}
         return self.closure(files, inside=is_physics)
 
-    def of_kernels(self) -> str:
+    @cached_property
+    def kernels_digest(self) -> str:
         """Digest of the modules with compiled functions, and of all modules that they import.
 
         The layout counts, since Numba identifies the code of a function by its line number.
@@ -118,18 +115,17 @@ class Sources:
                 return name
         return None
 
-    def _imports(self, name: str) -> Iterator[str]:
+    def _read_imports(self, name: str) -> list[str]:
         """Paths of the modules that a module imports, and of the packages that contain them."""
-        for module in self._parsed(name)[1]:
-            top, *parts = module.split(".")
-            paths = ["/".join(parts[:end]) for end in range(1, len(parts) + 1)]
-            files = [file for path in paths for file in (f"{path}.py", f"{path}/__init__.py")]
-            if top == self.package.name:
-                yield from (file for file in files if file in self.contents and file not in NAMING)
+        inside = f"{self.package.name}."
+        modules = [m.split(".")[1:] for m in self._parsed(name)[1] if m.startswith(inside)]
+        paths = ["/".join(parts[:end]) for parts in modules for end in range(1, len(parts) + 1)]
+        files = [file for path in paths for file in (f"{path}.py", f"{path}/__init__.py")]
+        return [file for file in files if file in self.contents and file not in NAMING]
 
     # Parsing takes a second, so the results are stored in __pycache__.
 
-    def _parsed(self, name: str) -> tuple[str, list[str]]:
+    def _read_parsed(self, name: str) -> tuple[str, list[str]]:
         if name not in self.contents:
             path = _in_a_users_folder(name)
             self.contents[name] = path.read_bytes() if path else b""
@@ -209,31 +205,26 @@ def _parse(content: bytes) -> tuple[str, list[str]]:
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return _sha256("".join(_dumped(tree)).encode()), sorted(names)
+    return _sha256(_text(tree).encode()), sorted(names)
 
 
-def _dumped(node: object) -> Iterator[str]:
-    """Pieces of the text of a syntax tree, without docstrings and line numbers.
+def _text(node: object) -> str:
+    """Text of a syntax tree, without docstrings, line numbers and empty fields.
 
-    All versions of Python give the same text, since empty fields are skipped.  The output of
-    ast.dump for empty fields differs between versions.
+    All versions of Python give the same text.  The output of ast.dump for empty fields differs
+    between versions.
     """
-    if isinstance(node, ast.AST):
-        yield f"{type(node).__name__}("
-        for field, value in ast.iter_fields(node):
-            if isinstance(value, list):
-                value = [item for item in value if not _is_docstring(item)]
-            if value is not None and value != []:
-                yield f"{field}="
-                yield from _dumped(value)
-        yield ")"
-    elif isinstance(node, list):
-        yield "["
-        for item in node:
-            yield from _dumped(item)
-        yield "]"
-    else:
-        yield f"{node!r},"
+    if isinstance(node, list):
+        return f"[{''.join(map(_text, node))}]"
+    if not isinstance(node, ast.AST):
+        return f"{node!r},"
+    fields = []
+    for name, value in ast.iter_fields(node):
+        if isinstance(value, list):
+            value = [item for item in value if not _is_docstring(item)]
+        if value is not None and value != []:
+            fields.append(f"{name}={_text(value)}")
+    return f"{type(node).__name__}({''.join(fields)})"
 
 
 def _is_docstring(node: object) -> bool:
@@ -269,9 +260,3 @@ def of_modules(*names: str) -> str:
     """Digest of files and folders of the package, and of all modules that they import."""
     files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
     return LOADED.digest(LOADED.closure(files))
-
-
-@cache
-def of_kernels() -> str:
-    """Digest of the modules with compiled functions, and of all modules that they import."""
-    return LOADED.of_kernels()

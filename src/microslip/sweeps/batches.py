@@ -9,7 +9,6 @@ which batch computed the others.
 import functools
 import importlib.metadata
 import logging
-import math
 import platform
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -52,93 +51,7 @@ FOLDERS = {
 times."""
 
 
-class PointRequests:
-    """Requests for all points of a records.Sweep, generated during iteration.
-
-    Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
-    last of these changes fastest.
-    """
-
-    def __init__(self, sweep: Sweep):
-        motion, pressure = solver_names(sweep)
-        self._common: dict = {
-            "kind": "point",
-            "motion": motion,
-            "model": sweep.model,
-            "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
-            "cells": sweep.cells,
-            "steps": sweep.steps,
-        }
-        if pressure != "hertz":  # omitted if default, so that names of older results remain valid
-            self._common["pressure"] = pressure
-        if sweep.contacts is not None:
-            self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
-        amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
-        drives = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
-        last: dict[str, list] = {"velocity": [number(velocity) for velocity in sweep.velocity]}
-        if not sweep.velocity:
-            last = {"force": drives.pop("force")}
-            self._common["velocity"] = None
-        rest: dict[str, list] = {
-            "poisson": [number(nu) for nu in sweep.poisson],
-            "amplitude": amplitudes,
-        }
-        self._axes = drives | rest | last
-
-    def __len__(self) -> int:
-        return math.prod(map(len, self._axes.values()))
-
-    @property
-    def last(self) -> tuple[str, list[str]]:
-        """Key and values of the axis that changes fastest."""
-        return list(self._axes.items())[-1]
-
-    @property
-    def rows(self) -> list[dict]:
-        """Requests without the last axis, in the same order."""
-        *names, _ = self._axes
-        values = product(*(self._axes[name] for name in names))
-        return [self._common | dict(zip(names, place, strict=True)) for place in values]
-
-    def __iter__(self) -> Iterator[dict]:
-        axis, values = self.last
-        return (row | {axis: value} for row in self.rows for value in values)
-
-
-def history_requests(configuration: Configuration, name: str) -> list[dict]:
-    """Requests for the single runs in the dataset of the sweep `name`; the list is empty for
-    extended sweeps."""
-    steady = {"motion": "continuous-bore"}
-    kinds: dict[str, list[dict]] = {
-        "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
-        "field": [{"kind": "field"} | steady],
-        "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
-    }
-    counts, requests = ("cells", "steps", "periods"), []
-    for run in HISTORIES_OF_SWEEP.get(name, ()):
-        settings = configuration.histories[run]
-        numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-        requests += [kind | settings | numbers for kind in kinds[run]]
-    return requests
-
-
-def key_of(request: dict) -> str:
-    """Return the name of the result of a request that is computed by the running code."""
-    return result_key(request, source_digest.of_request(request))
-
-
-def result_key(request: dict, digest: str) -> str:
-    """Return the name of the result of a request that is computed by code with this digest.
-
-    The name is a hash of the request and the digest.  The versions of NumPy, SciPy and Numba change
-    results by rounding errors.  They are recorded in each result, but they are not part of the
-    name.
-    """
-    content = {"request": request, "source": digest, "format": RECORD_FORMAT}
-    return sha256(canonical_json(content))
-
-
-# Batches: the requests of a job
+# Requests
 
 
 class Batch(NamedTuple):
@@ -172,16 +85,65 @@ class Batch(NamedTuple):
         return fingerprint(code, self._asdict(), RECORD_FORMAT)[:20]
 
 
-def batches_of_points(requests: PointRequests, size: int) -> list[Batch]:
+def points_of(sweep: Sweep) -> Batch:
+    """Return the requests for all points of a sweep.
+
+    Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
+    last of these changes fastest, and is the axis of the batch.
+    """
+    motion, pressure = solver_names(sweep)
+    common: dict = {
+        "kind": "point",
+        "motion": motion,
+        "model": sweep.model,
+        "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
+        "cells": sweep.cells,
+        "steps": sweep.steps,
+    }
+    if pressure != "hertz":  # omitted if default, so that names of older results remain valid
+        common["pressure"] = pressure
+    if sweep.contacts is not None:
+        common["contacts"] = contacts_text(contacts_of(sweep.contacts))
+    axes: dict[str, list] = {name: [*map(number, values)] for name, values, _ in sweep.drives}
+    axes["poisson"] = [*map(number, sweep.poisson)]
+    axes["amplitude"] = [None] if sweep.amplitude is None else [*map(number, sweep.amplitude)]
+    if sweep.velocity:
+        axes["velocity"] = [*map(number, sweep.velocity)]
+    else:
+        common["velocity"] = None
+        axes["force"] = axes.pop("force")  # now the last axis
+    *names, last = axes
+    places = product(*(axes[name] for name in names))
+    rows = [common | dict(zip(names, place, strict=True)) for place in places]
+    return Batch(rows, last, axes[last])
+
+
+def history_requests(configuration: Configuration, name: str) -> list[dict]:
+    """Requests for the single runs in the dataset of the sweep `name`; the list is empty for
+    extended sweeps."""
+    steady = {"motion": "continuous-bore"}
+    kinds: dict[str, list[dict]] = {
+        "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
+        "field": [{"kind": "field"} | steady],
+        "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
+    }
+    counts, requests = ("cells", "steps", "periods"), []
+    for run in HISTORIES_OF_SWEEP.get(name, ()):
+        settings = configuration.histories[run]
+        numbers = {k: number(v) for k, v in settings.items() if k not in counts}
+        requests += [kind | settings | numbers for kind in kinds[run]]
+    return requests
+
+
+def divide(points: Batch, size: int) -> list[Batch]:
     """Divide points into batches of whole rows, or of parts of long rows, in the order of the
     points.
 
     size: mean number of points in a batch.
     """
-    axis, values = requests.last
-    parts = cut(values, size) if len(values) > size else [values]
-    blocks = cut(requests.rows, max(size // len(values), 1))
-    return [Batch(block, axis, part) for block in blocks for part in parts]
+    parts = cut(points.values, size) if len(points.values) > size else [points.values]
+    blocks = cut(points.rows, max(size // len(points.values), 1))
+    return [Batch(block, points.axis, part) for block in blocks for part in parts]
 
 
 def cut(items: Sequence, mean: int) -> list[list]:
@@ -195,6 +157,22 @@ def cut(items: Sequence, mean: int) -> list[list]:
             parts.append([])
         parts[-1].append(item)
     return parts
+
+
+# Results
+
+
+def key_of(request: dict, digest: str | None = None) -> str:
+    """Return the name of the result of a request, a hash of the request and of the code.
+
+    The versions of NumPy, SciPy and Numba change results by rounding errors.  They are recorded in
+    each result, but they are not part of the name.
+
+    digest: digest of the code that computes the result; by default that of the running code.
+    """
+    digest = source_digest.of_request(request) if digest is None else digest
+    content = {"request": request, "source": digest, "format": RECORD_FORMAT}
+    return sha256(canonical_json(content))
 
 
 def group(request: dict) -> str:
@@ -253,29 +231,31 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Return the records of the requests and their `statistics`.  The records depend only on the
-    requests and the solver."""
-    answers = [answer(request, store) for request in requests]
-    records = [record for record, _ in answers]
-    return records, statistics(records, [took for _, took in answers])
+    """Return the records of the requests and their statistics, see `gather`.  The records depend
+    only on the requests and the solver."""
+    return gather(answer(request, store) for request in requests)
 
 
-def statistics(records: Sequence[dict], seconds: Sequence[float]) -> dict:
-    """Return the number of records, the CPU time and whether all records are final.  Points that
-    did not converge are logged.
+def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
+    """Return the records of some answers, and the statistics of the batch: the number of records,
+    how many were computed, the CPU time, and whether all are final.
 
-    Raises SolverError if the solver failed at all points.
+    Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
     """
+    records, seconds = map(list, zip(*answers, strict=True))
     results = [record["result"] for record in records]
     for record, result in zip(records, results, strict=True):
         if not result.get("converged", True):
             log.info("not converged: %s: %s", label(record["request"]), result["reason"])
-    if records and all(result.get("crashed") for result in results):
+    if all(result.get("crashed") for result in results):
         first = f"{label(records[0]['request'])}: {results[0]['reason']}"
         raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
-    counts = {"points": len(records), "computed": sum(took > 0 for took in seconds)}
-    final = all(map(evaluate.is_final, results))
-    return counts | {"solver_seconds": sum(seconds), "final": final}
+    return records, {
+        "points": len(records),
+        "computed": sum(took > 0 for took in seconds),
+        "solver_seconds": sum(seconds),
+        "final": all(map(evaluate.is_final, results)),
+    }
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:

@@ -14,7 +14,7 @@ from threading import Thread
 from microslip.config.extended import solver_names
 from microslip.config.records import CertifiedMap
 from microslip.foundation import named_files
-from microslip.sweeps.batches import PointRequests, answer
+from microslip.sweeps.batches import answer, gather, points_of
 from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity
 from microslip.sweeps.map_cells import Answers, Node, Refinement, refine_cells
 from microslip.sweeps.map_coordinates import MapCoordinates
@@ -69,7 +69,7 @@ def _request(
     if "force" in place:
         point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
     point |= {name: (value,) for name, value in place.items()}
-    (request,) = PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))
+    (request,) = points_of(replace(map_.sweep, tolerance=map_.tolerance, **point)).requests
     return request
 
 
@@ -81,49 +81,27 @@ def _answer(request: dict, result: dict) -> tuple[float, float]:
     return result["mu_macro"], result["mu_macro_error"]
 
 
-def solve_points(
-    map_: CertifiedMap,
-    store: Store,
-    processes: int,
-    progress: Callable[[Iterable, int], Iterable],
-) -> tuple[list[dict], list[float]]:
-    """Solve all points of a map in several processes.
+def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list[dict], dict]:
+    """Solve all points of a map in several processes, and show the progress on standard error.
 
-    Each point is stored as soon as it is solved.
-
-    Parameters
-    ----------
-    map_ : CertifiedMap
-        The map.
-    store : Store
-        Store of results.
-    processes : int
-        Number of processes.
-    progress : callable
-        Function that is called with an iterable and its length in each round, and yields the items
-        of the iterable.
-
-    Returns
-    -------
-    records : list of dict
-        Records of all points.
-    seconds : list of float
-        CPU times of the solver for the points.
+    Each point is stored as soon as it is solved.  Returns the records and their statistics, see
+    batches.gather.
     """
+    from tqdm import tqdm
+
     answers: dict[str, tuple[dict, float]] = {}
-    with ProcessPoolExecutor(
-        processes, initializer=_begin, initargs=(map_.sweep.pressure,)
-    ) as pool:
 
-        def ask(requests: list[dict]) -> Iterator[dict]:
-            results = pool.map(partial(answer, store=store), requests)
-            for record, seconds in progress(results, len(requests)):
-                answers[record["key"]] = record, seconds
-                yield record
+    def ask(requests: list[dict]) -> Iterator[dict]:
+        results = pool.map(partial(answer, store=store), requests)
+        for record, seconds in tqdm(
+            results, map_.name, len(requests), unit="point", mininterval=1.0
+        ):
+            answers[record["key"]] = record, seconds
+            yield record
 
+    with ProcessPoolExecutor(processes, None, _begin, (map_.sweep.pressure,)) as pool:
         refine(map_, ask)
-    records, seconds = zip(*answers.values(), strict=True)
-    return list(records), list(seconds)
+    return gather(answers.values())
 
 
 def _begin(pressure: str) -> None:

@@ -110,7 +110,7 @@ def solve_stored(
         contacts=contacts,
         drives=_drives(**drive),
     )
-    (request,) = batches.PointRequests(grid)
+    (request,) = batches.points_of(grid).requests
     refuse_no_folder(results)
     refuse_unusable([results], [])
     try:
