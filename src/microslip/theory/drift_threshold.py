@@ -7,7 +7,6 @@ cases. This applies to oscillations without a component along the force.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from microslip.theory.exact import STATIC_LIMITS
 
@@ -32,4 +31,6 @@ def threshold(motion: str, amplitude: np.ndarray | float) -> np.ndarray | float:
 
 def first_amplitude(motion: str, force: float) -> float:
     """Amplitude above which a force (0 to 1, exclusive) moves the contact."""
+    from scipy.optimize import brentq  # only here, because it takes a while to load
+
     return float(brentq(lambda a: float(threshold(motion, a)) - force, 0.0, WIDEST, xtol=1e-14))
