@@ -8,13 +8,11 @@ stored as soon as it is computed, in the folders of batches.FOLDERS.
 import json
 
 from microslip.app.job_log import job_log
-from microslip.foundation import named_files
+from microslip.config import load
 from microslip.sweeps import batches, store
 
 with job_log(snakemake.log[0]) as log:
-    # Requests name files by their content.
-    for sweeps in ("extended", "drives"):
-        named_files.remember(sweep["pressure"] for sweep in snakemake.config[sweeps].values())
+    load.remember_files(snakemake.config)
     batch = batches.Batch(**json.loads(snakemake.params.batch))
     if batch.name != snakemake.wildcards.batch:
         raise batches.SourcesEdited("the solver")

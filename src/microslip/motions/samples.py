@@ -142,7 +142,8 @@ class Sampled(_Samples):
 
     text: str
 
-    summary = "one period of any shape, from samples"
+    summary = "sliding forward while moving along samples of a period"
+    amplitude_label = "factor of the samples"
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:

@@ -111,9 +111,8 @@ def solve_points(
         CPU times of the solver for the points.
     """
     answers: dict[str, tuple[dict, float]] = {}
-    with ProcessPoolExecutor(
-        processes, initializer=_begin, initargs=(map_.sweep.pressure,)
-    ) as pool:
+    names = [named_files.with_path(name) for name in (map_.sweep.motion, map_.sweep.pressure)]
+    with ProcessPoolExecutor(processes, initializer=_begin, initargs=(names,)) as pool:
 
         def ask(requests: list[dict]) -> Iterator[dict]:
             results = pool.map(partial(answer, store=store), requests)
@@ -126,9 +125,10 @@ def solve_points(
     return list(records), list(seconds)
 
 
-def _begin(pressure: str) -> None:
-    """Prepare a worker process to read pressure files and to end when its parent process ends."""
-    named_files.remember([pressure])
+def _begin(names: list[str]) -> None:
+    """Prepare a worker process to read files of motions and pressures, and to end when its parent
+    process ends."""
+    named_files.remember(names)
     Thread(target=_end_with_parent, daemon=True).start()
 
 
