@@ -16,7 +16,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Generic, TypeGuard, TypeVar
 
 from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
@@ -139,7 +139,7 @@ class FileReader(Generic[T]):
         return self.create(file, content)
 
 
-def speaks_of_file(name: object) -> bool:
+def speaks_of_file(name: object) -> TypeGuard[str]:
     """True if a name of a pressure or a motion is that of a file."""
     return isinstance(name, str) and name.startswith(PREFIX)
 

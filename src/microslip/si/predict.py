@@ -277,7 +277,7 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     """Fields of Oscillating, the part common to motions that oscillate."""
     motion, mu = request.motion, request.contact.mu
     fields: dict[str, Any] = {
-        "amplitude_si": motion.amplitude,
+        "amplitude_si": motion.amplitude if motion.stroke is None else None,
         "forward_amplitude_m": motion.forward_amplitude,
         "rotation_amplitude_rad": motion.rotation_amplitude,
         "load_amplitude_N": motion.load_amplitude,
