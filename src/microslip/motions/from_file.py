@@ -24,25 +24,31 @@ EVEN = 1e-2
 """Largest allowed distance of a time from equal spacing, divided by the spacing."""
 
 
-def columns_of(file: NamedFile, content: bytes, even: float = EVEN) -> NumberTable:
-    """The table of a file, with at least one of COLUMNS.
+def table_of(file: NamedFile, content: bytes) -> NumberTable:
+    """The table of a file; see `columns_of`.  Raises ValueError."""
+    if file.grid != GRID or file.pitch:
+        raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
+    return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
 
-    even: largest allowed distance of a time from equal spacing, divided by the spacing.
+
+def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
+    """The table in the content of a file, with at least one of COLUMNS.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    decimal, encoding : str
+        Decimal mark and encoding of the file.
+    even : float
+        Largest allowed distance of a time from equal spacing, divided by the spacing.
 
     Raises
     ------
     ValueError
         If the content has another format, or if the times are not equally spaced.
     """
-    if file.grid != GRID or file.pitch:
-        raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
-    table = read_numbers(
-        content,
-        (*COLUMNS, "time"),
-        ALLOWED,
-        decimal=DECIMALS[file.decimal],
-        encoding=file.encoding,
-    )
+    table = read_numbers(content, (*COLUMNS, "time"), ALLOWED, decimal=decimal, encoding=encoding)
     if not table.units.keys() & set(COLUMNS):
         raise ValueError(f"there is no displacement or load; allowed: {ALLOWED}")
     if not table.lines:
@@ -58,7 +64,7 @@ def columns_of(file: NamedFile, content: bytes, even: float = EVEN) -> NumberTab
 
 
 def _of_content(file: NamedFile, content: bytes) -> Sampled:
-    table = columns_of(file, content)
+    table = table_of(file, content)
     for name in COLUMNS:
         unit = table.units.get(name, "")
         if unit not in PURE:

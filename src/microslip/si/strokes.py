@@ -14,10 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.foundation import csv_text
 from microslip.foundation.csv_text import PURE
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import FileReader, NamedFile
-from microslip.motions.from_file import COLUMNS, columns_of
+from microslip.foundation.named_files import FileReader, NamedFile, content_of
+from microslip.foundation.number_table import NumberTable
+from microslip.motions.from_file import COLUMNS, columns_of, table_of
 from microslip.motions.samples import NORMAL, PLANE, Sampled
 from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
@@ -95,17 +97,24 @@ def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, floa
     }
 
 
-def _of_content(file: NamedFile, content: bytes) -> Stroke:
-    table = columns_of(file, content)
-    columns = {}
-    for name, values in table.columns.items():
-        unit, si = table.units[name], UNITS.get(name, "s")
+def _factors(table: NumberTable) -> dict[str, float]:
+    """Units of the columns, in SI units.  Raises ValueError for a missing or wrong unit."""
+    factors = {}
+    for name, unit in table.units.items():
+        si = UNITS.get(name, "s")
         if unit in PURE:
             raise ValueError(f"{name} has no unit; allowed: one such as {name} [{EXAMPLES[si]}]")
         try:
-            columns[name] = values * read(name, f"1 {unit}", si).si
+            factors[name] = read(name, f"1 {unit}", si).si
         except InputError as error:
             raise ValueError(f"{name} [{unit}]: {error.allowed}") from None
+    return factors
+
+
+def _of_content(file: NamedFile, content: bytes) -> Stroke:
+    table = table_of(file, content)
+    factors = _factors(table)
+    columns = {name: values * factors[name] for name, values in table.columns.items()}
     time, frequency = columns.pop("time", None), None
     if time is not None and len(time) > 1:
         frequency = (len(time) - 1) / (len(time) * float(time[-1] - time[0]))
@@ -119,3 +128,30 @@ EXAMPLES = {"m": "um", "rad": "mrad", "N": "N", "s": "ms"}
 
 read_stroke = FileReader("motion", _of_content)
 """Function that returns the Stroke of a name such as "file:stroke.csv"."""
+
+
+def read_record(
+    path: str, *, decimal: str = ".", encoding: str = "utf-8"
+) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
+    """Times, s, columns and units of a record for `microslip.fold`.
+
+    The columns are in the units of the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or has no time.
+    """
+    csv_text.check_format(decimal, encoding)
+    try:
+        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=math.inf)
+        factors = _factors(table)
+        if "time" not in table.columns:
+            raise ValueError("no column time; allowed is one, as in time [s]")
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
+        raise InputError("record", path, problem) from None
+    except ValueError as error:
+        raise InputError("record", path, str(error)) from None
+    time = table.columns.pop("time") * factors["time"]
+    return time, table.columns, table.units
