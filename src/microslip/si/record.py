@@ -24,9 +24,9 @@ ROWS, MOST_ROWS = 64, 10_000
 """Default number of samples of the period, and the largest one."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  Each one reduces its error to that of the phases."""
-JITTER = 0.5
+JITTER = 0.4
 """Largest allowed distance of a time from equal spacing, divided by the spacing.  Exported times
-are rounded; a missing sample shifts all later ones by more than this."""
+are rounded.  A missing sample shifts some times by at least half a spacing."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
