@@ -41,6 +41,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_file_gets_the_answer_of_the_named_motion(case, tmp_path):
     columns, name, place = CASES[case]

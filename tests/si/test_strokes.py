@@ -39,6 +39,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_file_gets_the_answer_of_the_named_motion(case, tmp_path):
     columns, motion, amplitudes = CASES[case]
@@ -88,15 +89,25 @@ def test_forces_do_not_depend_on_the_reference_load_beside_a_column_of_loads(tmp
     assert other.friction_force_still_N == pytest.approx(3.0)
 
 
-def test_a_force_and_an_uncertain_factor(tmp_path):
+@pytest.mark.slow
+def test_a_small_force_leaves_the_contact_at_rest(tmp_path):
     name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
-    shared = BALL | {"load": "10 N", "frequency": "200 Hz", "force": "2 N"}
+    shared = BALL | {"load": "10 N", "frequency": "200 Hz", "force": "1 N"}
+    one = microslip.predict(name, **shared)
+    other = microslip.predict("transverse", **shared, amplitude="0.1 um")
+    assert one.outcome == other.outcome == "stays"
+    left = one.force_threshold_error_N + other.force_threshold_error_N
+    assert abs(one.force_threshold_N - other.force_threshold_N) <= left
+
+
+@pytest.mark.long
+def test_an_uncertain_factor_is_an_uncertain_amplitude(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
+    shared = BALL | {"load": "10 N", "frequency": "200 Hz", "speed": "20 um/s"}
     one = microslip.predict(name, **shared, amplitude="1 +- 5 %")
     other = microslip.predict("transverse", **shared, amplitude="0.1 um +- 5 %")
-    assert one.outcome == other.outcome
-    assert one.force_threshold_N == pytest.approx(other.force_threshold_N, abs=0.04)
-    spreads = [each.uncertainty["mu_static_spread"] for each in (one, other)]
-    assert spreads[0] == pytest.approx(spreads[1], rel=0.1)
+    for spread in ("mu_macro_spread", "mu_static_spread"):
+        assert one.uncertainty[spread] == pytest.approx(other.uncertainty[spread], rel=0.2)
 
 
 def test_largest_speed_is_that_of_all_harmonics(tmp_path):
