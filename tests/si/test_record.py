@@ -41,8 +41,8 @@ def test_noise_and_drift_are_removed_within_the_errors(frequency):
     off = result.columns["lateral"] - aligned(result)
     error = float(np.sqrt(np.mean(result.errors["lateral"] ** 2)))
     assert np.sqrt(np.mean(off**2)) <= 1.3 * error
-    # white noise: the mean over the periods, and 64 of 241 samples of a period as the bandwidth
-    share = 62.0 / (RATE / FREQUENCY)
+    # white noise: the mean over the periods, and the harmonics up to 15 of 120 in a period
+    share = 30.0 / (RATE / FREQUENCY)
     assert error == pytest.approx(NOISE * np.sqrt(share / result.periods), rel=0.1)
     assert result.periods == int(0.5 * FREQUENCY) - 1
     # the drift rises by 2 um/s, and by the sine between the centres of the first and last period

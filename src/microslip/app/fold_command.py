@@ -30,7 +30,11 @@ OPTIONS = {
         "frequency of the motion, such as '200 Hz', which is refined (that of the strongest "
         "component)",
     ),
-    "rows": ("N", "number of samples of the period, an even number (64)"),
+    "rows": (
+        "N",
+        "number of samples of the period, an even number (32).  More samples keep more harmonics, "
+        "and more noise",
+    ),
     "decimal": ("MARK", "decimal mark of the record, point or comma (point)"),
     "encoding": ("NAME", "encoding of the record, such as cp1252 (utf-8)"),
 }

@@ -20,8 +20,9 @@ from microslip.motions.samples import FEWEST_SAMPLES, NORMAL
 
 FEWEST_PERIODS = 4
 """Smallest number of periods in a record.  Half a period is lost at each end."""
-ROWS, MOST_ROWS = 64, 10_000
-"""Default number of samples of the period, and the largest one."""
+ROWS, MOST_ROWS = 32, 10_000
+"""Default number of samples of the period, and the largest one.  More samples keep more harmonics,
+and more noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  Each one reduces its error to that of the phases."""
 JITTER = 0.4
