@@ -245,6 +245,18 @@ def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
         assert data.attrs["pressure_file"] == "pad.csv"
 
 
+def test_a_dataset_of_a_file_is_read_without_the_file(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    (tmp_path / "stroke.csv").write_text("lateral\n0\n1\n0\n-1\n")
+    motion = f"file:{tmp_path / 'stroke.csv'}"
+    data = built(tmp_path, "stroke", motion=motion, amplitude=[0.5, 1])
+    assert data.attrs["motion_file"] == "stroke.csv"
+    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    place = {"velocity": 0.1, "amplitude": 0.5}
+    answer = data.microslip.at(**place)
+    assert float(answer.mu_macro) == pytest.approx(float(data.mu_macro.sel(**place)))
+
+
 # Datasets
 
 
