@@ -11,12 +11,10 @@ A column `time` is used to check that the samples are equally spaced.
 
 from __future__ import annotations
 
-import numpy as np
-
 from microslip.foundation.csv_text import PURE
 from microslip.foundation.named_files import DECIMALS, GRID, FileReader, NamedFile
 from microslip.foundation.number_table import NumberTable, read_numbers
-from microslip.motions.samples import NORMAL, PLANE, Sampled
+from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
 
 COLUMNS = (*PLANE, *NORMAL)
 ALLOWED = "some of forward,lateral,angle, and load or indentation, and time"
@@ -54,12 +52,9 @@ def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVE
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
     time = table.columns.get("time")
-    if time is not None and len(time) > 1:
-        step = (time[-1] - time[0]) / (len(time) - 1)
-        distance = np.abs(time - np.linspace(time[0], time[-1], len(time)))
-        if not (step > 0.0 and distance.max() <= even * step):
-            where = table.lines[int(np.argmax(distance))]
-            raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
+    if time is not None and (row := uneven_row(time, even)) is not None:
+        where = table.lines[row]
+        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
     return table
 
 

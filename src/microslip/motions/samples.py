@@ -280,6 +280,15 @@ ROUNDING = 1e-9
 """Largest deviation of samples from a symmetry, divided by the largest sample."""
 
 
+def uneven_row(time: np.ndarray, most: float) -> int | None:
+    """Index of the time that is farthest from equal spacing; None if it is within `most` spacings,
+    and the times increase."""
+    even = np.linspace(time[0], time[-1], len(time))
+    distance = np.abs(time - even)
+    step = (time[-1] - time[0]) / max(len(time) - 1, 1)
+    return None if step > 0.0 and distance.max() <= most * step else int(np.argmax(distance))
+
+
 def _spline(values: np.ndarray) -> CubicSpline:
     """Periodic cubic spline through one period of samples (along the first axis) as a function of
     the phase."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
-from microslip.motions.samples import FEWEST_SAMPLES, NORMAL
+from microslip.motions.samples import FEWEST_SAMPLES, NORMAL, uneven_row
 
 FEWEST_PERIODS = 4
 """Smallest number of periods in a record.  Half a period is lost at each end."""
@@ -141,12 +141,10 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np
         raise InputError("columns", None, "allowed is one column or more")
     if len(time) < 4 * FEWEST_PERIODS:
         raise InputError("time", len(time), f"allowed are at least {4 * FEWEST_PERIODS} samples")
-    step = float(time[-1] - time[0]) / (len(time) - 1)
-    distance = np.abs(time - np.linspace(time[0], time[-1], len(time)))
-    if not (step > 0.0 and distance.max() <= JITTER * step):
-        row = int(np.argmax(distance))
+    row = uneven_row(time, JITTER)
+    if row is not None:
         raise InputError("time", float(time[row]), f"not equally spaced; this is row {row}")
-    return step, values
+    return float(time[-1] - time[0]) / (len(time) - 1), values
 
 
 def _strongest(values: Mapping[str, np.ndarray]) -> float:

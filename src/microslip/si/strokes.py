@@ -23,6 +23,7 @@ from microslip.motions.from_file import COLUMNS, columns_of, table_of
 from microslip.motions.samples import NORMAL, PLANE, Sampled
 from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
+from microslip.si.record import JITTER
 
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path or a period."""
@@ -116,7 +117,7 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
     factors = _factors(table)
     columns = {name: values * factors[name] for name, values in table.columns.items()}
     time, frequency = columns.pop("time", None), None
-    if time is not None and len(time) > 1:
+    if time is not None:
         frequency = (len(time) - 1) / (len(time) * float(time[-1] - time[0]))
     Sampled.of_columns(columns)  # raises InputError
     columns = {n: one - one.mean() if n in PLANE else one for n, one in columns.items()}
@@ -144,7 +145,7 @@ def read_record(
     """
     csv_text.check_format(decimal, encoding)
     try:
-        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=math.inf)
+        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=JITTER)
         factors = _factors(table)
         if "time" not in table.columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
