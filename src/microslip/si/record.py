@@ -1,7 +1,7 @@
 """One period of a motion from a long record, such as that of a laser vibrometer.
 
-A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
-period, which contains nothing of a periodic motion.  The difference from the drift is averaged over
+A record contains many periods, noise, and a slow drift.  The moving mean over one period is the
+drift, since that of a periodic motion is constant.  The difference from the drift is averaged over
 all whole periods.  The scatter between the periods gives the standard error of the average.
 """
 
