@@ -35,8 +35,7 @@ DECIMALS = {"point": ".", "comma": ","}
 """Decimal marks, by the words that represent them in names."""
 EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,decimal=comma"
 HINT = (
-    "decimal=comma or encoding=cp1252, and for a grid of pressures grid=cells or grid=samples, and "
-    "pitch=0.5 mm"
+    "grid=cells or grid=samples, and pitch=0.5 mm, for pressures; decimal=comma or encoding=cp1252"
 )
 PACKED = {
     b"\x1f\x8b": "gzip",
