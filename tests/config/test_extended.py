@@ -223,7 +223,7 @@ def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monke
     requests = [*sweep.PointRequests(result.extended["stroke"])]
     assert {request["motion"] for request in requests} == {name}
     assert result.propulsion.motions["stroke"].motion == name
-    handed = load.with_files_found(mapping, folders=[tmp_path])
+    handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
     monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir("/")
     load.remember_files(handed)
