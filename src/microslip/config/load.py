@@ -144,8 +144,10 @@ def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
 
 
 def remember_files(filled: dict) -> None:
-    """Store the paths of all files that `with_defaults_and_paths` has found, for requests, which name
-    files by their content."""
+    """Store the paths of all files in a configuration from `with_defaults_and_paths`.
+
+    Requests name files by their content.
+    """
     entries = [one for place in entries_with_files(filled).values() for one in place.values()]
     named_files.remember(entry[role] for entry in entries for role in ROLES if role in entry)
 
