@@ -56,6 +56,8 @@ _WHERE = {
     "Response": "microslip.adaptive.response",
     "predict_response": "microslip.si.response",
     "RealResponse": "microslip.si.response",
+    "fold": "microslip.si.record",
+    "Fold": "microslip.si.record",
     "shakedown": "microslip.adaptive.shakedown",
     "Shakedown": "microslip.adaptive.shakedown",
     "PropulsionLine": "microslip.adaptive.propulsion",

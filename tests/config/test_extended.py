@@ -209,6 +209,30 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     assert load.with_defaults_and_paths(handed) == handed
 
 
+def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monkeypatch):
+    """Sweeps and self-propelled motions name it by its content, and jobs find it."""
+    (tmp_path / "stroke.csv").write_text("forward,lateral\n0,1\n1,0\n-0.5,-1\n-0.5,0\n")
+    line = {"motion": "file:stroke.csv", "amplitude": 1.0, "panel": "strokes"}
+    mapping = {
+        "sweeps": PAPER,
+        "extended": {"stroke": CIRCLE | {"motion": "file:stroke.csv"}},
+        "propulsion": {"motions": {"stroke": line}},
+    }
+    result = load.from_mapping(mapping, folders=[tmp_path])
+    name = motion_named(f"file:{tmp_path / 'stroke.csv'}").name
+    requests = [*sweep.PointRequests(result.extended["stroke"])]
+    assert {request["motion"] for request in requests} == {name}
+    assert result.propulsion.motions["stroke"].motion == name
+    handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
+    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.chdir("/")
+    load.remember_files(handed)
+    assert motion_named(name).name == name
+    assert load.from_mapping(handed).propulsion == result.propulsion
+    with pytest.raises(load.ConfigError, match=r"extended.stroke.motion: .* cannot be read: No"):
+        load.from_mapping(mapping)
+
+
 def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
     Solver(monkeypatch)
     (tmp_path / "pad.csv").write_text(EVEN)
@@ -219,6 +243,18 @@ def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
     with xr.open_dataset(path) as data:
         assert data.attrs["pressure"] == grid.pressure
         assert data.attrs["pressure_file"] == "pad.csv"
+
+
+def test_a_dataset_of_a_file_is_read_without_the_file(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    (tmp_path / "stroke.csv").write_text("lateral\n0\n1\n0\n-1\n")
+    motion = f"file:{tmp_path / 'stroke.csv'}"
+    data = built(tmp_path, "stroke", motion=motion, amplitude=[0.5, 1])
+    assert data.attrs["motion_file"] == "stroke.csv"
+    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    place = {"velocity": 0.1, "amplitude": 0.5}
+    answer = data.microslip.at(**place)
+    assert float(answer.mu_macro) == pytest.approx(float(data.mu_macro.sel(**place)))
 
 
 # Datasets

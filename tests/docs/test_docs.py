@@ -57,6 +57,7 @@ LONG_PAGES = (
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
     "docs/how-to/force_and_spring.md",
+    "docs/how-to/measured_strokes.md",
     "docs/how-to/rough_contacts.md",
     "docs/tutorials/datasets.md",
     "docs/tutorials/real_contact.md",

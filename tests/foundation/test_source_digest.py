@@ -100,6 +100,7 @@ FILES = {
     "motions/turns.py": "",
     "pressures/hertz.py": "",
     "pressures/from_file.py": "",
+    "motions/from_file.py": "",
     "report/figures/maps.py": "from toy.solver import run",
 }
 SOLVER = {"foundation/errors.py", "sweeps/evaluate.py", "sweeps/period_codec.py"}
@@ -124,11 +125,12 @@ def package(tmp_path):
         ({"motion": "sideways:angle=3"}, {"motions/sideways.py", "motions/turns.py"}),
         (NONE | {"pressure": "hertz"}, {"pressures/hertz.py"}),
         (NONE | {"pressure": "file:sha256=0123"}, {"pressures/from_file.py"}),
+        ({"motion": "file:sha256=0123"}, {"motions/from_file.py"}),
         (
             NONE | {"method": "one"},
             {f"solver/methods/{name}.py" for name in ("one", "_shared", "_deeper")},
         ),
-        ({}, {f"motions/{name}.py" for name in ("motion", "sideways", "turns")}),
+        ({}, {f"motions/{name}.py" for name in ("motion", "sideways", "turns", "from_file")}),
     ],
 )
 def test_a_result_depends_on_the_physics_rooms_and_the_files_that_its_request_names(

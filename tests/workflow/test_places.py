@@ -73,7 +73,11 @@ def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     far.mkdir()
     pad = {"motion": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
     pad |= {"velocity": [20, 30], "amplitude": [0.1]}
-    (far / "mine.yaml").write_text(yaml.safe_dump(CONFIGURATION | {"extended": {"pad": pad}}))
+    stroke = {"motion": "file:stroke.csv", "group": "strokes", "velocity": [20, 30]}
+    stroke |= {"amplitude": [0.1], "tolerance": 0.1}
+    extended = {"extended": {"pad": pad, "stroke": stroke}}
+    (far / "stroke.csv").write_text("lateral\n0\n1\n0\n-1\n")
+    (far / "mine.yaml").write_text(yaml.safe_dump(CONFIGURATION | extended))
     there = ("-s", "../microslip/Snakefile", "--configfile", "../far/mine.yaml")
     refused = place.snakemake("results/pad.nc", *there, "-j1")
     assert refused.returncode == 1
@@ -81,8 +85,12 @@ def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     assert f"{far / 'pad.csv'}, {place.folder / 'pad.csv'}" in refused.stderr
     assert "Traceback" not in refused.stderr
     (far / "pad.csv").write_text("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n")
-    process = place.snakemake("results/pad.nc", *there, "-j1")
+    process = place.snakemake("results/pad.nc", "results/stroke.nc", *there, "-j1")
     assert process.returncode == 0, process.stderr
+    with xr.open_dataset(place.folder / "results" / "stroke.nc") as data:
+        assert data.attrs["motion"].startswith("file:sha256=")
+        assert data.attrs["motion_file"] == "stroke.csv"
+        assert bool(data.converged.all())
     with xr.open_dataset(place.folder / "results" / "pad.nc") as data:
         assert data.attrs["pressure"].startswith("file:sha256=")
         assert bool(data.converged.all())

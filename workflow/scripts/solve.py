@@ -9,7 +9,7 @@ stored as soon as it is computed, in the folders of batches.FOLDERS.
 import json
 
 from microslip.app.job_log import job_log
-from microslip.foundation import named_files
+from microslip.config import load
 from microslip.sweeps import batches, store
 
 group, name = snakemake.wildcards.group, snakemake.wildcards.batch
@@ -18,9 +18,7 @@ folder = store.Store(snakemake.params.store)
 
 def solved_batch(batch: batches.Batch) -> tuple[list[dict], dict]:
     """Records of a batch of requests, and their statistics."""
-    # Requests name files by their content.
-    for sweeps in ("extended", "drives"):
-        named_files.remember(sweep["pressure"] for sweep in snakemake.config[sweeps].values())
+    load.remember_files(snakemake.config)  # requests name files by their content
     if batch.name != name:
         raise batches.SourcesEdited("the solver")
     return batches.run_batch(batch.requests, folder)
@@ -29,7 +27,6 @@ def solved_batch(batch: batches.Batch) -> tuple[list[dict], dict]:
 def solved_map() -> tuple[list[dict], dict]:
     """Records of the points of a certified map, and their statistics."""
     from microslip.app.plan import Plan
-    from microslip.config import load
     from microslip.sweeps import map_refinement
 
     plan = Plan(load.from_mapping(snakemake.config, ask_solver=False))

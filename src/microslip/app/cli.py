@@ -20,6 +20,7 @@ from microslip.foundation.errors import CacheError, InputError
 
 if TYPE_CHECKING:
     from microslip.adaptive.result import Result
+    from microslip.motions.motion import Motion
     from microslip.solver.discretise import Resolution
 
 COMMANDS = {
@@ -27,6 +28,7 @@ COMMANDS = {
     "fit": "coefficient of friction and u_lim from measured friction",
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
     "response": "forces of a contact that follows the path of a file",
+    "fold": "one period of a motion from a long record, such as that of a vibrometer",
 }
 """Commands that have a separate module in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."
@@ -75,11 +77,15 @@ def _module_of(command: str) -> ModuleType:
 def _add_motions(parser: argparse.ArgumentParser) -> None:
     """Add a parser for each motion.  This imports the motions."""
     from microslip.motions.by_name import MOTIONS
+    from microslip.motions.samples import Sampled
 
     motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
-    for name, record in MOTIONS.items():
+    records: dict[str, type[Motion]] = {**MOTIONS, "file": Sampled}
+    for name, record in records.items():
         numbers, spin = "", f"  {BORE}" if "bore" in name else ""
-        if fields(record):
+        if name == "file":
+            numbers = FILE
+        elif fields(record):
             numbers = record.numbers or f"of {', '.join(field.name for field in fields(record))}"
             numbers = f"  Numbers follow the name after a colon: {numbers}."
         motion = motions.add_parser(
@@ -103,6 +109,12 @@ def _add_motions(parser: argparse.ArgumentParser) -> None:
         _add_options(motion)
 
 
+FILE = (
+    "  The path of a CSV file follows the name after a colon, as in file:stroke.csv.  Its columns "
+    "are some of forward, lateral, angle, and load or indentation.  Its lines are equally spaced "
+    "in time, from the first point of a period to the one before its end."
+)
+"""Description of the files of motions."""
 F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
@@ -260,7 +272,7 @@ def _split_motion(words: list[str]) -> tuple[list[str], str]:
     from microslip.motions.by_name import MOTIONS
 
     name = words[1].partition(":")[0]
-    return ["point", name if name in MOTIONS else words[1], *words[2:]], words[1]
+    return ["point", name if name in (*MOTIONS, "file") else words[1], *words[2:]], words[1]
 
 
 def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]:

@@ -42,7 +42,11 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         ),
     },
     "motion": {
-        "amplitude": ("A", "half stroke, such as '1 um'; for bore an angle, such as '0.5 deg'"),
+        "amplitude": (
+            "A",
+            "half stroke, such as '1 um'; for bore an angle, such as '0.5 deg'; for file:FILE a "
+            "factor (1)",
+        ),
         "forward-amplitude": ("A", "forward half stroke, for elliptic and normal"),
         "rotation-amplitude": ("A", "half stroke in spin, for transverse-bore and normal"),
         "load-amplitude": ("A", "half stroke of the normal load, for normal, such as '5 N'"),
@@ -96,7 +100,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "motion",
         metavar="MOTION",
-        help=f"motion of the sphere. {motions}; or another motion of `microslip point`",
+        help=f"motion of the sphere. {motions}; file:FILE: it follows one period of samples with "
+        "units; or another motion of `microslip point`",
     )
     for title, options in GROUPS.items():
         group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))

@@ -45,8 +45,8 @@ each Poisson's ratio."""
 def load(path: str | os.PathLike) -> Configuration:
     """Read and check a YAML file; return a Configuration or raise ConfigError.
 
-    Files of pressures are searched for in the folder of the YAML file, then in the working
-    directory.
+    Files of motions and pressures are searched for in the folder of the YAML file, then in the
+    working directory.
     """
     return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
@@ -124,11 +124,32 @@ def with_defaults_and_paths(
     ConfigError
     """
     filled = _settings(mapping, source).model_dump(warnings=False)
-    for key in ("extended", "drives"):
-        for name, sweep in filled[key].items():
+    for key, entries in entries_with_files(filled).items():
+        for name, entry in entries.items():
             with _errors_at(f"{source}: {key}.{name}"):
-                sweep["pressure"] = _with_path(sweep["pressure"], folders, strict)
+                for role in filter(entry.__contains__, ROLES):
+                    entry[role] = _with_path(entry[role], role, folders, strict)
     return filled
+
+
+ROLES = ("motion", "pressure")
+"""Keys whose values can name files."""
+
+
+def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
+    """Entries with some of ROLES in a configuration with defaults, by name, by the place of their
+    mapping."""
+    places = {key: filled[key] for key in ("extended", "drives")}
+    return places | {"propulsion.motions": filled["propulsion"]["motions"]}
+
+
+def remember_files(filled: dict) -> None:
+    """Store the paths of all files in a configuration from `with_defaults_and_paths`.
+
+    Requests name files by their content.
+    """
+    entries = [one for place in entries_with_files(filled).values() for one in place.values()]
+    named_files.remember(entry[role] for entry in entries for role in ROLES if role in entry)
 
 
 def _settings(mapping: dict, source: str) -> Root:
@@ -141,23 +162,24 @@ def _settings(mapping: dict, source: str) -> Root:
         raise ConfigError(f"{source}: {_one_line(line)}") from None
 
 
-def _with_path(pressure: str, folders: Iterable, strict: bool) -> str:
-    """Add the path and the digest of the file to the name of a pressure, if it has a file.
+def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
+    """Add the path and the digest of the file to the name of a motion or a pressure, if it has a
+    file.
 
     If the file is missing, raises InputError if `strict` is set; otherwise returns the unchanged
     name.
     """
-    if not named_files.speaks_of_file(pressure):
-        return pressure
+    if not named_files.speaks_of_file(name):
+        return name
     try:
-        file = named_files.parse(pressure)
+        file = named_files.parse(name, role)
         if not (file.digest and file.path):
-            return named_files.read(pressure, folders)[0].placed
-        named_files.remember([pressure])  # found before
+            return named_files.read(name, role, folders)[0].placed
+        named_files.remember([name])  # found before
     except InputError:
         if strict:
             raise
-    return pressure
+    return name
 
 
 @contextmanager
@@ -193,7 +215,8 @@ def from_mapping(
         True to check motions, pressures and drives with the solver, and to refuse missing files.
         Importing the solver takes half a second.  The result does not depend on this argument.
     folders : iterable of paths
-        Folders in which files of pressures are searched for, before the working directory.
+        Folders in which files of motions and pressures are searched for, before the working
+        directory.
 
     Raises
     ------
@@ -225,12 +248,15 @@ def from_mapping(
         entries |= members
     with _errors_at(f"{source}: extended"):
         _refuse_mixtures(list(families["extended"].values()))
-    if ask_solver:
-        from microslip.adaptive.checks import checked_propulsion
+    lines = {}
+    for name, line in settings.propulsion.motions.items():
+        with _errors_at(f"{source}: propulsion.motions.{name}"):
+            motion = _by_content(line.motion, "motion", folders, ask_solver)
+            lines[name] = line.model_copy(update={"motion": motion})
+            if ask_solver:
+                from microslip.adaptive.checks import checked_propulsion
 
-        for name, motion in settings.propulsion.motions.items():
-            with _errors_at(f"{source}: propulsion.motions.{name}"):
-                checked_propulsion(motion.motion, motion.amplitude, poisson=motion.poisson)
+                checked_propulsion(motion, line.amplitude, poisson=line.poisson)
     return Configuration(
         results=settings.results,
         **families,
@@ -241,7 +267,7 @@ def from_mapping(
         accuracy=settings.accuracy,
         stability=settings.stability,
         claims=settings.claims,
-        propulsion=settings.propulsion,
+        propulsion=settings.propulsion.model_copy(update={"motions": lines}),
         certified=maps,
     )
 
@@ -258,16 +284,15 @@ def _sweep(name: str, entry: Any, folders: Iterable, strict: bool) -> Sweep:
         if (axis := getattr(entry, drive, None)) is not None
     )
     of_paper, amplitude = name in MOTION_OF_SWEEP, getattr(entry, "amplitude", None)
-    more: dict[str, Any] = {}
+    more: dict[str, Any] = {"motion": MOTION_OF_SWEEP.get(name)}
     if not of_paper:
         if not drives and not hasattr(entry, "group"):
             raise Refusal("missing; required: force or stiffness")
-        pressure = _with_path(entry.pressure, folders, strict)
-        more = {"title": entry.title or name, "pressure": _by_content(pressure), "drives": drives}
+        names = {role: _by_content(getattr(entry, role), role, folders, strict) for role in ROLES}
+        more = {"title": entry.title or name, "drives": drives} | names
         more |= {key: getattr(entry, key) for key in ("group", "contacts") if hasattr(entry, key)}
     sweep = Sweep(
         name=name,
-        motion=MOTION_OF_SWEEP[name] if of_paper else entry.motion,
         velocity=tuple(entry.velocity or ()),
         amplitude=None if amplitude is None else tuple(amplitude),
         poisson=tuple(entry.poisson),
@@ -296,12 +321,14 @@ def _refuse_taken(name: str, others: Iterable[str]) -> None:
         raise Refusal("another result has this name; allowed: a new one")
 
 
-def _by_content(pressure: str) -> str:
-    """Name of a pressure, in which the digest of its file, if there is one, replaces the path."""
-    if not named_files.speaks_of_file(pressure):
-        return pressure
-    file = named_files.parse(pressure)
-    return file.name if file.digest else pressure
+def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
+    """Name of a motion or a pressure, in which the digest of its file, if there is one, replaces
+    the path."""
+    placed = _with_path(name, role, folders, strict)
+    if not named_files.speaks_of_file(placed):
+        return placed
+    file = named_files.parse(placed, role)
+    return file.name if file.digest else placed
 
 
 def _refuse_mixtures(sweeps: list[Sweep]) -> None:

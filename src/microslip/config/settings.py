@@ -290,7 +290,7 @@ class Sweep(SteadySweep):
 
 class _NamedSweep(SteadySweep):
     motion: Text
-    """Motion, with parameters as in "elliptic:forward=0.5,phase=30"."""
+    """Motion, with parameters as in "elliptic:forward=0.5,phase=30", or file:FILE."""
     pressure: Text = "hertz"
     """Normal pressure, with parameters as in "power:exponent=1", or file:FILE."""
     title: Title | None = None
@@ -535,7 +535,7 @@ class SelfPropelledMotion(Settings):
     """A self-propelled motion."""
 
     motion: Text
-    """Motion: elliptic or normal, with its parameters."""
+    """Motion: elliptic or normal, with its parameters, or file:FILE."""
     amplitude: Positive
     """Amplitude in the unit of the motion, above 0."""
     poisson: Ratio = 0.0

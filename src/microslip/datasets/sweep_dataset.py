@@ -64,8 +64,9 @@ def write_sweep(
     title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
     about = {"motion": motion, "pressure": pressure, "tolerance": tolerance}
-    if named_files.base_name(pressure):
-        about["pressure_file"] = named_files.base_name(pressure)
+    for role, name in (("motion", motion), ("pressure", pressure)):
+        if file := named_files.base_name(name):
+            about[f"{role}_file"] = file
     if sweep.group is not None:
         about["group"] = sweep.group
     failed = [record for record in histories if record["result"].get("crashed")]

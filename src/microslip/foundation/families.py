@@ -8,7 +8,7 @@ the name of its class, followed by the numbers that differ from their defaults, 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
 from functools import lru_cache
 from importlib import import_module
@@ -18,7 +18,7 @@ from traceback import extract_tb
 from types import ModuleType
 from typing import Any, Generic, TypeVar
 
-from microslip.foundation import spec
+from microslip.foundation import named_files, spec
 from microslip.foundation.errors import InputError
 
 T = TypeVar("T")
@@ -85,8 +85,8 @@ class Registry(Generic[T]):
         Name of the argument in messages.
     first : sequence of str
         Names that are listed before all others.
-    others : sequence of str
-        Names before a colon that are parsed elsewhere, but are listed in messages.
+    from_file : callable
+        from_file(text) -> object, for the name of a data file such as "file:measured.csv".
 
     Attributes
     ----------
@@ -101,11 +101,11 @@ class Registry(Generic[T]):
         package: ModuleType,
         base: type[T],
         argument: str,
-        first: Sequence[str] = (),
-        others: Sequence[str] = (),
+        first: Sequence[str],
+        from_file: Callable[[str], T],
     ):
         self.package, self.base, self.argument = package, base, argument
-        self.first, self.others = first, others
+        self.first, self.from_file = first, from_file
         self.classes: dict[str, type[T]] = {}
         self.broken: dict[str, str] = {}
         self._own = list(package.__path__)
@@ -145,7 +145,7 @@ class Registry(Generic[T]):
         )
 
     def parse(self, text: str) -> T:
-        """The object of a text such as "power:exponent=1".
+        """The object of a text such as "power:exponent=1" or "file:measured.csv".
 
         Raises
         ------
@@ -153,13 +153,15 @@ class Registry(Generic[T]):
             If the name is unknown, if its file cannot be used, or if the class does not have or
             accept the numbers.
         """
-        names = [*self.classes, *self.others]
+        if named_files.speaks_of_file(text):
+            return self.from_file(text)
+        names = [*self.classes, "file"]
         if not isinstance(text, str):
             raise InputError(self.argument, text, f"allowed is one of {', '.join(names)}")
         reason = self.broken.get(text.partition(":")[0].strip().replace("-", "_"))
         if reason:
             raise InputError(self.argument, text, reason)
-        if text in self.others:
+        if text == "file":
             raise InputError(
                 self.argument, text, f"allowed after it is a colon and a name: {text}:NAME"
             )

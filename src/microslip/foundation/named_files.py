@@ -1,9 +1,9 @@
 """Names of files, such as "file:pad.csv,grid=samples", and reading of these files.
 
 A result depends on the content of a file and not on its path.  So the digest of the content
-replaces the path in the name of a pressure: "file:sha256=0123456789abcdef,grid=samples".  A
-process stores the path for each digest.  `remember` stores paths that another process has passed
-on.
+replaces the path in the name of a pressure or a motion:
+"file:sha256=0123456789abcdef,grid=samples".  A process stores the path for each digest.  `remember`
+stores paths that another process has passed on.
 
 The module imports nothing slow, since every start of the workflow imports it.
 """
@@ -13,11 +13,15 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Generic, TypeGuard, TypeVar
 
+from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
+
+T = TypeVar("T")
 
 PREFIX = "file:"
 GRID = "cells"
@@ -29,7 +33,19 @@ MOST_BYTES = 100_000_000
 OPTIONS = re.compile(r"(?:^|,)(grid|pitch|sha256|decimal|encoding)=([^,]*)$")
 DECIMALS = {"point": ".", "comma": ","}
 """Decimal marks, by the words that represent them in names."""
-EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,grid=samples"
+EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,decimal=comma"
+HINT = (
+    "grid=cells or grid=samples, and pitch=0.5 mm, for pressures; decimal=comma or encoding=cp1252"
+)
+PACKED = {
+    b"\x1f\x8b": "gzip",
+    b"PK\x03\x04": "zip, as spreadsheets are",
+    b"BZh": "bzip2",
+    b"\xfd7zXZ": "xz",
+}
+"""First bytes of compressed files -> their format."""
+LARGEST_CACHE = 8
+"""Number of objects that a FileReader keeps."""
 
 _PLACES: dict[str, Path] = {}
 """Paths of files by digest."""
@@ -78,34 +94,83 @@ class NamedFile:
         return f"{PREFIX}{file}" + "".join(unusual)
 
 
-def speaks_of_file(name: object) -> bool:
-    """True if a name of a pressure is that of a file."""
+class FileReader(Generic[T]):
+    """Reads objects from files by name.  It keeps the objects of the files read most recently, so
+    that files with equal content share one object.
+
+    Parameters
+    ----------
+    argument : str
+        Argument of the names, for messages.
+    create : callable
+        create(file, content) -> object.  It raises ValueError for content of another format.
+    """
+
+    def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
+        self.argument, self.create = argument, create
+        self._cache: dict[str, T] = {}
+
+    def __call__(self, name: str) -> T:
+        """The object of a name such as "file:measured.csv".
+
+        Raises
+        ------
+        InputError
+            If the file does not exist, has another format, or does not match the digest in the
+            name.
+        """
+        file, content = read(name, self.argument)
+        if file.name not in self._cache:
+            try:
+                self._cache[file.name] = self._created(file, content)
+            except ValueError as error:
+                problem = str(error).replace("decimal = ','", "decimal=comma after the path")
+                raise InputError(self.argument, name, f"{file.path}: {problem}") from None
+            if len(self._cache) > LARGEST_CACHE:
+                del self._cache[next(iter(self._cache))]
+        return self._cache[file.name]
+
+    def _created(self, file: NamedFile, content: bytes) -> T:
+        for begins, kind in PACKED.items():
+            if content.startswith(begins):
+                raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
+        csv_text.check_format(DECIMALS[file.decimal], file.encoding)
+        return self.create(file, content)
+
+
+def speaks_of_file(name: object) -> TypeGuard[str]:
+    """True if a name of a pressure or a motion is that of a file."""
     return isinstance(name, str) and name.startswith(PREFIX)
 
 
-def parse(name: str) -> NamedFile:
-    """The NamedFile of a name.  Raises InputError for a name without a file."""
+def parse(name: str, argument: str = "file") -> NamedFile:
+    """The NamedFile of a name.  Raises InputError, with the name of the argument, for a name
+    without a file."""
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
-            raise InputError("pressure", name, f"{match[1]} occurs twice; allowed: once")
+            raise InputError(argument, name, f"{match[1]} occurs twice; allowed: once")
         options[match[1]], path = match[2], path[: match.start()]
     digest = options.pop("sha256", "")
     file = NamedFile(path, digest=digest, **options)
     if file.decimal not in DECIMALS:
-        raise InputError("pressure", name, "allowed for decimal is point or comma")
+        raise InputError(argument, name, "allowed for decimal is point or comma")
     if not (file.path or file.digest) or "\0" in path:
-        raise InputError("pressure", name, f"allowed is {EXAMPLE}")
+        raise InputError(argument, name, f"allowed is {EXAMPLE}")
     return file
 
 
-def read(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFile, bytes]:
+def read(
+    name: str, argument: str, folders: Iterable[str | os.PathLike] = ()
+) -> tuple[NamedFile, bytes]:
     """The file of a name, with its absolute path and digest, and its content.
 
     Parameters
     ----------
     name : str
         Name such as "file:pad.csv".  If it contains a digest, the file must have this digest.
+    argument : str
+        Argument of the name, for messages.
     folders : iterable of paths
         Folders in which a relative path is searched for.  The working directory is searched last.
 
@@ -115,12 +180,12 @@ def read(name: str, folders: Iterable[str | os.PathLike] = ()) -> tuple[NamedFil
         If the file does not exist, or has another digest.  The message lists the paths that were
         tried.
     """
-    file = parse(name)
-    place = _place(name, file, folders)
-    content = _content(name, place)
+    file = parse(name, argument)
+    place = _place(name, argument, file, folders)
+    content = _content(name, argument, place)
     digest = hashlib.sha256(content).hexdigest()[:DIGITS]
     if file.digest not in ("", digest):
-        raise InputError("pressure", name, f"{place} has changed: its sha256 begins with {digest}")
+        raise InputError(argument, name, f"{place} has changed: its sha256 begins with {digest}")
     _PLACES[digest] = place
     return replace(file, path=str(place), digest=digest), content
 
@@ -132,6 +197,14 @@ def remember(names: Iterable[str]) -> None:
             _PLACES[file.digest] = Path(file.path)
 
 
+def with_path(name: str) -> str:
+    """The name with the stored path of its file, for `remember` in another process.  A name
+    without a file, or without a stored path, is returned unchanged."""
+    if not speaks_of_file(name) or (file := parse(name)).digest not in _PLACES:
+        return name
+    return replace(file, path=str(_PLACES[file.digest])).placed
+
+
 def base_name(name: str) -> str:
     """Base name of the file of a name, for messages; "" if this process has not stored the path."""
     if not speaks_of_file(name):
@@ -140,12 +213,12 @@ def base_name(name: str) -> str:
     return Path(file.path or _PLACES.get(file.digest, "")).name
 
 
-def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
+def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
     if not file.path:
         if file.digest in _PLACES:
             return _PLACES[file.digest]
         raise InputError(
-            "pressure",
+            argument,
             name,
             "no file with this content is known here; allowed is its path, as in file:measured.csv",
         )
@@ -159,11 +232,9 @@ def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> 
         except OSError:  # a name that the system does not accept
             pass
     looked = ", ".join(str(place) for place in places)
-    hint = ""
-    if "," in file.path:
-        hint = "; allowed after the path: grid=cells or grid=samples, and pitch=0.5 mm"
+    hint = f"; allowed after the path: {HINT}" if "," in file.path else ""
     raise InputError(
-        "pressure", name, f"{file.path} cannot be read: No such file; looked for {looked}{hint}"
+        argument, name, f"{file.path} cannot be read: No such file; looked for {looked}{hint}"
     )
 
 
@@ -184,7 +255,7 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
     return content
 
 
-def _content(name: str, place: Path) -> bytes:
+def _content(name: str, argument: str, place: Path) -> bytes:
     try:
         if place.is_file():
             return content_of(place, MOST_BYTES)
@@ -193,4 +264,4 @@ def _content(name: str, place: Path) -> bytes:
         reason = str(error.strerror)
     except ValueError as error:
         reason = str(error)
-    raise InputError("pressure", name, f"{place} cannot be read: {reason}") from None
+    raise InputError(argument, name, f"{place} cannot be read: {reason}") from None

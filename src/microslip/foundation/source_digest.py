@@ -82,9 +82,8 @@ class Sources:
         """Paths of the modules that influence the result of a request."""
         texts = {folder: request.get(key) or "" for folder, key in FAMILIES.items()}
         bare = {folder: text.partition(":")[0].replace("-", "_") for folder, text in texts.items()}
-        if bare["pressures"] == "file":
-            bare["pressures"] = "from_file"
-        files = {f"{folder}/{name}.py" for folder, name in bare.items() if name}
+        names = {folder: "from_file" if n == "file" else n for folder, n in bare.items()}
+        files = {f"{folder}/{name}.py" for folder, name in names.items() if name}
         if not bare["motions"]:  # the result may depend on any motion
             files |= {name for name in self.contents if name.startswith("motions/")}
         files = {name for name in files if name in self.contents or _in_a_users_folder(name)}

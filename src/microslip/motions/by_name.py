@@ -1,7 +1,8 @@
 """Registry of motions by name.
 
 A motion is a class in a file of the folder `motions`: the class `AMotion` in the file "a_motion.py"
-has the name "a-motion" (see motion.py).  Closed forms of motions are in theory/exact.py.  No other
+has the name "a-motion" (see motion.py).  A text such as "file:stroke.csv" stands for a period in a
+data file (see from_file.py).  Closed forms of motions are in theory/exact.py.  No other
 file of the package depends on the name of a motion.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 from microslip import motions
 from microslip.foundation.families import Registry
+from microslip.motions.from_file import read_motion
 from microslip.motions.motion import Motion
 
 _REGISTRY = Registry(
@@ -16,20 +18,13 @@ _REGISTRY = Registry(
     Motion,
     "motion",
     first=("transverse", "longitudinal", "zigzag", "bore", "continuous-bore"),
+    from_file=read_motion,
 )
 MOTIONS = _REGISTRY.classes
 """Name -> subclass of Motion."""
 BROKEN = _REGISTRY.broken
 """Name of a file that cannot be used -> path of the file and error."""
 find = _REGISTRY.find
-
-
-def motion_named(text: str) -> Motion:
-    """Return the motion for a text such as "elliptic:forward=0.5,phase=90".
-
-    Raises
-    ------
-    InputError
-        If the text does not name a motion.  The message lists the known names.
-    """
-    return _REGISTRY.parse(text)
+motion_named = _REGISTRY.parse
+"""Function that returns the motion for a text such as "elliptic:forward=0.5,phase=90" or
+"file:stroke.csv"."""

@@ -142,7 +142,8 @@ class Sampled(_Samples):
 
     text: str
 
-    summary = "one period of any shape, from samples"
+    summary = "sliding forward while moving along samples of a period"
+    amplitude_label = "factor of the samples"
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
@@ -277,6 +278,15 @@ FEWEST_SAMPLES = 4
 """Smallest number of rows of a period, also for the motion through every second row."""
 ROUNDING = 1e-9
 """Largest deviation of samples from a symmetry, divided by the largest sample."""
+
+
+def uneven_row(time: np.ndarray, most: float) -> int | None:
+    """Index of the time that is farthest from equal spacing; None if it is within `most` spacings,
+    and the times increase."""
+    even = np.linspace(time[0], time[-1], len(time))
+    distance = np.abs(time - even)
+    step = (time[-1] - time[0]) / max(len(time) - 1, 1)
+    return None if step > 0.0 and distance.max() <= most * step else int(np.argmax(distance))
 
 
 def _spline(values: np.ndarray) -> CubicSpline:

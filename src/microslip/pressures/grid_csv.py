@@ -3,15 +3,13 @@ point."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 import numpy as np
 
-from microslip.foundation import csv_text
+from microslip.foundation.number_table import read_numbers
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_units
 
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
 SAME = 1e-9
 """Coordinates count as equal if they differ by less than this fraction of their range."""
 ALLOWED = (
@@ -26,9 +24,6 @@ def grid(
     """Return the coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m), and their
     units.
 
-    Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
-    ignored.
-
     Parameters
     ----------
     content : bytes
@@ -41,51 +36,20 @@ def grid(
     ValueError
         If the content has another format, or if the points do not fill a grid.
     """
-    lines = csv_text.lines(content, encoding)
-    where, heading = next(lines, (1, ""))
-    separator, order, units = _columns(where, heading)
-    rows, places, thousands = [], [], csv_text.Thousands(separator, COLUMNS)
-    for where, line in lines:
-        cells = csv_text.cells(where, line, separator, len(order))
-        places_and_names = zip(order, COLUMNS, strict=True)
-        words = [
-            csv_text.with_point(where, name, cells[i], decimal) for i, name in places_and_names
-        ]
-        rows.append([number(where, *word) for word in zip(COLUMNS, words, strict=True)])
-        places.append(where)
-        thousands.see(where, words)
-        if len(rows) > MOST_POINTS:
-            raise ValueError(f"line {where}: more than {MOST_POINTS} points; allowed: at most that")
-    thousands.refuse()
-    table = np.array(rows, float).reshape(-1, 3)
-    ratio, sizes = read_units(units)
+    read = read_numbers(
+        content,
+        COLUMNS,
+        ALLOWED,
+        complete=True,
+        least={"pressure": 0.0},
+        decimal=decimal,
+        encoding=encoding,
+        most=MOST_POINTS,
+    )
+    table = np.stack([read.columns[name] for name in COLUMNS], axis=1)
+    ratio, sizes = read_units([read.units[name] for name in COLUMNS])
     table[:, 1] *= ratio
-    return _filled(table, places), sizes
-
-
-def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
-    """Return the separator, the position of each of COLUMNS, and their units (None if there is no
-    unit)."""
-    for separator in csv_text.SEPARATORS:
-        words = csv_text.words(heading, separator)
-        matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
-        names = [match[1].lower() for match in matches]
-        if set(names) == set(COLUMNS) and len(words) == len(names) == len(COLUMNS):
-            order = [names.index(name) for name in COLUMNS]
-            return separator, order, [matches[i][2] for i in order]
-    raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
-
-
-def number(where: int, name: str, word: str) -> float:
-    """The number of a word.  Raises ValueError unless it is finite, and at least 0 for a
-    pressure."""
-    if not NUMBER.fullmatch(word):
-        raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
-    value = float(word)
-    if not np.isfinite(value) or (name == "pressure" and value < 0.0):
-        allowed = "a finite number" + (", 0 or above" if name == "pressure" else "")
-        raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
-    return value
+    return _filled(table, read.lines), sizes
 
 
 def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

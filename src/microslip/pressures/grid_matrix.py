@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.foundation import csv_text
-from microslip.pressures.grid_csv import NUMBER, number
+from microslip.foundation.number_table import NUMBER, number
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_pitch
 
 OUTSIDE = "B"
@@ -73,7 +73,7 @@ def grid(
             raise ValueError(f"line {where}: {problem}; {ALLOWED}")
         words = [csv_text.with_point(where, "pressure", cell, decimal) for cell in cells]
         words = ["0" if word == OUTSIDE else word for word in words]
-        rows.append([number(where, "pressure", word) for word in words])
+        rows.append([number(where, "pressure", word, 0.0) for word in words])
         if len(rows) * len(first) > MOST_POINTS:
             raise ValueError(f"line {where}: more than {MOST_POINTS} points; allowed: at most that")
         for word in words:

@@ -6,9 +6,17 @@ import math
 from dataclasses import dataclass
 
 from microslip.motions.by_name import motion_named
+from microslip.motions.motion import Motion
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.motions import COMBINED, MOTIONS, PARTS, is_steady, unit_of_amplitude
+from microslip.si.motions import (
+    MOTIONS,
+    PARTS,
+    has_several_amplitudes,
+    is_steady,
+    unit_of_amplitude,
+)
+from microslip.si.strokes import Stroke
 from microslip.theory import hertz
 
 
@@ -23,7 +31,7 @@ class RealMotion:
     speed : float or None
         Forward speed, m/s; None if a force is prescribed.
     amplitude : float or None
-        Half stroke of the oscillation, m, or rad for a rotation.
+        Half stroke of the oscillation, m, or rad for a rotation; factor of a stroke from a file.
     frequency : float or None
         Frequency of the oscillation, Hz.
     rotation : float or None
@@ -31,6 +39,8 @@ class RealMotion:
     forward_amplitude, rotation_amplitude, load_amplitude, phase : float or None
         Properties of a motion with several oscillations: half strokes of the forward motion, m, of
         the rotation, rad, and of the load, N, and the phase, rad.
+    stroke : Stroke or None
+        Period from a file.
     """
 
     name: str
@@ -42,6 +52,12 @@ class RealMotion:
     rotation_amplitude: float | None = None
     load_amplitude: float | None = None
     phase: float | None = None
+    stroke: Stroke | None = None
+
+    @property
+    def several(self) -> bool:
+        """True for a motion with several amplitudes, see `parts`."""
+        return has_several_amplitudes(self.name)
 
     @property
     def steady(self) -> bool:
@@ -58,8 +74,20 @@ class RealMotion:
         """Largest displacement along the surface in a period, m, and largest rotation, rad."""
         if self.spins:
             return 0.0, self.amplitude or 0.0
+        if self.stroke is not None:
+            return self._times_factor(self.stroke.reach)
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
         return along, self.rotation_amplitude or 0.0
+
+    @property
+    def pace(self) -> tuple[float, float]:
+        """Largest speed of the oscillation along the surface, m, and of its rotation, rad, divided
+        by the angular frequency."""
+        return self.swing if self.stroke is None else self._times_factor(self.stroke.pace)
+
+    def _times_factor(self, pair: tuple[float, float]) -> tuple[float, float]:
+        factor = self.amplitude or 0.0
+        return factor * pair[0], factor * pair[1]
 
     @property
     def turn(self) -> float:
@@ -82,7 +110,11 @@ class RealMotion:
 
 
 def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Dimensionless amplitudes of a motion with several oscillations, by the solver's name."""
+    """Dimensionless amplitudes of a motion with several oscillations, by the solver's name.  Those
+    of a motion from a file are the largest deviations of its columns."""
+    if motion.stroke is not None:
+        factor, columns = motion.amplitude or 0.0, motion.stroke.deviations(contact)
+        return {name: factor * float(abs(one).max()) for name, one in columns.items()}
     unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
     amplitudes = {}
     for name, (share, _) in PARTS.items():
@@ -95,12 +127,15 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     return amplitudes
 
 
-def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
-    """Text of the motion for microslip.solve.  Several amplitudes are divided by the largest
-    one."""
-    if motion.name not in COMBINED:
+def solver_motion(motion: RealMotion, contact: TwoBodies) -> str | Motion:
+    """The motion for microslip.solve, as text or as an object.  Several amplitudes are divided by
+    the largest one."""
+    if not motion.several:
         return motion.name
     amplitudes = parts(motion, contact)
+    if motion.stroke is not None:
+        factor = motion.amplitude or 1.0
+        return motion.stroke.sampled(contact, max(amplitudes.values()) / factor or 1.0)
     largest = max(amplitudes.values()) or 1.0
     shares = {name: size / largest for name, size in amplitudes.items()}
     shares["phase"] = math.degrees(motion.phase or 0.0)
@@ -123,7 +158,7 @@ def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
     """Amplitude for microslip.solve; None for a steady motion."""
     if motion.steady:
         return None
-    if motion.name in COMBINED:
+    if motion.several:
         return max(parts(motion, contact).values())
     assert motion.amplitude is not None  # the motion has one oscillation
     if not motion.spins:
@@ -145,7 +180,7 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     omega = motion.turn
     if motion.name == "bore":
         return omega * motion.swing[1] * contact.contact_radius
-    if motion.name in MOTIONS:
+    if motion.name in MOTIONS or motion.stroke is not None:
         return omega * contact.u_lim
     record, size = motion_named(motion.name), _known_size(motion, contact)
     return omega * contact.u_lim * record.drift(1.0, size, contact.poisson)
@@ -159,10 +194,12 @@ def _over(speed: float, unit: float) -> float:
 
 
 def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
-    """Mean normal load, N.  It is larger than the load if the bodies separate in each period."""
-    if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
+    """Mean normal load, N.  It is larger than the load if the bodies separate in each period, and
+    differs from it for some motions from files."""
+    if motion.stroke is None and (motion.load_amplitude or 0.0) <= contact.load:
         return contact.load
-    record = motion_named(solver_motion(motion, contact))
+    record = solver_motion(motion, contact)
+    record = record if isinstance(record, Motion) else motion_named(record)
     pressure = pressure_named(contact.pressure)
     return contact.load * float(record.mean_load(_known_size(motion, contact), pressure))
 
@@ -220,5 +257,5 @@ def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
     edge, speed = contact.contact_radius, motion.known_speed
     if motion.steady:
         return math.hypot(speed, motion.turn * edge)
-    along, turned = motion.swing
+    along, turned = motion.pace
     return speed + motion.turn * (along + edge * turned)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import speaks_of_file
 from microslip.si import motions
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion
@@ -16,6 +17,7 @@ from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, PARTS, TAKES
 from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
+from microslip.si.strokes import Stroke, read_stroke
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
@@ -72,7 +74,7 @@ def read_argument(
     """
     usual, *limits = QUANTITIES[name]
     ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
-    return read(title or name, value, unit or usual, **ranges)
+    return read(title or name, value, usual if unit is None else unit, **ranges)
 
 
 Arguments = Mapping[str, Any]
@@ -323,6 +325,16 @@ def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, lo
         raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
+def with_stroke(stroke: Stroke, arguments: Arguments) -> Arguments:
+    """The arguments, completed by the amplitude, the frequency and the load of a stroke from a
+    file.  Raises InputError for a frequency beside a column `time`."""
+    if stroke.frequency is not None and arguments["frequency"] is not None:
+        allowed = "allowed only without a column time, which contains the frequency"
+        raise InputError("frequency", arguments["frequency"], allowed)
+    own = {"amplitude": 1.0, "frequency": stroke.frequency, "load": stroke.mean_load}
+    return {name: own.get(name) if value is None else value for name, value in arguments.items()}
+
+
 def read_motion(
     motion: str, arguments: Arguments, sought: str | None
 ) -> tuple[RealMotion, dict[str, str]]:
@@ -340,7 +352,8 @@ def read_motion(
     for name in needed:
         if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
-    unit = motions.unit_of_amplitude(motion)
+    stroke = read_stroke(motion) if speaks_of_file(motion) else None
+    unit = motions.unit_of_amplitude(motion) if stroke is None else ""
     quantities = {
         name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
         for name in ("speed", *MOTION_ARGUMENTS)
@@ -351,9 +364,11 @@ def read_motion(
         allowed = "allowed is above 0 where no other amplitude is"
         raise InputError(needed[0], arguments[needed[0]], allowed)
     texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
-    return RealMotion(motion, **values), texts | {
-        name: one.text for name, one in quantities.items()
-    }
+    texts |= {name: one.text for name, one in quantities.items()}
+    if stroke is not None:
+        texts["amplitude"] += " times the samples"
+        return RealMotion(stroke.name, **values, stroke=stroke), texts
+    return RealMotion(motion, **values), texts
 
 
 MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")

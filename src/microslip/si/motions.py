@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import speaks_of_file
 
 if TYPE_CHECKING:  # the command line needs only the tables
     from microslip.motions.motion import Motion
+    from microslip.si.strokes import Stroke
 
 UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
 """SI unit of the amplitude for each motion with one oscillation."""
@@ -54,7 +56,9 @@ phases."""
 
 def check_motion(motion: object) -> None:
     """Raise InputError unless a motion has amplitudes in SI units."""
-    if not isinstance(motion, str) or motion not in MOTIONS:
+    if speaks_of_file(motion):
+        _stroke(motion)
+    elif not isinstance(motion, str) or motion not in MOTIONS:
         record = _record(motion)
         if record.loads:
             allowed = "allowed is normal with a load_amplitude for an oscillating load"
@@ -66,12 +70,20 @@ def check_motion(motion: object) -> None:
 
 def is_steady(motion: str) -> bool:
     """True if nothing oscillates."""
-    return motion == "continuous-bore" or motion not in MOTIONS and not _record(motion).periodic
+    if motion in MOTIONS or speaks_of_file(motion):
+        return motion == "continuous-bore"
+    return not _record(motion).periodic
+
+
+def has_several_amplitudes(motion: str) -> bool:
+    """True for a motion with several oscillations, and for one from a file, whose amplitude is a
+    factor."""
+    return motion in COMBINED or speaks_of_file(motion)
 
 
 def unit_of_amplitude(motion: str) -> str | None:
     """SI unit of the amplitude; None for a steady motion or one with several oscillations."""
-    if motion in MOTIONS:
+    if motion in MOTIONS or speaks_of_file(motion):
         return UNIT_OF_AMPLITUDE.get(motion)
     record = _record(motion)
     return _unit(record) if record.periodic else None
@@ -81,12 +93,18 @@ def is_along_the_drive(motion: str) -> bool:
     """True if the vibration is, or can be, along the drive."""
     if motion in MOTIONS:
         return motion in ALONG_THE_DRIVE
+    if speaks_of_file(motion):
+        return not {"forward", "load", "indentation"}.isdisjoint(_stroke(motion).columns)
     ahead, _, _ = _oscillation(_record(motion))
     return bool(np.ptp(ahead) > 0.0)
 
 
 def description(motion: str) -> str:
     """Description of the motion of the sphere."""
+    if speaks_of_file(motion):
+        columns = _stroke(motion).columns
+        rows = len(next(iter(columns.values())))
+        return f"slides forward and follows {rows} samples of its {' and '.join(columns)}"
     return MOTIONS.get(motion) or f"is {_record(motion).summary}"
 
 
@@ -94,6 +112,12 @@ def _record(motion: Any) -> Motion:
     from microslip.motions.by_name import motion_named
 
     return motion_named(motion)
+
+
+def _stroke(motion: str) -> Stroke:
+    from microslip.si.strokes import read_stroke
+
+    return read_stroke(motion)
 
 
 def _oscillation(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -22,7 +22,6 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import parts
-from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import FIRST_ORDER, QUANTILES
 from microslip.si.request import Request
@@ -242,10 +241,12 @@ def _state(request: Request) -> _State:
     amplitude = request.groups[1]
     largest = still * largest_force(request)
     shape: tuple[object, ...] = (contact.pressure,)
-    if amplitude and motion.name in COMBINED:
+    if amplitude and motion.several:
         shape += tuple(
             round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
         )
+    if motion.stroke is not None and not motion.stroke.columns.keys() <= {"forward", "lateral"}:
+        shape += (contact.load, contact.contact_radius)
     force = request.drive.force
     return _State(still, largest, amplitude, contact.mu, contact.poisson, force, shape)
 

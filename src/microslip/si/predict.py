@@ -94,10 +94,12 @@ def predict(
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere oscillates about the contact
-        normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal", or
-        another translation or rotation of `microslip.solve`.
+        normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal",
+        "file:FILE" with one period of samples with units, or another translation or rotation of
+        `microslip.solve`.
     radius, load, mu : quantity
-        Radius of the sphere, m; normal load, N; coefficient of friction without vibration.
+        Radius of the sphere, m; normal load, N; coefficient of friction without vibration.  For a
+        file with a column `load`, the default load is the mean of this column.
     speed : quantity
         Forward speed of sliding, m/s.  With a spring, it is the speed of the far end of the
         spring.
@@ -119,7 +121,8 @@ def predict(
         microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".  Default: "hertz".
     amplitude : quantity
         Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
-        several oscillations it is the lateral half stroke.
+        several oscillations it is the lateral half stroke.  For a file it is a factor, 1 by
+        default.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
         Properties of a motion with several oscillations: half strokes of the forward motion, m, of
         the spin, rad, and of the load, N, and a phase, rad.  The phase applies to the forward
@@ -127,7 +130,7 @@ def predict(
         normal, which follow sin(omega t + phase).  The other oscillations follow sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps) or angular (rad/s, deg/s, rpm, turn/s).  A
-        number is in Hz.
+        number is in Hz.  A file with a column `time` contains it.
     rotation : quantity
         Angular speed of a continuous bore, in the units of a frequency.  A number is in rad/s.
     reduction : quantity, optional
@@ -277,7 +280,7 @@ def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict
     """Fields of Oscillating, the part common to motions that oscillate."""
     motion, mu = request.motion, request.contact.mu
     fields: dict[str, Any] = {
-        "amplitude_si": motion.amplitude,
+        "amplitude_si": motion.amplitude if motion.stroke is None else None,
         "forward_amplitude_m": motion.forward_amplitude,
         "rotation_amplitude_rad": motion.rotation_amplitude,
         "load_amplitude_N": motion.load_amplitude,

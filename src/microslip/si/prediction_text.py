@@ -7,7 +7,11 @@ from collections.abc import Callable
 from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, interval_text, number_text
-from microslip.si.motions import COMBINED, is_along_the_drive, unit_of_amplitude
+from microslip.si.motions import (
+    has_several_amplitudes,
+    is_along_the_drive,
+    unit_of_amplitude,
+)
 from microslip.si.printed_lines import (
     EXCLUDED,
     FIRST_ORDER,
@@ -95,10 +99,9 @@ def prediction_text(record: Any) -> str:
     lines += ["", *show("contact radius", "{contact_radius_m}")]
     lines += show("indentation", "{indentation_m}", not math.isnan(record.indentation_m))
     lines += show("u_lim", "{u_lim_m}") + show("largest pressure", pressure)
-    lines += show("amplitude", "{size}, dimensionless {amplitude}", record.motion not in COMBINED)
-    lines += show(
-        "amplitude", "the largest is dimensionless {amplitude}", record.motion in COMBINED
-    )
+    several = has_several_amplitudes(record.motion)
+    lines += show("amplitude", "{size}, dimensionless {amplitude}", not several)
+    lines += show("amplitude", "the largest is dimensionless {amplitude}", several)
     lines += show("velocity", "dimensionless {velocity}", not forced)
     sentence = "{sought} {sought_text}, {least} with a reduction of {understood[reduction]}"
     lines += show("found", sentence + "; all other lines are for {sought_exact}")

@@ -32,6 +32,7 @@ from microslip.si.units import (
 EXAMPLES = {
     "Pa": "210 GPa",
     "m": "5 mm",
+    "s": "1 ms",
     "N": "10 N",
     "m/s": "1 mm/s",
     "Hz": "20 kHz",

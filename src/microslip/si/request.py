@@ -12,6 +12,8 @@ from microslip.adaptive.checks import checked_driven_problem
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError, shown
+from microslip.foundation.named_files import speaks_of_file
+from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.si import motions
 from microslip.si.bodies import TwoBodies
@@ -33,9 +35,11 @@ from microslip.si.inputs import (
     read_contact,
     read_drive,
     read_motion,
+    with_stroke,
 )
 from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
+from microslip.si.strokes import read_stroke
 
 LARGEST_TOLERANCE = 0.1
 """Largest allowed tolerance, absolute for mu_macro and relative for a speed."""
@@ -131,8 +135,8 @@ class Request:
         return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
 
     @property
-    def solver_motion(self) -> str:
-        """Text of the motion for microslip.solve."""
+    def solver_motion(self) -> str | Motion:
+        """The motion for microslip.solve, as text or as an object."""
         return solver_motion(self.motion, self.contact)
 
     @property
@@ -216,6 +220,8 @@ class Request:
 
 def request_of(motion: str, arguments: Arguments) -> Request:
     """The Request for all arguments of predict by name.  Raises InputError."""
+    if speaks_of_file(motion):
+        arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():
         if name != "counterbody" and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
@@ -283,7 +289,7 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
     if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
     if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
-        what = "several amplitudes" if motion in motions.COMBINED else "no amplitude"
+        what = "several amplitudes" if motions.has_several_amplitudes(motion) else "no amplitude"
         raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:
         allowed = "allowed only without the amplitude, the speed or the load, which it determines"

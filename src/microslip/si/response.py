@@ -19,14 +19,12 @@ import numpy as np
 from microslip.adaptive.response import Response, response
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError, shown
-from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
 from microslip.si.inputs import read_bodies, read_contact
 from microslip.si.quantities import read
+from microslip.si.strokes import UNITS, scales
 from microslip.si.tables import LABELS, table_of
 
-UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
-"""SI units of the columns of a path."""
 ARGUMENTS = (
     *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
     *("young", "nu", "material", "counterbody", "hardness", "density"),
@@ -152,10 +150,10 @@ def predict_response(
             raise InputError(name, None, "needed")
     columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
     real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
-    scales = _scales(real, columns)
+    units = scales(real, columns)
     answer = response_to(
         path,
-        {name: columns[name] / scales[name] for name in columns},
+        {name: columns[name] / units[name] for name in columns},
         pressure=real.pressure,
         poisson=real.poisson,
         tolerance=tolerance,
@@ -193,20 +191,6 @@ def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response
             raise
         problem = f"{error.argument} = {shown(error.value)}: {error.allowed}"
         raise InputError("path", named(path), problem) from None
-
-
-def _scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Units of the columns of `microslip.response`, in SI units."""
-    if "indentation" in columns and not math.isfinite(contact.indentation):
-        allowed = "allowed is a load: the indentation under this pressure is not known"
-        raise InputError("indentation", None, allowed)
-    return {
-        "forward": contact.u_lim,
-        "lateral": contact.u_lim,
-        "angle": contact.u_lim / contact.contact_radius,
-        "load": contact.load,
-        "indentation": contact.indentation,
-    }
 
 
 def read_path(

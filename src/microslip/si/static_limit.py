@@ -11,7 +11,6 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.si.motions import COMBINED
 from microslip.si.request import Request
 
 TOLERANCE = 1e-3
@@ -33,8 +32,7 @@ def static_limit(request: Request) -> Result | None:
 
 def tolerance_of(request: Request, tolerance: float) -> float:
     """The tolerance of a static limit.  It is larger for a motion with several oscillations."""
-    combined = request.motion.name in COMBINED
-    return max(tolerance, TOLERANCE_OF_COMBINED) if combined else tolerance
+    return max(tolerance, TOLERANCE_OF_COMBINED) if request.motion.several else tolerance
 
 
 def equals_static_limit(request: Request) -> bool | float | None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from microslip.foundation import csv_text
-from microslip.foundation.csv_text import HEADING
+from microslip.foundation.csv_text import HEADING, PURE
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import content_of
 
@@ -28,8 +28,6 @@ LABELS = ("label", "name", "id", "sample", "comment")
 """Columns of texts that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
 """Columns of texts; all others are quantities."""
-PURE = {"", "1", "-"}
-"""Units in a heading that mean a pure number."""
 
 
 @dataclass(frozen=True)

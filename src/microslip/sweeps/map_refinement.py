@@ -99,14 +99,16 @@ def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list
             answers[record["key"]] = record, seconds
             yield record
 
-    with ProcessPoolExecutor(processes, None, _begin, (map_.sweep.pressure,)) as pool:
+    names = [named_files.with_path(name) for name in (map_.sweep.motion, map_.sweep.pressure)]
+    with ProcessPoolExecutor(processes, None, _begin, (names,)) as pool:
         refine(map_, ask)
     return gather(answers.values())
 
 
-def _begin(pressure: str) -> None:
-    """Prepare a worker process to read pressure files and to end when its parent process ends."""
-    named_files.remember([pressure])
+def _begin(names: list[str]) -> None:
+    """Prepare a worker process to read files of motions and pressures, and to end when its parent
+    process ends."""
+    named_files.remember(names)
     Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -35,6 +35,7 @@ from microslip.datasets.query.solver import drive_of, solve_and_store
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import speaks_of_file
 from microslip.motions.by_name import motion_named
 from microslip.theory.catalogue import FORMS
 
@@ -54,12 +55,15 @@ class Friction:
     """
 
     def __init__(self, dataset: xr.Dataset):
-        try:
-            motion = motion_named(dataset.attrs.get("motion"))
-        except ValueError:
-            raise ValueError(
-                "no motion of microslip in the attributes: allowed is the dataset of a sweep"
-            ) from None
+        name, periodic = dataset.attrs.get("motion"), True
+        if not speaks_of_file(name):  # the file, which has one period, need not be here
+            try:
+                motion = motion_named(name)
+            except ValueError:
+                raise ValueError(
+                    "no motion of microslip in the attributes: allowed is the dataset of a sweep"
+                ) from None
+            name, periodic = motion.name, motion.periodic
         if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
                 "a dataset over a prescribed force has no friction map: allowed is one over a "
@@ -67,7 +71,7 @@ class Friction:
             )
         self._dataset = dataset
         # The name is stored instead of the motion, which has lambdas that cannot be pickled.
-        self._motion, self._periodic = motion.name, motion.periodic
+        self._motion, self._periodic = name, periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._has_limits = beyond.has_limits(dataset)
         self._read: tuple[tuple, Nodes | CellNodes] | None = None

@@ -180,6 +180,7 @@ def _warnings(
     if isinstance(scale, Modulus):
         rows, mu = scale.rows, math.exp(best.theta[0])
         widest = int(np.argmax(rows.amplitude))
-        sizes = (rows.speed[widest], rows.amplitude[widest], rows.frequency[widest])
-        real_motion = RealMotion(motion, *(float(size) for size in sizes))
+        columns = (rows.speed, rows.amplitude, rows.frequency)
+        speed, amplitude, frequency = (float(column[widest]) for column in columns)
+        real_motion = RealMotion(motion, speed, amplitude, frequency)
         yield from broken_assumptions(scale.contact(mu, math.exp(best.theta[1])), real_motion)

@@ -1,0 +1,128 @@
+"""The command `microslip fold`: one period of a motion from a long record."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from microslip.app.question import (
+    Answer,
+    add_json,
+    add_options,
+    refuse_output,
+    respond,
+    typed_options,
+)
+from microslip.foundation import spec
+from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.number_text import number_text
+
+if TYPE_CHECKING:
+    from microslip.si.record import Fold
+
+OPTIONS = {
+    "output": ("FILE", "the CSV file of the period, for file:FILE as a motion"),
+    "frequency": (
+        "F",
+        "frequency of the motion, such as '200 Hz', which is refined (that of the strongest "
+        "component)",
+    ),
+    "rows": (
+        "N",
+        "number of samples of the period, an even number (32).  More samples keep more harmonics, "
+        "and more noise",
+    ),
+    "decimal": ("MARK", "decimal mark of the record, point or comma (point)"),
+    "encoding": ("NAME", "encoding of the record, such as cp1252 (utf-8)"),
+}
+"""Options, each with a metavar and a help text."""
+
+
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `fold` to its parser."""
+    parser.description = (
+        "One period of a motion from a record of many periods, such as that of a laser vibrometer. "
+        "The slow drift is removed, and the periods are averaged.  The scatter between the periods "
+        "gives the standard error.  The columns of the record are time and some of forward, "
+        "lateral, angle, and load or indentation, each with its unit, as in time [s],lateral [um]."
+    )
+    parser.add_argument("record", metavar="CSV", help="the record")
+    add_options(parser, OPTIONS, required=("output",))
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the answer.  Returns the exit code: 0, or 2 for bad input."""
+    return respond("microslip fold", options, _answer, {"record": "CSV"}, OPTIONS)
+
+
+def _answer(options: argparse.Namespace) -> Answer:
+    from microslip.si.quantities import read
+    from microslip.si.record import ROWS, fold
+    from microslip.si.strokes import read_record
+
+    arguments = typed_options(options)
+    refuse_output(options.output, options.record)
+    rows, frequency = ROWS, None
+    if "rows" in arguments:
+        rows = int(spec.read("rows", arguments["rows"], whole=True))
+    if "frequency" in arguments:
+        frequency = read("frequency", arguments["frequency"], "Hz").si
+    form = {name: arguments[name] for name in ("decimal", "encoding") if name in arguments}
+    time, columns, units = read_record(options.record, **form)
+    try:
+        result = fold(time, columns, frequency=frequency, rows=rows)
+    except InputError as error:
+        if error.argument in ("rows", "frequency"):
+            raise
+        raise InputError("record", options.record, str(error)) from None
+    _write(options.output, result, units)
+    plain = {
+        "frequency_Hz": result.frequency,
+        "frequency_error_Hz": result.frequency_error,
+        "periods": result.periods,
+        "columns": {
+            name: {
+                "unit": units[name],
+                "peak_to_peak": float(np.ptp(one)),
+                "error": float(np.max(result.errors[name])),
+                "drift_per_second": result.drift[name],
+            }
+            for name, one in result.columns.items()
+        },
+        "output": options.output,
+    }
+    return Answer(plain, _as_text(result, units, options.output), complete=True)
+
+
+def _as_text(result: Fold, units: dict[str, str], output: str) -> str:
+    frequency = number_text(result.frequency, result.frequency_error, "Hz")
+    lines = [f"frequency    {frequency}", f"periods      {result.periods}"]
+    for name, one in result.columns.items():
+        unit, error = units[name], float(np.max(result.errors[name]))
+        size = number_text(float(np.ptp(one)), 2.0 * error, unit)
+        drift = f"{result.drift[name]:.3g} {unit}/s"
+        lines.append(f"{name:<12} {size} from peak to peak, drift {drift}")
+        lines.append(f"{'':<12} standard error of a sample {error:.2g} {unit}")
+    return "\n".join([*lines, f"written to   {output}: the motion file:{output}"])
+
+
+def _write(output: str, result: Fold, units: dict[str, str]) -> None:
+    from microslip.foundation.files import writing_beside
+
+    columns = {"time": result.time} | result.columns
+    heading = ",".join(f"{name} [{units.get(name, 's')}]" for name in columns)
+    errors = ", ".join(f"{n} {np.max(e):.2g} {units[n]}" for n, e in result.errors.items())
+    lines = [
+        f"# mean of {result.periods} periods; standard error of a sample: {errors}",
+        heading,
+        *(",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values(), strict=True)),
+    ]
+    try:
+        with writing_beside(Path(output)) as beside:
+            beside.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except (OSError, CacheError) as error:
+        raise InputError("output", output, f"cannot be written: {error}") from None

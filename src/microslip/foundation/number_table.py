@@ -1,0 +1,122 @@
+"""Tables of numbers in CSV files: a heading with names and units of columns, then lines of numbers.
+
+Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
+ignored.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from microslip.foundation import csv_text
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
+
+
+@dataclass(frozen=True, eq=False)
+class NumberTable:
+    """A table of finite numbers.
+
+    Attributes
+    ----------
+    columns : dict of str to np.ndarray, shape (rows,)
+        Numbers by the name of the column, as in the file.
+    units : dict of str to str
+        Unit of each column, as in the heading; empty for a column without brackets.
+    lines : list of int
+        Line number of each row, starting at 1.
+    """
+
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+    lines: list[int]
+
+
+def read_numbers(
+    content: bytes,
+    names: Sequence[str],
+    allowed: str,
+    *,
+    complete: bool = False,
+    least: Mapping[str, float] = MappingProxyType({}),
+    decimal: str = ".",
+    encoding: str = "utf-8",
+    most: int = 1_000_000,
+) -> NumberTable:
+    """Read the table in the content of a CSV file.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    names : sequence of str
+        Allowed columns.
+    allowed : str
+        Description of the allowed heading, for messages.
+    complete : bool
+        Whether all columns are needed.
+    least : mapping of float
+        Smallest allowed number of some columns, by name.
+    decimal, encoding : str
+        Decimal mark and encoding of the file.
+    most : int
+        Largest number of rows.
+
+    Raises
+    ------
+    ValueError
+        If the content has another format.  The message begins with the line number.
+    """
+    lines = csv_text.lines(content, encoding)
+    where, heading = next(lines, (1, ""))
+    separator, units = _headings(where, heading, names, allowed, complete)
+    rows, places, thousands = [], [], csv_text.Thousands(separator, list(units))
+    for where, line in lines:
+        cells = csv_text.cells(where, line, separator, len(units))
+        pairs = list(zip(units, cells, strict=True))
+        words = [csv_text.with_point(where, name, cell, decimal) for name, cell in pairs]
+        rows.append(
+            [
+                number(where, n, word, least.get(n, -math.inf))
+                for n, word in zip(units, words, strict=True)
+            ]
+        )
+        places.append(where)
+        thousands.see(where, words)
+        if len(rows) > most:
+            raise ValueError(f"line {where}: more than {most} points; allowed: at most that")
+    thousands.refuse()
+    columns = np.array(rows, float).reshape(-1, len(units)).T
+    return NumberTable(dict(zip(units, columns, strict=True)), units, places)
+
+
+def _headings(
+    where: int, heading: str, names: Sequence[str], allowed: str, complete: bool
+) -> tuple[str, dict[str, str]]:
+    """The separator, and the unit of each column."""
+    for separator in csv_text.SEPARATORS:
+        words = csv_text.words(heading, separator)
+        matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
+        units = {match[1].lower(): (match[2] or match[3] or "").strip() for match in matches}
+        fits = units.keys() == set(names) if complete else units.keys() <= set(names)
+        if fits and len(units) == len(words):
+            return separator, units
+    raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {allowed}")
+
+
+def number(where: int, name: str, word: str, least: float = -math.inf) -> float:
+    """The number of a word.  Raises ValueError with the line unless it is finite and at least
+    `least`."""
+    if not NUMBER.fullmatch(word):
+        raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
+    value = float(word)
+    if not math.isfinite(value) or value < least:
+        allowed = "a finite number" + (f", {least:g} or above" if math.isfinite(least) else "")
+        raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
+    return value

@@ -1,0 +1,75 @@
+"""Motions from data files such as "file:stroke.csv", with equally spaced samples of one period.
+
+A CSV file has a heading with some of the columns forward, lateral, angle, and load or indentation,
+and one line for each sample.  The end point of the period, which equals its first point, is left
+out.  Without units, displacements are in u_lim, angles in u_lim / a, and loads and indentations are
+divided by their reference values.  A file with units is for predictions in SI units, see
+si/strokes.py.  ",decimal=comma" and ",encoding=cp1252" after the path describe the format.
+
+A column `time` is used to check that the samples are equally spaced.
+"""
+
+from __future__ import annotations
+
+from microslip.foundation.csv_text import PURE
+from microslip.foundation.named_files import DECIMALS, GRID, FileReader, NamedFile
+from microslip.foundation.number_table import NumberTable, read_numbers
+from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
+
+COLUMNS = (*PLANE, *NORMAL)
+ALLOWED = "some of forward,lateral,angle, and load or indentation, and time"
+EVEN = 1e-2
+"""Largest allowed distance of a time from equal spacing, divided by the spacing."""
+
+
+def table_of(file: NamedFile, content: bytes) -> NumberTable:
+    """The table of a file; see `columns_of`.  Raises ValueError."""
+    if file.grid != GRID or file.pitch:
+        raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
+    return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
+
+
+def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
+    """The table in the content of a file, with at least one of COLUMNS.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    decimal, encoding : str
+        Decimal mark and encoding of the file.
+    even : float
+        Largest allowed distance of a time from equal spacing, divided by the spacing.
+
+    Raises
+    ------
+    ValueError
+        If the content has another format, or if the times are not equally spaced.
+    """
+    table = read_numbers(content, (*COLUMNS, "time"), ALLOWED, decimal=decimal, encoding=encoding)
+    if not table.units.keys() & set(COLUMNS):
+        raise ValueError(f"there is no displacement or load; allowed: {ALLOWED}")
+    if not table.lines:
+        raise ValueError("no line follows the heading; allowed: one for each sample")
+    time = table.columns.get("time")
+    if time is not None and (row := uneven_row(time, even)) is not None:
+        where = table.lines[row]
+        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
+    return table
+
+
+def _of_content(file: NamedFile, content: bytes) -> Sampled:
+    table = table_of(file, content)
+    for name in COLUMNS:
+        unit = table.units.get(name, "")
+        if unit not in PURE:
+            raise ValueError(
+                f"{name} has the unit {unit}, which microslip predict accepts; allowed here: "
+                "dimensionless numbers without a unit"
+            )
+    return Sampled.of_columns({n: table.columns.get(n) for n in COLUMNS}, file.name)
+
+
+read_motion = FileReader("motion", _of_content)
+"""Function that returns the motion of a name such as "file:stroke.csv".  The name of the motion
+contains a digest of the content in place of the path."""

@@ -1,0 +1,158 @@
+"""Motions from files with units: one period of a measured stroke, such as "file:stroke.csv".
+
+time [ms],lateral [um],load [N]
+0,0,10
+0.1,0.62,10.3
+
+The format is that of motions/from_file.py, with a unit in each heading.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.foundation import csv_text
+from microslip.foundation.csv_text import PURE
+from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import FileReader, NamedFile, content_of
+from microslip.foundation.number_table import NumberTable
+from microslip.motions.from_file import COLUMNS, columns_of, table_of
+from microslip.motions.samples import NORMAL, PLANE, Sampled
+from microslip.si.bodies import TwoBodies
+from microslip.si.quantities import read
+from microslip.si.record import JITTER
+
+UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
+"""SI units of the columns of a path or a period."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """One period of a motion in SI units.
+
+    Attributes
+    ----------
+    name : str
+        Name of the motion, with a digest of the file.
+    columns : dict of str to np.ndarray, shape (rows,)
+        Columns of UNITS.  Displacements are relative to their mean over the period.
+    frequency : float or None
+        Frequency from the column `time`, Hz.
+    """
+
+    name: str
+    columns: dict[str, np.ndarray]
+    frequency: float | None
+
+    @property
+    def mean_load(self) -> float | None:
+        """Mean of the load, N; None without a load."""
+        return float(self.columns["load"].mean()) if "load" in self.columns else None
+
+    def deviations(self, contact: TwoBodies) -> dict[str, np.ndarray]:
+        """Columns in the units of `microslip.Sampled`.  A load or an indentation is minus 1."""
+        units = scales(contact, self.columns)
+        over = {name: values / units[name] for name, values in self.columns.items()}
+        return {name: one - 1.0 if name in NORMAL else one for name, one in over.items()}
+
+    def sampled(self, contact: TwoBodies, size: float) -> Sampled:
+        """The motion for microslip.solve, with deviations divided by `size`."""
+        over = {name: one / size for name, one in self.deviations(contact).items()}
+        return Sampled.of_columns({n: one + 1.0 if n in NORMAL else one for n, one in over.items()})
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Largest displacement along the surface from the mean, m, and largest rotation, rad."""
+        forward, lateral, angle = self._plane
+        return float(np.hypot(forward, lateral).max()), float(np.abs(angle).max())
+
+    @property
+    def pace(self) -> tuple[float, float]:
+        """Largest speed along the surface, m, and of the rotation, rad, divided by the angular
+        frequency."""
+        order = 1j * np.arange(self._plane.shape[1] // 2 + 1)
+        rates = np.fft.irfft(order * np.fft.rfft(self._plane), self._plane.shape[1])
+        return float(np.hypot(*rates[:2]).max()), float(np.abs(rates[2]).max())
+
+    @property
+    def _plane(self) -> np.ndarray:
+        """Forward and lateral displacement and angle, (3, rows)."""
+        rows = len(next(iter(self.columns.values())))
+        return np.stack([self.columns.get(name, np.zeros(rows)) for name in PLANE])
+
+
+def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
+    """Units of the columns of `microslip.response` and `microslip.Sampled`, in SI units."""
+    if "indentation" in columns and not math.isfinite(contact.indentation):
+        allowed = "allowed is a load: the indentation under this pressure is not known"
+        raise InputError("indentation", None, allowed)
+    return {
+        "forward": contact.u_lim,
+        "lateral": contact.u_lim,
+        "angle": contact.u_lim / contact.contact_radius,
+        "load": contact.load,
+        "indentation": contact.indentation,
+    }
+
+
+def _factors(table: NumberTable) -> dict[str, float]:
+    """Units of the columns, in SI units.  Raises ValueError for a missing or wrong unit."""
+    factors = {}
+    for name, unit in table.units.items():
+        si = UNITS.get(name, "s")
+        if unit in PURE:
+            raise ValueError(f"{name} has no unit; allowed: one such as {name} [{EXAMPLES[si]}]")
+        try:
+            factors[name] = read(name, f"1 {unit}", si).si
+        except InputError as error:
+            raise ValueError(f"{name} [{unit}]: {error.allowed}") from None
+    return factors
+
+
+def _of_content(file: NamedFile, content: bytes) -> Stroke:
+    table = table_of(file, content)
+    factors = _factors(table)
+    columns = {name: values * factors[name] for name, values in table.columns.items()}
+    time, frequency = columns.pop("time", None), None
+    if time is not None:
+        frequency = (len(time) - 1) / (len(time) * float(time[-1] - time[0]))
+    Sampled.of_columns(columns)  # raises InputError
+    columns = {n: one - one.mean() if n in PLANE else one for n, one in columns.items()}
+    return Stroke(file.name, {n: columns[n] for n in COLUMNS if n in columns}, frequency)
+
+
+EXAMPLES = {"m": "um", "rad": "mrad", "N": "N", "s": "ms"}
+"""An example of a unit of a column for each SI unit."""
+
+read_stroke = FileReader("motion", _of_content)
+"""Function that returns the Stroke of a name such as "file:stroke.csv"."""
+
+
+def read_record(
+    path: str, *, decimal: str = ".", encoding: str = "utf-8"
+) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
+    """Times, s, columns and units of a record for `microslip.fold`.
+
+    The columns are in the units of the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or has no time.
+    """
+    csv_text.check_format(decimal, encoding)
+    try:
+        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=JITTER)
+        factors = _factors(table)
+        if "time" not in table.columns:
+            raise ValueError("no column time; allowed is one, as in time [s]")
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
+        raise InputError("record", path, problem) from None
+    except ValueError as error:
+        raise InputError("record", path, str(error)) from None
+    time = table.columns.pop("time") * factors["time"]
+    return time, table.columns, table.units

@@ -1,0 +1,142 @@
+"""Motions from files: the answers of named motions, identity by content, formats and bad input."""
+
+import json
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.app.cli import main
+from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import DIGITS
+from microslip.motions.by_name import motion_named
+from microslip.theory import hertz
+
+PHASE = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+SINE = np.sin(PHASE)
+
+
+def file_of(path, **columns):
+    rows = zip(*columns.values(), strict=True)
+    lines = [",".join(columns), *(",".join(f"{x:.15g}" for x in row) for row in rows)]
+    path.write_text("\n".join(lines) + "\n")
+    return f"file:{path}"
+
+
+CASES = {
+    "transverse": ({"lateral": SINE}, "transverse", {"velocity": 0.1, "amplitude": 1.0}),
+    "static limit": ({"lateral": SINE}, "transverse", {"velocity": 0.0, "amplitude": 0.5}),
+    "force": ({"lateral": SINE}, "transverse", {"force": 0.5, "amplitude": 1.0}),
+    "spring": (
+        {"forward": SINE},
+        "longitudinal",
+        {"velocity": 0.1, "amplitude": 1.0, "stiffness": 1.0},
+    ),
+    "load": ({"load": 1.0 + SINE}, "normal", {"velocity": 0.2, "amplitude": 0.7}),
+    "two tones": (
+        {"forward": 0.5 * np.cos(2.0 * PHASE), "lateral": SINE},
+        "elliptic:forward=0.5,forward_cycles=2",
+        {"velocity": 0.1, "amplitude": 1.0},
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_a_file_gets_the_answer_of_the_named_motion(case, tmp_path):
+    columns, name, place = CASES[case]
+    other = microslip.solve(file_of(tmp_path / "stroke.csv", **columns), **place)
+    named = microslip.solve(name, **place)
+    assert other.converged
+    value, error = "mu_macro", "mu_macro_error"
+    if "force" in place:
+        value, error = "velocity", "velocity_error"
+    left = getattr(named, error) + getattr(other, error)
+    assert abs(getattr(named, value) - getattr(other, value)) <= left
+
+
+def test_a_file_of_a_rotation_gets_the_answer_of_the_bore(tmp_path):
+    # the velocity of a bore is over omega and the angle, that of a file over omega u_lim
+    name = file_of(tmp_path / "stroke.csv", angle=float(hertz.bore_angle(0.5)) * SINE)
+    problem = microslip.Problem(microslip.Bore(), velocity=0.3, amplitude=0.5)
+    named = microslip.solve(problem)
+    other = microslip.solve(name, velocity=problem.drift, amplitude=1.0)
+    assert abs(named.mu_macro - other.mu_macro) <= named.mu_macro_error + other.mu_macro_error
+
+
+def test_few_samples_in_a_file_are_a_source_of_error(tmp_path):
+    zigzag = 2.0 / np.pi * np.arcsin(SINE)
+    name = file_of(tmp_path / "stroke.csv", lateral=zigzag[::8])
+    coarse = microslip.solve(name, velocity=0.1, amplitude=1.0, tolerance=0.05)
+    exact = microslip.solve("zigzag", velocity=0.1, amplitude=1.0)
+    assert coarse.answer.by_source["model"] > 0.0
+    assert abs(coarse.mu_macro - exact.mu_macro) <= coarse.mu_macro_error + exact.mu_macro_error
+
+
+def test_the_command_line_takes_a_file(tmp_path, capsys):
+    name = file_of(tmp_path / "stroke.csv", lateral=SINE)
+    assert main(["point", name, "--velocity", "5", "--amplitude", "1", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    named = microslip.solve("transverse", velocity=5.0, amplitude=1.0)
+    assert abs(answer["mu_macro"] - named.mu_macro) <= 2e-3
+    assert answer["motion"] == motion_named(name).name
+
+
+def test_equal_content_is_one_motion(tmp_path):
+    (tmp_path / "sub").mkdir()
+    one = file_of(tmp_path / "a.csv", lateral=SINE)
+    other = file_of(tmp_path / "sub" / "b.csv", lateral=SINE)
+    names = [motion_named(name).name for name in (one, other)]
+    assert names[0] == names[1]
+    assert len(names[0]) == len("file:sha256=") + DIGITS
+    assert motion_named(names[0]) is motion_named(one)
+    file_of(tmp_path / "a.csv", lateral=2.0 * SINE)
+    assert motion_named(one).name != names[0]
+
+
+def test_files_may_come_from_spreadsheets(tmp_path):
+    content = "Lateral;Time\n0,0;0\n1,0;0,25\n0,0;0,5\n-1,0;0,75\n"
+    (tmp_path / "s.csv").write_text(content)
+    motion = motion_named(f"file:{tmp_path / 's.csv'},decimal=comma")
+    assert motion.rows[:, 1] == pytest.approx([0.0, 1.0, 0.0, -1.0])
+
+
+ROWS = "0\n1\n0\n-1\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        ("sideways\n" + ROWS, "line 1: the heading is 'sideways'; allowed: some of forward,"),
+        ("lateral [um]\n" + ROWS, "lateral has the unit um, which microslip predict accepts"),
+        ("lateral\n0\n1\n0\n", "lateral = 3: allowed are at least 4 rows"),
+        ("lateral\n0\n1\nx\n-1\n", "line 4: lateral is 'x'; allowed: a number"),
+        ("time\n" + ROWS, "there is no displacement or load"),
+        ("lateral\n", "no line follows the heading"),
+        ("load\n" + ROWS, "load = -1.0: allowed are numbers >= 0"),
+        ("load,indentation\n1,1\n1,1\n1,1\n1,1\n", "allowed is one of the two"),
+        ("time,lateral\n0,0\n1,1\n2,0\n4,-1\n", "time is not equally spaced"),
+        ("lateral,lateral\n0,0\n", "the heading is"),
+    ],
+)
+def test_bad_files_are_refused_in_one_line(tmp_path, capsys, content, problem):
+    (tmp_path / "stroke.csv").write_text(content)
+    name = f"file:{tmp_path / 'stroke.csv'}"
+    assert main(["point", name, "--velocity", "0.1", "--amplitude", "1"]) == 2
+    error = capsys.readouterr().err
+    assert problem in error and "MOTION" in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("file:", "allowed is a file, as in file:"),
+        ("file", "allowed after it is a colon and a name: file:NAME"),
+        ("file:none.csv", "none.csv cannot be read: No such file"),
+        ("file:sha256=0123456789abcdef", "no file with this content is known here"),
+    ],
+)
+def test_names_without_a_file_are_refused(name, problem):
+    with pytest.raises(InputError) as refused:
+        motion_named(name)
+    assert refused.value.argument == "motion" and problem in str(refused.value)

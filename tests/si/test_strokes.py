@@ -1,0 +1,135 @@
+"""Predictions for motions from files with units: the answers of named motions."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.foundation.errors import InputError
+from microslip.si.strokes import read_stroke
+
+PHASE = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+SINE = np.sin(PHASE)
+BALL = {"mu": 0.3, "radius": "5 mm", "material": "steel"}
+
+
+def file_of(path, **columns):
+    """File with the columns NAME_UNIT, such as lateral_um."""
+    heading = ",".join("{} [{}]".format(*name.rsplit("_", 1)) for name in columns)
+    rows = zip(*columns.values(), strict=True)
+    path.write_text("\n".join([heading, *(",".join(map(repr, map(float, row))) for row in rows)]))
+    return f"file:{path}"
+
+
+def same(one, other):
+    assert one.converged
+    assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
+    left = one.mu_static_error + other.mu_static_error
+    assert abs(one.mu_static - other.mu_static) <= left
+
+
+CASES = {
+    "transverse": ({"lateral_um": 0.2 * SINE}, "transverse", {"amplitude": "0.2 um"}),
+    "bore": ({"angle_deg": 0.3 * SINE}, "bore", {"amplitude": "0.3 deg"}),
+    "load": ({"load_N": 10.0 + 5.0 * SINE}, "normal", {"load_amplitude": "5 N"}),
+    "two directions": (
+        {"forward_nm": 80.0 * np.cos(PHASE), "lateral_um": 0.2 * SINE},
+        "elliptic",
+        {"amplitude": "0.2 um", "forward_amplitude": "80 nm", "phase": "90 deg"},
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_a_file_gets_the_answer_of_the_named_motion(case, tmp_path):
+    columns, motion, amplitudes = CASES[case]
+    shared = BALL | {"load": "10 N", "speed": "20 um/s", "frequency": "200 Hz"}
+    name = file_of(tmp_path / "stroke.csv", **columns)
+    one, other = (
+        microslip.predict(name, **shared),
+        microslip.predict(motion, **shared, **amplitudes),
+    )
+    same(one, other)
+    assert one.friction_force_still_N == pytest.approx(3.0)
+    assert str(one).startswith(
+        f"motion            {name}: the sphere slides forward and follows 64"
+    )
+
+
+def test_amplitude_is_a_factor_and_the_mean_of_a_displacement_has_no_effect(tmp_path):
+    shared = BALL | {"load": "10 N", "speed": "20 um/s", "frequency": "200 Hz"}
+    name = file_of(tmp_path / "stroke.csv", lateral_um=7.0 + 0.4 * SINE)
+    one = microslip.predict(name, **shared, amplitude=0.5)
+    other = microslip.predict("transverse", **shared, amplitude="0.2 um")
+    same(one, other)
+    assert one.amplitude == pytest.approx(other.amplitude)
+    assert one.amplitude_si is None
+
+
+def test_time_gives_the_frequency_and_the_file_the_load(tmp_path):
+    time = np.arange(64) / 64 * 5.0
+    columns = {"time_ms": time, "load_N": 10.0 + 5.0 * SINE, "lateral_um": 0.1 * np.cos(PHASE)}
+    name = file_of(tmp_path / "stroke.csv", **columns)
+    assert read_stroke(name).frequency == pytest.approx(200.0)
+    answer = microslip.predict(name, **BALL, speed="20 um/s")
+    assert answer.frequency_Hz == pytest.approx(200.0)
+    assert answer.load_N == pytest.approx(10.0)
+    with pytest.raises(
+        InputError, match="frequency = '200 Hz': allowed only without a column time"
+    ):
+        microslip.predict(name, **BALL, speed="20 um/s", frequency="200 Hz")
+
+
+def test_forces_do_not_depend_on_the_reference_load_beside_a_column_of_loads(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", load_N=10.0 + 5.0 * SINE)
+    shared = BALL | {"speed": "20 um/s", "frequency": "200 Hz"}
+    one, other = (microslip.predict(name, **shared, load=load) for load in ("10 N", "8 N"))
+    left = one.friction_force_error_N + other.friction_force_error_N
+    assert abs(one.friction_force_N - other.friction_force_N) <= left
+    assert other.friction_force_still_N == pytest.approx(3.0)
+
+
+@pytest.mark.slow
+def test_a_small_force_leaves_the_contact_at_rest(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
+    shared = BALL | {"load": "10 N", "frequency": "200 Hz", "force": "1 N"}
+    one = microslip.predict(name, **shared)
+    other = microslip.predict("transverse", **shared, amplitude="0.1 um")
+    assert one.outcome == other.outcome == "stays"
+    left = one.force_threshold_error_N + other.force_threshold_error_N
+    assert abs(one.force_threshold_N - other.force_threshold_N) <= left
+
+
+@pytest.mark.long
+def test_an_uncertain_factor_is_an_uncertain_amplitude(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", lateral_um=0.1 * SINE)
+    shared = BALL | {"load": "10 N", "frequency": "200 Hz", "speed": "20 um/s"}
+    one = microslip.predict(name, **shared, amplitude="1 +- 5 %")
+    other = microslip.predict("transverse", **shared, amplitude="0.1 um +- 5 %")
+    for spread in ("mu_macro_spread", "mu_static_spread"):
+        assert one.uncertainty[spread] == pytest.approx(other.uncertainty[spread], rel=0.2)
+
+
+def test_largest_speed_is_that_of_all_harmonics(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", lateral_um=SINE + 0.5 * np.sin(3.0 * PHASE))
+    # the slope of sin x + 0.5 sin 3 x at x = 0 is 2.5
+    assert read_stroke(name).pace[0] == pytest.approx(2.5e-6)
+    assert read_stroke(name).reach[0] == pytest.approx(1e-6, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("heading", "problem"),
+    [
+        ("lateral", r"lateral has no unit; allowed: one such as lateral \[um\]"),
+        ("lateral [N]", r"lateral \[N\]: the unit is newton"),
+        ("time,lateral [um]", r"time has no unit; allowed: one such as time \[ms\]"),
+        ("lateral [um],indentation [um],load [N]", "allowed is one of the two"),
+    ],
+)
+def test_bad_units_are_refused_in_one_line(tmp_path, heading, problem):
+    count = heading.count(",") + 1
+    rows = "\n".join(",".join([str(row)] * count) for row in range(1, 6))
+    (tmp_path / "stroke.csv").write_text(f"{heading}\n{rows}\n")
+    name = f"file:{tmp_path / 'stroke.csv'}"
+    with pytest.raises(InputError, match=problem):
+        microslip.predict(name, **BALL, load="10 N", speed="1 mm/s", frequency="10 Hz")
