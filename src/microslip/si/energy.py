@@ -37,10 +37,10 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         total, total_error = drag + power.value, max(total_error, drag_error)
     energy = 1.0 / motion.rate * Estimate(total, {"model": total_error})
     # a dashpot dissipates an unknown part of the power
-    known = None if request.drive.damping else power
+    known = not request.drive.damping
     fields["power"] = Power(
-        vibration_power_W=known and known.value,
-        vibration_power_error_W=known and known.error,
+        vibration_power_W=power.value if known else None,
+        vibration_power_error_W=power.error if known else None,
         dissipated_power_W=total,
         dissipated_power_error_W=total_error,
         energy_per_cycle_J=energy.value,

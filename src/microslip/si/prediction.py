@@ -27,10 +27,10 @@ _NAMES = """
     force_threshold_error_N safety_factor safety_factor_error regime natural_frequency pressure
     forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad contacts torque_N_m
     torque_error_N_m drag_power_W drag_power_error_W vibration_power_W vibration_power_error_W
-    dissipated_power_W dissipated_power_error_W energy_per_cycle_J
-    energy_per_cycle_error_J wear_volume_per_cycle_m3 wear_volume_per_cycle_error_m3
-    wear_depth_per_cycle_m wear_depth_per_cycle_error_m load_N sought sought_error
-    mu_macro_spread mu_apparent_spread friction_force_spread_N speed_spread_m_s sought_spread mu_static_spread mu_static_low
+    dissipated_power_W dissipated_power_error_W energy_per_cycle_J energy_per_cycle_error_J
+    wear_volume_per_cycle_m3 wear_volume_per_cycle_error_m3 wear_depth_per_cycle_m
+    wear_depth_per_cycle_error_m load_N sought sought_error mu_macro_spread mu_apparent_spread
+    friction_force_spread_N speed_spread_m_s sought_spread mu_static_spread mu_static_low
     mu_static_high mu_static_apparent_spread mu_static_apparent_low mu_static_apparent_high
     force_threshold_spread_N force_threshold_low_N force_threshold_high_N safety_factor_spread
     safety_factor_low safety_factor_high interval_method probability_stays probability_moves
