@@ -52,7 +52,7 @@ TORQUE_VARIABLES = {
     "mu_torque_error": (float, "estimated error of mu_torque"),
 }
 ENERGY_VARIABLES = {
-    "dissipated_energy": (float, "dissipated energy per period over mu F_z u_lim"),
+    "dissipated_energy": (float, "energy dissipated in a period"),
     "dissipated_energy_error": (float, "estimated error of dissipated_energy"),
 }
 """Additional variables of a sweep over an oscillating motion."""
