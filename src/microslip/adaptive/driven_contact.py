@@ -356,10 +356,11 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
 
     readings = [partial(run, problem=other) for other in problem.readings]
     read = attrgetter("mu" if drive.force is None else "velocity")
-    unit = problem.largest_energy
+    unit, work = problem.largest_energy, 0.0
     if drive.force is not None:  # errors of the velocity change the advance and the forces
-        unit = accuracy.slope * unit + 2.0 * math.pi * problem.mean_load * problem.unit_drift
-    refined = refine(run, ladder, tolerance, readings, read, unit)
+        work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
+        unit = accuracy.slope * unit + work
+    refined = refine(run, ladder, tolerance, readings, read, unit, work)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined

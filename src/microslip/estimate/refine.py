@@ -104,6 +104,7 @@ def refine(
     readings: Sequence[Callable] = (),
     read: Callable[[Run], float] = attrgetter("mu"),
     energy_unit: float = np.nan,
+    drive_work: float = 0.0,
 ) -> Refined:
     """Refine until the estimated error is within the tolerance.
 
@@ -122,6 +123,9 @@ def refine(
     energy_unit : float
         Error of the dissipated energy that corresponds to an error of 1 in the quantity, for the
         errors from periodicity and solver.
+    drive_work : float
+        Work of a prescribed force in a period at the velocity 1, divided by mu F_z u_lim, if the
+        quantity is a velocity.
 
     Returns
     -------
@@ -130,7 +134,7 @@ def refine(
         enough, or if a run raised budget.Spent.  In the last case it is the estimate before that
         run, or NaN if there is none.
     """
-    levels = _Levels(run, ladder, readings, read, energy_unit)
+    levels = _Levels(run, ladder, readings, read, energy_unit, drive_work)
     goal, refined = tolerance, None
     try:
         for level in ladder.levels(tolerance):
@@ -164,9 +168,10 @@ class _Levels:
         readings: Sequence[Callable],
         read: Callable[[Run], float],
         energy_unit: float,
+        drive_work: float,
     ):
         self.run, self.ladder, self.readings, self.read = run, ladder, readings, read
-        self.energy_unit = energy_unit
+        self.energy_unit, self.drive_work = energy_unit, drive_work
         self.runs: dict[int, Run] = {}
         self.other_runs: dict[tuple[int, int], Run] = {}
 
@@ -194,7 +199,7 @@ class _Levels:
         value, errors, order = self._of(self.read, floor, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), floor, three, others)
         # a fraction of the energy, which can be far below the unit of energy
-        floor *= abs(three[-1].energy)
+        floor *= max(abs(three[-1].energy), self.drive_work)
         energy, energy_errors, _ = self._of(attrgetter("energy"), floor, three, others)
         base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
         # a run that did not converge has a weight of at least 1, since levels can agree by chance
