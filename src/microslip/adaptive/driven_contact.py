@@ -360,7 +360,7 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
     if drive.force is not None:  # errors of the velocity change the advance and the forces
         work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
         unit = accuracy.slope * unit + work
-    refined = refine(run, ladder, tolerance, readings, read, unit, work)
+    refined = refine(run, ladder, tolerance, readings, read, energy_unit=unit, drive_work=work)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined

@@ -103,6 +103,7 @@ def refine(
     tolerance: float,
     readings: Sequence[Callable] = (),
     read: Callable[[Run], float] = attrgetter("mu"),
+    *,
     energy_unit: float = np.nan,
     drive_work: float = 0.0,
 ) -> Refined:
