@@ -55,11 +55,11 @@ def test_a_loop_of_torsion(amplitude, poisson):
 @pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
 def test_runs_agree_with_the_static_limit_in_closed_form(motion, model, pressure):
     exact = microslip.solve(motion, 0.0, 0.6, pressure=pressure)
-    found = microslip.solve(motion, 0.0, 0.6, pressure=pressure, model=model)
+    result = microslip.solve(motion, 0.0, 0.6, pressure=pressure, model=model)
     assert exact.model == "closed-form"
-    apart = abs(found.dissipated_energy - exact.dissipated_energy)
-    assert apart <= found.dissipated_energy_error + exact.dissipated_energy_error
-    assert found.dissipated_energy_error < 0.02 * exact.dissipated_energy
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
+    assert result.dissipated_energy_error < 0.02 * exact.dissipated_energy
 
 
 @pytest.mark.slow
@@ -68,20 +68,20 @@ def test_a_slow_motion_dissipates_the_loop_of_mindlin_and_deresiewicz(model):
     """The slow advance adds its own work, mu_macro times the way."""
     velocity, amplitude = 1e-3, 0.4
     exact = mindlin_deresiewicz(hertz.mindlin_force(amplitude))
-    found = microslip.solve("transverse", velocity, amplitude, model=model, tolerance=1e-2)
+    result = microslip.solve("transverse", velocity, amplitude, model=model, tolerance=1e-2)
     way = 2.0 * math.pi * velocity
-    assert exact < found.dissipated_energy + found.dissipated_energy_error
-    assert found.dissipated_energy - found.dissipated_energy_error < exact + 2.0 * way
+    assert exact < result.dissipated_energy + result.dissipated_energy_error
+    assert result.dissipated_energy - result.dissipated_energy_error < exact + 2.0 * way
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.1, 0.7), (0.1, 2.7), (3.0, 2.0)])
 @pytest.mark.parametrize("model", ["radial", "mdr"])
 def test_runs_agree_with_masing_along_a_line(velocity, amplitude, model):
     exact = microslip.solve("longitudinal", velocity, amplitude)
-    found = microslip.solve("longitudinal", velocity, amplitude, model=model)
+    result = microslip.solve("longitudinal", velocity, amplitude, model=model)
     assert exact.model == "closed-form"
-    apart = abs(found.dissipated_energy - exact.dissipated_energy)
-    assert apart <= found.dissipated_energy_error
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error
 
 
 @pytest.mark.parametrize(
@@ -89,10 +89,10 @@ def test_runs_agree_with_masing_along_a_line(velocity, amplitude, model):
 )
 def test_runs_agree_with_the_bounds_of_fast_sliding(motion, model, velocity):
     exact = microslip.solve(motion, velocity, 1.0)
-    found = microslip.solve(motion, velocity, 1.0, model=model, tolerance=1e-4)
+    result = microslip.solve(motion, velocity, 1.0, model=model, tolerance=1e-4)
     assert exact.model == "closed-form"
-    apart = abs(found.dissipated_energy - exact.dissipated_energy)
-    assert apart <= found.dissipated_energy_error + exact.dissipated_energy_error
+    apart = abs(result.dissipated_energy - exact.dissipated_energy)
+    assert apart <= result.dissipated_energy_error + exact.dissipated_energy_error
 
 
 @pytest.mark.slow
@@ -102,8 +102,8 @@ def test_a_rigid_contact_dissipates_its_way():
     In each reversal the contact sticks over at most 2 u_lim.
     """
     way = quad(lambda t: math.hypot(3.0, 30.0 * math.cos(t)), 0.0, 2.0 * math.pi)[0]
-    found = microslip.solve("transverse", 3.0, 30.0)
-    assert 0.0 < way - found.dissipated_energy < 4.0
+    result = microslip.solve("transverse", 3.0, 30.0)
+    assert 0.0 < way - result.dissipated_energy < 4.0
     rigid = microslip.solve("transverse", 3.0, 30.0, model="rigid")
     assert rigid.dissipated_energy == pytest.approx(way, abs=rigid.dissipated_energy_error)
 
@@ -117,17 +117,17 @@ def test_static_loops_of_the_reduced_models():
         "dahl": 4.0 * amplitude - 4.0 * math.tanh(stiffness * amplitude) / stiffness,
     }
     for model, energy in exact.items():
-        found = microslip.solve("transverse", 0.0, amplitude, model=model).dissipated_energy
-        assert found == pytest.approx(energy, rel=1e-9), model
+        result = microslip.solve("transverse", 0.0, amplitude, model=model).dissipated_energy
+        assert result == pytest.approx(energy, rel=1e-9), model
 
 
 def test_an_oscillating_load_dissipates_the_work_of_the_drag():
     """Without an oscillation in the plane only the drive does work, mu_macro times the load."""
-    found = microslip.solve("normal:indentation=1", 0.3, 0.8)
+    result = microslip.solve("normal:indentation=1", 0.3, 0.8)
     mean = pressure_named("hertz").total(1.0 + 0.8 * np.sin(np.linspace(0.0, 2.0 * np.pi, 2001)))
     load = float(np.mean(mean[1:]))
-    exact = 2.0 * math.pi * 0.3 * found.mu_macro * load
-    assert found.dissipated_energy == pytest.approx(exact, rel=1e-6)
+    exact = 2.0 * math.pi * 0.3 * result.mu_macro * load
+    assert result.dissipated_energy == pytest.approx(exact, rel=1e-6)
 
 
 def test_a_contact_at_rest_dissipates_the_energy_of_the_static_limit():
@@ -157,13 +157,13 @@ def test_contacts_add_up_in_the_units_of_the_body():
 
 
 def test_a_steady_motion_has_no_energy_per_period():
-    found = microslip.solve("continuous-bore", 0.3)
-    assert found.dissipated_energy is None
-    assert "dissipated_energy" not in found.to_dict()
+    result = microslip.solve("continuous-bore", 0.3)
+    assert result.dissipated_energy is None
+    assert "dissipated_energy" not in result.to_dict()
 
 
 def test_results_are_read_back_from_their_fields():
-    found = microslip.solve("longitudinal", 0.2, 1.0)
-    again = Result.from_dict(found.to_dict())
-    assert again.dissipated_energy == found.dissipated_energy
-    assert again.dissipated_energy_error == found.dissipated_energy_error
+    result = microslip.solve("longitudinal", 0.2, 1.0)
+    again = Result.from_dict(result.to_dict())
+    assert again.dissipated_energy == result.dissipated_energy
+    assert again.dissipated_energy_error == result.dissipated_energy_error

@@ -19,29 +19,29 @@ def test_a_steady_spin_takes_a_torque():
     at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
     a = at_rest.contact_radius_m
     asked = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
-    found = microslip.predict("continuous-bore", **asked)
+    result = microslip.predict("continuous-bore", **asked)
     whole = 3.0 * math.pi / 16.0 * 3.0 * a
-    assert found.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
+    assert result.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
     force = 3.0 * 3.0 * math.pi / 8.0 * (0.5 - 0.125 / 4.0)
-    assert found.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
-    assert found.vibration_power_W == pytest.approx(100.0 * found.torque_N_m)
-    both = found.drag_power_W + found.vibration_power_W
-    assert found.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
+    assert result.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
+    assert result.vibration_power_W == pytest.approx(100.0 * result.torque_N_m)
+    both = result.drag_power_W + result.vibration_power_W
+    assert result.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
 
 
 @pytest.mark.slow
 def test_energy_is_in_joules():
-    found = microslip.predict("transverse", **SHAKEN)
-    point = found.velocity, found.amplitude
-    result = microslip.solve("transverse", *point, poisson=found.poisson)
-    unit = 3.0 * found.u_lim_m
-    assert found.energy_per_cycle_J == pytest.approx(unit * result.dissipated_energy, rel=1e-12)
-    error = unit * result.dissipated_energy_error
-    assert found.energy_per_cycle_error_J == pytest.approx(error, rel=1e-12)
-    assert found.drag_power_W == pytest.approx(found.friction_force_N * 0.01, rel=1e-12)
-    assert found.dissipated_power_W == pytest.approx(found.energy_per_cycle_J * 20e3, rel=1e-12)
-    assert found.vibration_power_W == pytest.approx(
-        found.dissipated_power_W - found.drag_power_W, rel=1e-12
+    result = microslip.predict("transverse", **SHAKEN)
+    point = result.velocity, result.amplitude
+    answer = microslip.solve("transverse", *point, poisson=result.poisson)
+    unit = 3.0 * result.u_lim_m
+    assert result.energy_per_cycle_J == pytest.approx(unit * answer.dissipated_energy, rel=1e-12)
+    error = unit * answer.dissipated_energy_error
+    assert result.energy_per_cycle_error_J == pytest.approx(error, rel=1e-12)
+    assert result.drag_power_W == pytest.approx(result.friction_force_N * 0.01, rel=1e-12)
+    assert result.dissipated_power_W == pytest.approx(result.energy_per_cycle_J * 20e3, rel=1e-12)
+    assert result.vibration_power_W == pytest.approx(
+        result.dissipated_power_W - result.drag_power_W, rel=1e-12
     )
 
 
@@ -55,9 +55,9 @@ def test_energy_is_in_joules():
     ],
 )
 def test_without_an_effect_of_the_vibration_the_energy_is_that_of_the_drag(motion, change, drag):
-    found = microslip.predict(motion, **SHAKEN | change)
-    way = found.speed_m_s / 20e3
-    assert found.energy_per_cycle_J == pytest.approx(3.0 * way, rel=1e-3)
+    result = microslip.predict(motion, **SHAKEN | change)
+    way = result.speed_m_s / 20e3
+    assert result.energy_per_cycle_J == pytest.approx(3.0 * way, rel=1e-3)
 
 
 def test_several_contacts_dissipate_the_energy_of_each():
@@ -75,27 +75,29 @@ def test_mindlin_and_deresiewicz_without_a_speed():
     This is the formula of Mindlin and Deresiewicz (1953).
     """
     soft = {"young": "1 MPa", "nu": 0.0, "radius": "5 mm", "load": "1 mN", "mu": 0.3}
-    found = microslip.predict("transverse", **soft, speed=0.0, amplitude="0.3 um", frequency="1 Hz")
-    size = found.amplitude
+    result = microslip.predict(
+        "transverse", **soft, speed=0.0, amplitude="0.3 um", frequency="1 Hz"
+    )
+    size = result.amplitude
     force = 1.0 - (1.0 - size) ** 1.5
-    modulus, a = 1e6 / 2.0, found.contact_radius_m
+    modulus, a = 1e6 / 2.0, result.contact_radius_m
     factor = 9.0 * 2.0 * (0.3 * 1e-3) ** 2 / (10.0 * modulus * a)
     rest = 1.0 - force
     bracket = 1.0 - rest ** (5 / 3) - 5.0 * force / 6.0 * (1.0 + rest ** (2 / 3))
     assert 0.0 < size < 1.0
-    assert found.energy_per_cycle_J == pytest.approx(factor * bracket, rel=1e-6)
+    assert result.energy_per_cycle_J == pytest.approx(factor * bracket, rel=1e-6)
 
 
 def test_wear_by_archard():
     """In full sliding the worn volume is k times load times sliding distance."""
-    found = microslip.predict(
+    result = microslip.predict(
         "longitudinal", **SHAKEN | {"amplitude": "50 nm"}, wear_coefficient="1e-5 mm^3/N/m"
     )
     volume = 1e-14 * 10.0 * 10e-3 / 20e3
-    assert found.wear_volume_per_cycle_m3 == pytest.approx(volume, rel=1e-6)
-    depth = volume / (math.pi * found.contact_radius_m**2)
-    assert found.wear_depth_per_cycle_m == pytest.approx(depth, rel=1e-6)
-    assert "mean depth over the contact" in str(found)
+    assert result.wear_volume_per_cycle_m3 == pytest.approx(volume, rel=1e-6)
+    depth = volume / (math.pi * result.contact_radius_m**2)
+    assert result.wear_depth_per_cycle_m == pytest.approx(depth, rel=1e-6)
+    assert "mean depth over the contact" in str(result)
 
 
 def test_a_wear_coefficient_in_another_unit_is_refused():
