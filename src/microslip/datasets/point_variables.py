@@ -75,8 +75,8 @@ DESCRIPTIONS = {
     "retried": "runs done again by safer steps, since they had not converged",
     "reason": "why the point did not converge, empty if it did",
     "mu_torque": TORQUE_OF.description,
-    "dissipated_energy": "energy that friction dissipates in a period, divided by mu F_z u_lim, with the "
-    "normal load F_z without oscillation",
+    "dissipated_energy": "energy that friction dissipates in a period, divided by mu F_z u_lim, "
+    "with the normal load F_z without oscillation",
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
 """Attribute `description` of variables whose long_name is not sufficient."""
