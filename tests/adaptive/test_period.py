@@ -81,6 +81,18 @@ def test_the_work_of_the_forces_is_dissipated(given):
     between = 0.5 * (bound[1:] + bound[:-1])  # the bound can change in a step
     lost = np.sum(result.area * between * size[1:])
     assert spent == pytest.approx(lost, rel=0.03), motion
+    assert result.dissipated_energy == pytest.approx(spent, rel=1e-3)
+    assert result.area @ result.dissipated_energy_density == pytest.approx(spent, rel=1e-3)
+    local = np.sum(between * size[1:], axis=0)
+    off = np.abs(result.dissipated_energy_density - local)
+    assert off.max() < 0.1 * local.max()
+
+
+@pytest.mark.slow
+def test_the_energy_is_that_of_the_point(given):
+    (motion, velocity, amplitude, poisson), result = given
+    answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)
+    assert result.dissipated_energy == pytest.approx(answer.dissipated_energy, rel=2e-2)
 
 
 def test_areas_fill_the_disc_and_carry_the_load(given):

@@ -47,6 +47,26 @@ class FakeRun:
         return self.runs[-1]
 
 
+def test_the_energy_is_extrapolated_with_errors_in_its_own_unit():
+    """Energies 5 + 0.03 / cells^2 and a unit of 40 for the errors of the runs."""
+
+    def run(resolution, guess):
+        energy = 5.0 + 0.03 / resolution.cells**2
+        return Run(0.4, 0.7, 1e-6, 2e-6, 1, Effort(), True, "", energy=energy)
+
+    found = refine(run, LADDER, 1e-3, energy_unit=40.0)
+    plain = found.value.by_source
+    assert found.energy.value == pytest.approx(5.0, abs=1e-12)
+    for source in ("periodicity", "solver"):
+        assert found.energy.by_source[source] == pytest.approx(40.0 * plain[source])
+    # the smallest error by resolution is a fraction of the energy, or of the work of a force
+    assert found.energy.by_source["resolution"] == pytest.approx(
+        5.0 * plain["resolution"], rel=0.01
+    )
+    found = refine(run, LADDER, 1e-3, energy_unit=40.0, drive_work=20.0)
+    assert found.energy.by_source["resolution"] == pytest.approx(20.0 * plain["resolution"])
+
+
 def test_three_levels_are_run_each_from_the_one_before():
     fake = FakeRun(0.1)
     result = refine(fake, LADDER, 1e-3)

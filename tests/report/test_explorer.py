@@ -79,17 +79,19 @@ def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, v
     datasets, records, content = made
     dataset, place = datasets[name], (f"{amplitude:g}", f"{velocity:g}")
     (result,) = (one["result"] for one in records[name] if stub.place(one) == place)
-    _, value, certificate, angle, radius, bound, frames, history, loop = page_says(
+    _, value, certificate, spent, angle, radius, bound, frames, history, loop, hottest = page_says(
         content,
         chosen(name, dataset, velocity, amplitude),
         "element('value').text",
         "element('certificate').text",
+        "element('spent').text",
         "sectorAngles(STATE.map)",
         "STATE.period.radius",
         "STATE.period.bound",
         "STATE.period.phase.map((_, k) => cellsOf(STATE.period, k))",
         "element('history').data.map((trace) => [trace.x, trace.y])",
         "[element('loop').data[1].x, element('loop').data[1].y]",
+        "STATE.disc.hottest",
     )
     point = dataset.sel(velocity=velocity, amplitude=amplitude)
     shown = re.search(r"mu_macro (-?[\d.]+) ± ([\d.e-]+)", value)
@@ -105,6 +107,14 @@ def test_a_selected_point_shows_its_value_its_loop_and_every_frame(made, name, v
     assert np.radians(history[3][0]) == pytest.approx(result["phase"], abs=5e-5)
     assert bound == pytest.approx(result["bound"], abs=8e-6)
     truth = unpacked(result)
+    energy = f"{float(point.dissipated_energy):.4g} ± {float(point.dissipated_energy_error):.2g}"
+    assert f"friction dissipates {energy} " in spent
+    rims = np.array([0.0, *0.5 * (np.array(radius)[1:] + np.array(radius)[:-1]), 1.0])
+    density = truth["densities"][: len(truth["densities"]) // 2]
+    energies = density * np.tile(np.diff(rims**2), len(density) // len(radius))
+    others = np.setdiff1d(np.arange(len(density)), hottest)
+    assert energies[hottest].sum() >= 0.5 * energies.sum() > energies[hottest[:-1]].sum()
+    assert density[hottest].min() >= density[others].max()
     lateral = np.outer(np.cos(angle), radius).ravel()
     assert lateral == pytest.approx(truth["lateral_position"], abs=2e-5)
     for k, cells in enumerate(frames):

@@ -374,7 +374,7 @@ def test_a_load_amplitude_above_the_load_parts_the_bodies():
     """The mean load is the integral of 10 N + 15 N sin t over its positive part."""
     settings = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}
     del settings["amplitude"]
-    result = microslip.predict("normal", **settings, power=False)
+    result = microslip.predict("normal", **settings)
     gone = math.acos(10.0 / 15.0)  # half the phases without contact, around 3 pi/2
     mean = 10.0 * (1.0 - gone / math.pi) + 15.0 * math.sin(gone) / math.pi
     answer = microslip.solve("normal", result.velocity, 1.5, poisson=0.3)

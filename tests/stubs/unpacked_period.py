@@ -9,6 +9,7 @@ def unpacked(result):
     """Arrays of a record of `packed`, for the whole disc and the whole period, by name.
 
     The names and shapes are those of period.Period, without slip_forward, slip_lateral and area.
+    `densities` is dissipated_energy_density divided by its largest value.
     The error of traction_forward and traction_lateral is at most bound/254.
     """
     angles, radius = result["angles"], np.array(result["radius"])
@@ -21,6 +22,7 @@ def unpacked(result):
     theta = (np.arange(angles)[:, None] + 0.5) * np.pi / angles
     forward, lateral = np.sin(theta) * radius, np.cos(theta) * radius
     bound = np.broadcast_to(result["bound"], forward.shape)
+    density = period_codec.values_of(result["densities"], np.uint16) / period_codec.DENSITIES
     turned = result["turned"]
     parts = {
         "forward_position": (forward, -forward),
@@ -29,6 +31,7 @@ def unpacked(result):
         "traction_forward": (shares[:, 0] * bound, shares[:, 0] * bound),
         "traction_lateral": (shares[:, 1] * bound, shares[:, 1] * (bound if turned else -bound)),
         "slips": (slips, slips),
+        "densities": (density.reshape(forward.shape),) * 2,
     }
     for name, halves in parts.items():
         flat = [half.reshape(*half.shape[:-2], -1) for half in halves]

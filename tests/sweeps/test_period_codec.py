@@ -35,6 +35,8 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
         off = np.abs(result[name] - getattr(truth, name)) / truth.bound
         assert off.max() < 0.5 / period_codec.SHARES + 1e-3, name
     assert (result["slips"] == truth.slips).all()
+    density = truth.dissipated_energy_density / truth.dissipated_energy_density.max()
+    assert result["densities"] == pytest.approx(density, abs=1e-3)
     assert (result["mu_macro"], result["converged"]) == (truth.mu_macro, truth.converged)
 
 

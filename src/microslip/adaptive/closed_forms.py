@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from microslip.adaptive.request import Request
-from microslip.adaptive.result import Result, of_closed_form
+from microslip.adaptive.result import Exact, Result, of_closed_form
+from microslip.estimate.estimate import Estimate
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.method_names import SHIPPED
-from microslip.theory import hertz, paper
+from microslip.theory import hertz, masing, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 CLOSED_FORM = "closed-form"
@@ -35,22 +37,28 @@ def exact_result(request: Request) -> Result | None:
     return of_closed_form(request.point | {"model": used}, exact, request.seconds)
 
 
-def no_vibration(problem: Problem) -> tuple | None:
-    """(mu, torque, error) for any model if the amplitude is 0, otherwise None."""
+def no_vibration(problem: Problem) -> Exact | None:
+    """Closed form for any model if the amplitude is 0, otherwise None."""
     still = problem.motion.periodic and problem.amplitude == 0.0
-    return (1.0, None, ROUNDING) if still else None
+    return Exact(1.0, ROUNDING, energy=_of_drag(problem, 1.0, ROUNDING)) if still else None
+
+
+def _of_drag(problem: Problem, mu: float, error: float) -> Estimate:
+    """Energy that a constant or slow friction force dissipates, if the oscillation does no work."""
+    work = 2.0 * math.pi * problem.mean_load * problem.drift
+    return work * Estimate(mu, {"model": error})
 
 
 def unless_imposed(
     problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
-) -> tuple | None:
+) -> Exact | None:
     """Result of `closed_form`, or None if an imposed resolution requires a march."""
     if problem.velocity > 0.0 and not (cells is None and steps is None):
         return None
     return closed_form(problem, tolerance or 0.0)
 
 
-def closed_form(problem: Problem, tolerance: float) -> tuple | None:
+def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Result of a closed form, or None if no closed form applies.
 
     Closed forms exist in four cases.  The first is the steady state of a motion that does not
@@ -67,18 +75,18 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
 
     Returns
     -------
-    tuple or None
-        Friction mu, torque (None for oscillating motions) and error.
+    Exact or None
     """
     motion, velocity, amplitude = problem.motion, problem.velocity, problem.size
     if not motion.periodic:
         return _steady_bore(problem) if motion.name == "continuous-bore" else None
     transformed = problem.follows or problem.backward
     if motion.closed_form is not None and problem.poisson == 0.0 and not transformed:
-        mu = motion.closed_form(velocity, amplitude, problem.pressure)
-        if mu is not None:
+        exact = motion.closed_form(velocity, amplitude, problem.pressure)
+        if exact is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-            return float(mu), None, error if problem.pressure.hertzian else OF_RECORD
+            mu, energy = exact
+            return _exact(mu, energy, error if problem.pressure.hertzian else OF_RECORD)
     if velocity == 0.0:
         limit = None if motion.closed_form is not None else STATIC_LIMITS.get(motion.name)
         if limit is None or (problem.poisson > 0.0 and not limit.any_poisson):
@@ -88,37 +96,53 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     if largest_drop is not None and not (motion.rotates and problem.pressure != HERTZ):
         drop = largest_drop(velocity, amplitude)
         if 0.5 * drop + ROUNDING <= tolerance:
-            return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
+            return bracket(problem, drop)
     return None
 
 
-def _steady_bore(problem: Problem) -> tuple | None:
-    """(mu, torque, error) of a steady bore by Eqs 17 and 18, or Eqs 21 and 22 for a sphere."""
+def bracket(problem: Problem, drop: float) -> Exact:
+    """Middle of the bounds of fast sliding; `drop` is the largest value of 1 - mu.
+
+    Per radian, the dissipated energy is between the drift d and d (1 + drop / (4 - 2 drop)), see
+    theory/bounds.py.
+    """
+    error, excess = 0.5 * drop + ROUNDING, 0.5 * drop / (4.0 - 2.0 * drop)
+    energy = _of_drag(problem, 1.0 + excess, excess + ROUNDING)
+    return Exact(1.0 - 0.5 * drop, error, energy=energy)
+
+
+def _steady_bore(problem: Problem) -> Exact | None:
+    """Steady bore by Eqs 17 and 18, or Eqs 21 and 22 for a sphere."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
-        return float(forward), float(torque), ROUNDING
+        return Exact(float(forward), ROUNDING, float(torque))
     if not problem.pressure.is_round:
         return None
     from microslip.theory import axisymmetric  # imported here because it loads slowly
 
     forward, torque = axisymmetric.bore_of(problem.pressure.bound, velocity)
-    return float(forward), float(torque), QUADRATURE
+    return Exact(float(forward), QUADRATURE, float(torque))
 
 
-def _static(problem: Problem, of_sphere: Callable) -> tuple | None:
-    """(mu, None, error) of the static limit, or None without a closed form for the pressure."""
+def _exact(mu: float, energy: float, error: float) -> Exact:
+    """Closed form with an error that is relative for an energy above 1."""
+    return Exact(mu, error, energy=Estimate(energy, {"model": error * max(1.0, energy)}))
+
+
+def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
+    """Static limit, or None without a closed form for the pressure."""
     motion, pressure, amplitude = problem.motion, problem.pressure, problem.size
-    if pressure == HERTZ or (pressure.hertzian and not motion.rotates):
-        return float(of_sphere(amplitude)), None, ROUNDING
-    if not pressure.is_indenter:
+    sphere = pressure == HERTZ or (pressure.hertzian and not motion.rotates)
+    if not (sphere or pressure.is_indenter):
         return None
     from microslip.theory import indenters as limits  # imported here because it loads slowly
 
-    if motion.rotates:
-        mu = limits.static_bore(
-            pressure, float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
-        )
-    else:
-        mu = limits.static_transverse(pressure, amplitude)
-    return mu, None, OF_RECORD
+    error = ROUNDING if sphere else OF_RECORD
+    if not motion.rotates:
+        mu = of_sphere(amplitude) if sphere else limits.static_transverse(pressure, amplitude)
+        return _exact(float(mu), float(masing.loop_energy(amplitude, pressure.loading)), error)
+    place = float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
+    mu = of_sphere(amplitude) if sphere else limits.static_bore(pressure, *place)
+    energy = limits.torsion_energy(pressure, *place)
+    return _exact(float(mu), energy, OF_RECORD)._replace(error=error)

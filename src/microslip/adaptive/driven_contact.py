@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 
-from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
+from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING, bracket
 from microslip.adaptive.request import Request, driven_by, verdict, within_friction
-from microslip.adaptive.result import Result, of_closed_form
+from microslip.adaptive.result import Exact, Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     CLOSEST_FORCE,
@@ -105,20 +105,21 @@ def solve_driven(request: Request) -> Result:
         # under a constant force the length of the spring is constant
         answer = solve_each(replace(request, problem=replace(problem, drive=None)))
         return replace(answer, **driven_by(drive))
-    bracket = _bracket(request)
-    if bracket is not None:
-        return of_closed_form(request.point | {"model": CLOSED_FORM}, bracket, request.seconds)
+    exact = _fast(request)
+    if exact is not None:
+        return of_closed_form(request.point | {"model": CLOSED_FORM}, exact, request.seconds)
     refined = _refined(request, Accuracy(request.accuracy))
     return Result(
         **request.point,
         model=request.model,
         friction=within_friction(problem, refined.value),
+        dissipation=refined.energy,
         **verdict(request, refined, request.tolerance),
     )
 
 
-def _bracket(request: Request) -> tuple[float, None, float] | None:
-    """(mu, torque, error) from the energy bound of theory/bounds.py.
+def _fast(request: Request) -> Exact | None:
+    """Closed form from the energy bound of theory/bounds.py.
 
     Returns None if the error exceeds the tolerance.  The bound for transverse and bore motions
     also applies to a body on a spring: per period, the spring does the work of the mean force, a
@@ -133,8 +134,7 @@ def _bracket(request: Request) -> tuple[float, None, float] | None:
     ):
         return None
     drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.size)
-    error = 0.5 * drop + ROUNDING
-    return (1.0 - 0.5 * drop, None, error) if error <= request.tolerance else None
+    return bracket(request.problem, drop) if 0.5 * drop + ROUNDING <= request.tolerance else None
 
 
 def _driven(request: Request, **drive: float) -> Request:
@@ -158,12 +158,12 @@ def _under_force(request: Request) -> Result:
         )
     away = runs_away(problem)
     if away:
-        return _without_runs(request, math.nan, math.inf, away)
+        return _without_runs(request, math.nan, math.inf, UNKNOWN, away)
     if not problem.motion.periodic:
         velocity = steady_velocity(problem)
-        return _without_runs(request, velocity, STEADY_ERROR * max(1.0, velocity))
+        return _without_runs(request, velocity, STEADY_ERROR * max(1.0, velocity), None)
     if not oscillates(problem):
-        return _without_runs(request, 0.0, 0.0)
+        return _without_runs(request, 0.0, 0.0, Estimate(0.0))
     least = -math.inf
     if is_even(problem):
         static = _static(request, force)
@@ -173,7 +173,7 @@ def _under_force(request: Request) -> Result:
                 static = exact
         if _is_below(force, static):
             return replace(
-                _without_runs(request, 0.0, 0.0),
+                _without_runs(request, 0.0, 0.0, static.dissipation),
                 model=static.model,
                 cells=static.cells,
                 angles=static.angles,
@@ -187,7 +187,13 @@ def _under_force(request: Request) -> Result:
                     f"the error of the force threshold, {error:.1e}, leaves open whether the "
                     "contact moves, and a larger force is too close to full friction",
                 )
-    return _moving(request, max(force, least))
+    answer = _moving(request, max(force, least))
+    if least > force and answer.dissipation and static.dissipation:
+        # the contact moves more slowly than in the runs, or not at all
+        apart = abs(answer.dissipation.value - static.dissipation.value)
+        unknown = Estimate(0.0, {"model": apart})
+        answer = replace(answer, dissipation=answer.dissipation + unknown)
+    return answer
 
 
 def _is_below(force: float, static: Result) -> bool:
@@ -223,13 +229,23 @@ def _at_rest(request: Request, tolerance: float | None) -> Result:
     return solve_each(replace(request, problem=problem, tolerance=tolerance))
 
 
-def _without_runs(request: Request, velocity: float, error: float, reason: str = "") -> Result:
-    """Result for a velocity that needs no run.  `reason` says why it is not converged."""
+def _without_runs(
+    request: Request,
+    velocity: float,
+    error: float,
+    energy: Estimate | None,
+    reason: str = "",
+) -> Result:
+    """Result for a velocity and a dissipated energy that need no run.
+
+    `reason` says why it is not converged.
+    """
     force, tolerance = force_of(request.problem), request.tolerance
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
         model=CLOSED_FORM if request.chosen else request.model,
         friction=Estimate(math.copysign(1.0, force) if reason else force),
+        dissipation=energy if request.problem.motion.periodic else None,
         converged=not reason and (tolerance is None or error <= tolerance * max(1.0, velocity)),
         periodic=not reason,
         reason=reason,
@@ -275,6 +291,7 @@ def _moving(request: Request, moving_force: float) -> Result:
         **original.point | {"mean_velocity": estimate},
         model=request.model,
         friction=Estimate(force),
+        dissipation=refined.energy,
         **verdict(request, refined, largest),
     )
 
@@ -310,9 +327,10 @@ def _near(request: Request) -> Near:
 
 def _without_answer(request: Request, reason: str) -> Result:
     """Result of a point without any estimate, with the reason."""
-    unknown = replace(_without_runs(request, math.nan, math.inf, reason), model=request.model)
+    unknown = _without_runs(request, math.nan, math.inf, UNKNOWN, reason)
     return replace(
         unknown,
+        model=request.model,
         friction=Estimate(force_of(request.problem)),
         exhausted=request.budget.exhausted,
         effort=request.budget.taken,
@@ -338,7 +356,11 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
 
     readings = [partial(run, problem=other) for other in problem.readings]
     read = attrgetter("mu" if drive.force is None else "velocity")
-    refined = refine(run, ladder, tolerance, readings, read)
+    unit, work = problem.largest_energy, 0.0
+    if drive.force is not None:  # errors of the velocity change the advance and the forces
+        work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
+        unit = accuracy.slope * unit + work
+    refined = refine(run, ladder, tolerance, readings, read, energy_unit=unit, drive_work=work)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined

@@ -80,12 +80,13 @@ def plan_for(request: Request) -> Plan:
 def solve_friction(request: Request) -> Result:
     """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
     problem, (run, ladder, readings) = request.problem, plan_for(request)
-    refined = refine(run, ladder, request.accuracy, readings)
+    refined = refine(run, ladder, request.accuracy, readings, energy_unit=problem.largest_energy)
     return Result(
         **request.point,
         model=request.model,
         friction=within_friction(problem, refined.value),
         torque=None if problem.motion.periodic else refined.torque,
+        dissipation=refined.energy if problem.motion.periodic else None,
         **verdict(request, refined, request.tolerance),
     )
 

@@ -12,7 +12,7 @@ from microslip.adaptive.history import ANGLES, STEP_TOLERANCE
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError, SolverError
-from microslip.models.contact import FORWARD, LATERAL, TORQUE
+from microslip.models.contact import FORWARD, LATERAL, TORQUE, rigid_displacement
 from microslip.models.path import Path
 from microslip.models.polar.contact import PolarContact
 from microslip.motions.motion import Motion
@@ -71,6 +71,10 @@ class Period:
         Slip in the step that ends at each phase, in u_lim.  The first row repeats the last step.
     slips : np.ndarray of bool, shape (steps + 1, points)
         Whether a point slips at the end of the step.
+    dissipated_energy_density : np.ndarray, shape (points,)
+        Energy that friction dissipates in the period at each point, in mu F_z u_lim / a^2.
+    dissipated_energy : float
+        Energy that friction dissipates in the period, in mu F_z u_lim.
     mu_macro : float
         Mean of `force_forward` divided by the mean normal load.
     converged : bool
@@ -95,6 +99,8 @@ class Period:
     slip_forward: np.ndarray
     slip_lateral: np.ndarray
     slips: np.ndarray
+    dissipated_energy_density: np.ndarray
+    dissipated_energy: float
     mu_macro: float
     converged: bool
     reason: str
@@ -176,6 +182,7 @@ def period(
     if not contact.whole:
         bound = np.tile(bound, 2)  # the other half of the disc has the same bounds
     along = forward * slip_forward + lateral * slip_lateral > 0.0
+    density = _work_per_area(forward, slip_forward) + _work_per_area(lateral, slip_lateral)
     displacement = [np.array(part) for part in problem.displacement(phase)]
     return Period(
         phase,
@@ -194,18 +201,21 @@ def period(
         slip_forward,
         slip_lateral,
         along & (np.hypot(forward, lateral) >= ON_BOUND * bound),
+        dissipated_energy_density=density,
+        dissipated_energy=float(area @ density),
         mu_macro=run.mu,
         converged=run.converged and not reason,
         reason=reason,
     )
 
 
+def _work_per_area(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
+    """Work of a traction on a slip in the period, shape (points,); arguments as in Period."""
+    return 0.5 * np.sum((traction[1:] + traction[:-1]) * slip[1:], axis=0)
+
+
 def _slip(contact: PolarContact, path: Path, tractions: np.ndarray) -> np.ndarray:
     """Slip in every step, shape (steps, 2, M, N), as rigid minus elastic displacement."""
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
-    forward, lateral, angle = np.diff(path.positions, axis=0).T[..., None, None]
-    rigid = (
-        forward + angle * contact.lateral_position,
-        lateral - angle * contact.forward_position,
-    )
-    return np.stack(rigid, axis=1) - elastic
+    moves = np.diff(path.positions, axis=0).T[..., None, None]
+    return np.moveaxis(rigid_displacement(contact, moves), 0, 1) - elastic

@@ -30,15 +30,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from microslip.adaptive.checks import checked_propulsion
 from microslip.adaptive.friction import Plan, plan_for
 from microslip.adaptive.request import TOLERANCE, Request, request_for
-from microslip.adaptive.vibration_power import Answer, mean_speed
 from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
@@ -197,13 +197,29 @@ def propulsion(
     return _line(_Contact(request), points)
 
 
+class Answer(NamedTuple):
+    """A quantity with its error estimate.
+
+    Attributes
+    ----------
+    value, error : float
+        The quantity and its estimated error.
+    reason : str
+        Reason why the error exceeds the tolerance; empty if it does not.
+    """
+
+    value: float
+    error: float
+    reason: str = ""
+
+
 class _Contact:
     """Friction and power of a motion at velocities of at least 0.  No run is repeated."""
 
     def __init__(self, request: Request):
         self.request, self.sign = request, 1
         self.cache: dict[object, Any] = {}
-        self.speed = mean_speed(request.problem)
+        self.speed = request.problem.mean_speed
 
     @property
     def drift(self) -> float:
@@ -237,7 +253,7 @@ class _Contact:
             run, ladder, readings = self._plan(velocity)
             read: Callable[[Run], float] = attrgetter("mu")
             if quantity == "power":
-                read = self._power_as_force
+                read = partial(self._power_as_force, velocity)
             answer = refine(run, ladder, self.request.accuracy, readings, read)
             reason, estimate = answer.reason, answer.value
             if answer.converged and estimate.error > self.request.accuracy:
@@ -247,8 +263,10 @@ class _Contact:
             self.cache[velocity, quantity] = Answer(estimate.value, estimate.error, reason)
         return self.cache[velocity, quantity]
 
-    def _power_as_force(self, run: Run) -> float:
-        return run.power / self.speed
+    def _power_as_force(self, velocity: float, run: Run) -> float:
+        """Power of the oscillation, which is the dissipated power without that of the drive."""
+        dissipated = run.energy / (2.0 * math.pi * self.request.problem.mean_load)
+        return (dissipated - run.mu * velocity * self.drift) / self.speed
 
     def _plan(self, velocity: float) -> Plan:
         if velocity not in self.cache:

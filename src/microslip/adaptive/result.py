@@ -5,12 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, NamedTuple
 
 from microslip.estimate.estimate import SOURCES, Estimate
 from microslip.solver.effort import Effort
 
-QUANTITIES = {"friction": "mu_macro", "mean_velocity": "velocity", "torque": "mu_torque"}
+QUANTITIES = {
+    "friction": "mu_macro",
+    "mean_velocity": "velocity",
+    "torque": "mu_torque",
+    "dissipation": "dissipated_energy",
+}
 """Names of the estimates of a Result in JSON and datasets."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
@@ -52,6 +57,10 @@ class Result:
         is 0 if the force is prescribed.
     torque : Estimate or None
         Torque divided by its value at zero forward velocity; None for oscillating motions.
+    dissipation : Estimate or None
+        Energy that friction dissipates in a period, divided by mu F_z u_lim, where F_z is the
+        normal load without oscillation.  None for steady motions, which dissipate the power
+        mu_macro times velocity plus torque times angular velocity.
     converged : bool
         Whether the error is within the tolerance and every run found its periodic state.  Without a
         tolerance only the second condition applies.
@@ -95,6 +104,7 @@ class Result:
     contacts: str | None = None
     friction: Estimate
     torque: Estimate | None = None
+    dissipation: Estimate | None = None
     converged: bool
     periodic: bool
     reason: str = ""
@@ -137,6 +147,16 @@ class Result:
         """Value of `torque`; None for oscillating motions."""
         return None if self.torque is None else self.torque.value
 
+    @property
+    def dissipated_energy(self) -> float | None:
+        """Value of `dissipation`; None for steady motions."""
+        return None if self.dissipation is None else self.dissipation.value
+
+    @property
+    def dissipated_energy_error(self) -> float | None:
+        """Error of `dissipation`; None for steady motions."""
+        return None if self.dissipation is None else self.dissipation.error
+
     def to_dict(self) -> dict:
         """Convert to a dict with the names of JSON and datasets; omits fields that do not apply."""
         inside = {*QUANTITIES, "effort"}
@@ -159,15 +179,22 @@ class Result:
         values |= {"amplitude": None, "tolerance": None, "model": "", "method": ""}
         names = {one.name for one in fields(Result)} - {*QUANTITIES, "effort"}
         values |= {name: flat[name] for name in names if flat.get(name) is not None}
-        torque, driven = flat.get("mu_torque"), flat.get("force") is not None
-        torque_error = {"resolution": _number(flat.get("mu_torque_error"))}
+        driven = flat.get("force") is not None
         return Result(
             **values,
             friction=Estimate(_number(flat.get("mu_macro")), {} if driven else errors),
             mean_velocity=Estimate(_number(flat.get("velocity")), errors if driven else {}),
-            torque=None if torque is None else Estimate(torque, torque_error),
+            torque=_estimate(flat, "mu_torque"),
+            dissipation=_estimate(flat, "dissipated_energy"),
             effort=Effort(**{field: flat.get(name) or 0 for field, name in EFFORT.items()}),
         )
+
+
+def _estimate(flat: Mapping[str, Any], name: str) -> Estimate | None:
+    """Return the estimate of a quantity, or None if it is missing."""
+    if flat.get(name) is None:
+        return None
+    return Estimate(flat[name], {"resolution": _number(flat.get(f"{name}_error"))})
 
 
 def _number(value: float | None) -> float:
@@ -175,14 +202,34 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
-    """Build the Result of a closed form from other fields (`point`) and (mu, torque, error)."""
-    (mu, torque, error), tolerance = values, point["tolerance"]
+class Exact(NamedTuple):
+    """Quantities of a Result in closed form.
+
+    Attributes
+    ----------
+    mu, error : float
+        Mean friction, and its error.
+    torque : float or None
+        Torque divided by its value at zero forward velocity; None for oscillating motions.
+    energy : Estimate or None
+        Dissipated energy per period, divided by mu F_z u_lim; None for steady motions.
+    """
+
+    mu: float
+    error: float
+    torque: float | None = None
+    energy: Estimate | None = None
+
+
+def of_closed_form(point: dict, exact: Exact, seconds: float) -> Result:
+    """Build the Result of a closed form from other fields (`point`)."""
+    error, tolerance = exact.error, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(
         **point,
-        friction=Estimate(mu, {"model": error}),
-        torque=None if torque is None else Estimate(torque, {"model": error}),
+        friction=Estimate(exact.mu, {"model": error}),
+        torque=None if exact.torque is None else Estimate(exact.torque, {"model": error}),
+        dissipation=exact.energy,
         converged=within,
         periodic=True,
         reason="" if within else f"the error is {error:.1e}, above the tolerance of {tolerance:g}",

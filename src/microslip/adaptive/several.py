@@ -25,6 +25,8 @@ def solve_each(request: Request) -> Result:
 
     each = zip(problem.shares, problem.parts, strict=True)
     means = [share * alone[part.problem].friction for share, part in each]
+    parts = ((part.share * part.extent, alone[part.problem]) for part in problem.parts)
+    energies = [unit * (one.dissipation or Estimate(0.0)) for unit, one in parts]
 
     def most(name: str) -> Any:
         return max(getattr(result, name) for result in results)
@@ -34,6 +36,7 @@ def solve_each(request: Request) -> Result:
         **request.point,
         model=by_runs[0].model if by_runs else results[0].model,
         friction=sum(means, Estimate(0.0)),
+        dissipation=sum(energies, Estimate(0.0)),
         converged=all(result.converged for result in results),
         periodic=all(result.periodic for result in results),
         reason=next((result.reason for result in results if result.reason), ""),

@@ -32,6 +32,10 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "density": ("RHO", "density of the body, for a warning of inertia, such as '7850 kg/m^3'"),
         "counter-hardness": ("H2", "hardness of the counterbody"),
         "counter-density": ("RHO2", "density of the counterbody"),
+        "wear-coefficient": (
+            "K",
+            "wear coefficient of Archard's law, for the wear in a cycle, such as '1e-5 mm^3/N/m'",
+        ),
     },
     "load": {
         "load": ("F", "normal load, such as '10 N'"),
@@ -114,9 +118,6 @@ def fill(parser: argparse.ArgumentParser) -> None:
                 "a self-propelled motion, such as elliptic:forward_cycles=2,phase=0",
             )
     group.add_argument(
-        "--power", action="store_true", help="also compute the power of the oscillation"
-    )
-    group.add_argument(
         "--table",
         metavar="CSV",
         help="predict one contact for each line of a file.  Its heading names options, as in "
@@ -151,5 +152,5 @@ def _answer(options: argparse.Namespace) -> Answer:
             return Answer(line.to_dict(), str(line), line.converged)
         if "points" in arguments:
             raise InputError("points", arguments["points"], "allowed only with --propulsion")
-        prediction = predict(options.motion, **{"mu": None} | arguments, power=options.power)
+        prediction = predict(options.motion, **{"mu": None} | arguments)
     return Answer(prediction.to_dict(), str(prediction), prediction.converged)

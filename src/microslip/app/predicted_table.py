@@ -58,7 +58,7 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
     shared = {name: value for name, value in arguments.items() if name not in FORMAT}
     table = table_of("table", options.table, NAMES, **format)
     try:
-        cases = predictions(options.motion, table, shared | {"power": options.power})
+        cases = predictions(options.motion, table, shared)
     except InputError as error:
         if error.argument not in table.columns or error.argument in shared:
             raise

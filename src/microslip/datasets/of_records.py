@@ -24,7 +24,7 @@ AXES: dict[type, tuple[str, ...]] = {
     Period: ("phase", "point"),
 }
 """Names of the axes of a dataset, by the class of the record."""
-OF_POINTS = ("forward_position", "lateral_position", "area", "bound")
+OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
 """Arrays of a Period whose only axis is `point`."""
 
 

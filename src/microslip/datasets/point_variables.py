@@ -51,6 +51,11 @@ TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
     "mu_torque_error": (float, "estimated error of mu_torque"),
 }
+ENERGY_VARIABLES = {
+    "dissipated_energy": (float, "energy dissipated in a period"),
+    "dissipated_energy_error": (float, "estimated error of dissipated_energy"),
+}
+"""Additional variables of a sweep over an oscillating motion."""
 CHANGES = {
     "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest nu"),
     "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
@@ -70,6 +75,8 @@ DESCRIPTIONS = {
     "retried": "runs done again by safer steps, since they had not converged",
     "reason": "why the point did not converge, empty if it did",
     "mu_torque": TORQUE_OF.description,
+    "dissipated_energy": "energy that friction dissipates in a period, divided by mu F_z u_lim, "
+    "with the normal load F_z without oscillation",
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
 """Attribute `description` of variables whose long_name is not sufficient."""
@@ -107,9 +114,9 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     ValueError
         If the number of records differs from the number of points.
     """
-    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
+    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else ENERGY_VARIABLES)
     if not sweep.velocity:
-        table = VELOCITY_VARIABLES | POINT_VARIABLES
+        table = VELOCITY_VARIABLES | table
     shape = tuple(len(values) for values in axes.values())
     boxes = list(_boxes(shape))
     for name, (kind, long_name) in table.items():

@@ -48,6 +48,8 @@ class Refined:
         Extrapolated value of the requested quantity.
     torque : Estimate
         Extrapolated torque.
+    energy : Estimate
+        Extrapolated dissipated energy per period, divided by mu F_z u_lim.
     order : float
         Observed order of convergence; NaN if unknown.
     finest : discretise.Resolution
@@ -68,6 +70,7 @@ class Refined:
 
     value: Estimate
     torque: Estimate
+    energy: Estimate
     order: float
     finest: Resolution
     periods: float
@@ -85,7 +88,8 @@ UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver")
 def unknown(reason: str, ladder: Ladder) -> Refined:
     """Result of a problem whose budget was exceeded before the first estimate."""
     none = Resolution(0, 0, 0)
-    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False, ladder)
+    values = UNKNOWN, UNKNOWN, UNKNOWN, np.nan
+    return Refined(*values, none, 0.0, Effort(), False, reason, False, ladder)
 
 
 def run_tolerance(tolerance: float) -> float:
@@ -99,6 +103,9 @@ def refine(
     tolerance: float,
     readings: Sequence[Callable] = (),
     read: Callable[[Run], float] = attrgetter("mu"),
+    *,
+    energy_unit: float = np.nan,
+    drive_work: float = 0.0,
 ) -> Refined:
     """Refine until the estimated error is within the tolerance.
 
@@ -114,6 +121,12 @@ def refine(
         Functions like `run`, for other interpolations of the same data.
     read : callable
         `read(run)` returns the quantity.
+    energy_unit : float
+        Error of the dissipated energy that corresponds to an error of 1 in the quantity, for the
+        errors from periodicity and solver.
+    drive_work : float
+        Work of a prescribed force in a period at the velocity 1, divided by mu F_z u_lim, if the
+        quantity is a velocity.
 
     Returns
     -------
@@ -122,7 +135,7 @@ def refine(
         enough, or if a run raised budget.Spent.  In the last case it is the estimate before that
         run, or NaN if there is none.
     """
-    levels = _Levels(run, ladder, readings, read)
+    levels = _Levels(run, ladder, readings, read, energy_unit, drive_work)
     goal, refined = tolerance, None
     try:
         for level in ladder.levels(tolerance):
@@ -155,8 +168,11 @@ class _Levels:
         ladder: Ladder,
         readings: Sequence[Callable],
         read: Callable[[Run], float],
+        energy_unit: float,
+        drive_work: float,
     ):
         self.run, self.ladder, self.readings, self.read = run, ladder, readings, read
+        self.energy_unit, self.drive_work = energy_unit, drive_work
         self.runs: dict[int, Run] = {}
         self.other_runs: dict[tuple[int, int], Run] = {}
 
@@ -180,8 +196,12 @@ class _Levels:
         resolution."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
-        value, errors, order = self._of(self.read, goal, three, others)
-        torque, torque_errors, _ = self._of(attrgetter("torque"), goal, three, others)
+        floor = SMALLEST_SHARE * min(goal, LOOSEST)
+        value, errors, order = self._of(self.read, floor, three, others)
+        torque, torque_errors, _ = self._of(attrgetter("torque"), floor, three, others)
+        # a fraction of the energy, which can be far below the unit of energy
+        floor *= max(abs(three[-1].energy), self.drive_work)
+        energy, energy_errors, _ = self._of(attrgetter("energy"), floor, three, others)
         base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
         # a run that did not converge has a weight of at least 1, since levels can agree by chance
         weights = [w if one.converged else max(w, 1.0) for w, one in zip(base, three, strict=True)]
@@ -194,6 +214,7 @@ class _Levels:
         return Refined(
             value=Estimate(value, errors | common),
             torque=Estimate(torque, torque_errors | common),
+            energy=Estimate(energy, energy_errors) + self.energy_unit * Estimate(0.0, common),
             order=order,
             finest=self.ladder.resolution(level),
             periods=max(one.periods for one in runs),
@@ -205,15 +226,22 @@ class _Levels:
         )
 
     def _of(
-        self, read: Callable[[Run], float], goal: float, three: Sequence[Run], others: Sequence[Run]
+        self,
+        read: Callable[[Run], float],
+        floor: float,
+        three: Sequence[Run],
+        others: Sequence[Run],
     ) -> tuple[float, dict[str, float], float]:
-        """Value of a quantity, its errors by resolution and model, and its observed order."""
+        """Value of a quantity, its errors by resolution and model, and its observed order.
+
+        `floor` is the smallest error by resolution.
+        """
         values = [float(read(one)) for one in three]
         limit = Extrapolation(*map(float, extrapolate(values)))
         if self.ladder.imposed:
             value, error = values[-1], limit.difference
         else:
-            value, error = limit.value, max(limit.error, SMALLEST_SHARE * min(goal, LOOSEST))
+            value, error = limit.value, float(max(limit.error, floor))
         errors = {"resolution": error}
         if others:
             apart = sum(abs(read(one) - values[-1]) for one in others)

@@ -181,6 +181,18 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
     return unit * contact.bound
 
 
+def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
+    """Displacement of each point, shape (2, ...), of a rigid motion `place`: forward, lateral,
+    angle."""
+    forward, lateral, angle = place
+    return np.stack(
+        [
+            forward + angle * contact.lateral_position,
+            lateral - angle * contact.forward_position,
+        ]
+    )
+
+
 def forward_slip(contact: Contact) -> np.ndarray:
     """Forward tractions equal to the friction bound, which is the state after forward sliding."""
     out = np.zeros((2, *contact.forward_position.shape))

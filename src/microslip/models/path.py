@@ -155,6 +155,11 @@ class Path:
         """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""
         return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
 
+    @property
+    def places(self) -> np.ndarray:
+        """Displacement at every phase, shape (steps + 1, contacts, 3)."""
+        return self.positions[:, None]
+
     @cached_property
     def share(self) -> np.ndarray:
         """Duration of each step divided by the duration of the path, shape (steps,)."""
@@ -183,6 +188,11 @@ class BodyPath(Path):
         """Displacement of each contact at the start and at every stage, as in Path.motion."""
         of_body = np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
         return of_body + np.concatenate([one.motion for one in self.each], axis=1)
+
+    @property
+    def places(self) -> np.ndarray:
+        """Displacement of each contact at every phase, as in Path.places."""
+        return self.positions[:, None] + np.stack([one.positions for one in self.each], axis=1)
 
 
 def make_path(

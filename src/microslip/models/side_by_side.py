@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.path import BodyPath, Path
 from microslip.models.system_contact import SystemContact
 
@@ -78,3 +79,17 @@ class SideBySide(SystemContact):
         assert isinstance(path, BodyPath)  # the path of several contacts
         each = zip(self._contacts, path.each, strict=True)
         return np.concatenate([one.field_bounds(own) for one, own in each], axis=-1)
+
+    def forces_of_each(self, path: Path, fields: np.ndarray) -> np.ndarray:
+        """Forces of each contact at the phases of a march, shape (steps + 1, contacts, 3).
+
+        fields: March.fields of a march along the path.  The forces are in the units of the body.
+        """
+        stages = path.stages.shape[1]
+        bounds = self.layout.unpack(self.field_bounds(path))
+        bounds = bounds if len(bounds) == 1 else bounds[::stages]
+        loads = self.weight * project(np.moveaxis(fields[::stages], 1, 0), bounds)
+        torques = self.lateral_position * loads[0] - self.forward_position * loads[1]
+        values = np.stack([*loads, torques], axis=-1)
+        steps, rows, _, three = values.shape
+        return values.reshape(steps, rows, len(self._contacts), -1, three).sum(axis=(1, 3))

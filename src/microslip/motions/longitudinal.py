@@ -35,8 +35,11 @@ class Longitudinal(Motion):
         back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
         return -back, back, 2.0 * np.pi - back
 
-    def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Mean friction by Masing's rule, for pressures with a known loading curve."""
+    def closed_form(
+        self, velocity: float, amplitude: float, pressure: Pressure
+    ) -> tuple[float, float] | None:
+        """Friction and energy by Masing's rule, for pressures with a known loading curve."""
         if pressure.loading is None:
             return None
-        return float(masing.longitudinal(velocity, amplitude, pressure.loading))
+        place = velocity, amplitude, pressure.loading
+        return float(masing.longitudinal(*place)), masing.longitudinal_energy(*place)

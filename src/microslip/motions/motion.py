@@ -74,9 +74,9 @@ class Motion:
     periodic: ClassVar[bool] = True
     loads: ClassVar[bool] = False
     closed_form: ClassVar[Callable | None] = None
-    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0, or None if no closed
-    form is known for these arguments; velocity 0 is the static limit.  The attribute is None for
-    motions without a closed form."""
+    """closed_form(velocity, amplitude, pressure) -> mean friction and dissipated energy per period
+    at nu = 0, or None if no closed form is known for these arguments; velocity 0 is the static
+    limit.  The attribute is None for motions without a closed form."""
 
     @property
     def readings(self) -> tuple[Motion, ...]:

@@ -178,9 +178,12 @@ class Normal(Motion):
         least = pressure.radius(self._extreme(-1.0, amplitude, pressure))
         return within_rings(least / pressure.radius(self.deepest(amplitude, pressure)))
 
-    def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Mean friction for axisymmetric indenters if there is no in-plane oscillation."""
+    def closed_form(
+        self, velocity: float, amplitude: float, pressure: Pressure
+    ) -> tuple[float, float] | None:
+        """Friction and energy for axisymmetric indenters if there is no in-plane oscillation."""
         if self.in_plane or not pressure.is_indenter:
             return None
         slow = velocity / self.normal_cycles
-        return oscillating_load.friction(slow, amplitude * self.share, self.by_load, pressure)
+        mu = oscillating_load.friction(slow, amplitude * self.share, self.by_load, pressure)
+        return mu, 2.0 * np.pi * velocity * mu * self.mean_load(amplitude, pressure)

@@ -199,6 +199,25 @@ class Problem:
         """Half the peak-to-peak displacement of the edge of the contact, in u_lim."""
         return self.motion.stroke(self.size, self.poisson)
 
+    @cached_property
+    def mean_speed(self) -> float:
+        """Mean speed of the oscillation, as the path length per radian of phase, in u_lim.
+
+        For several contacts it is the mean over their loads.
+        """
+        if self.contacts:
+            return sum(part.share * part.extent * part.problem.mean_speed for part in self.parts)
+        moves = np.diff(np.stack(self.oscillation(LOOP)), axis=1)
+        return float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+
+    @property
+    def largest_energy(self) -> float:
+        """Work of full friction on the path of a period, divided by mu F_z u_lim.
+
+        It is an upper bound on the dissipated energy.
+        """
+        return 2.0 * np.pi * self.mean_load * (self.mean_speed + abs(self.drift))
+
     # Numbers from files
 
     @property

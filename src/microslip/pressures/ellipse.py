@@ -70,6 +70,10 @@ class Ellipse(Pressure):
         return hertz.TORQUE_FULL_SLIP * float(stretch.mean())
 
     @property
+    def area(self) -> float:
+        return np.pi * self.ratio
+
+    @property
     def largest(self) -> float:
         return 1.5 / (np.pi * self.ratio)
 

@@ -208,6 +208,12 @@ class Grid:
         along, across = (middle + edges for middle in self.middles)
         return of_loads(self.loads(along, across))
 
+    @property
+    def area(self) -> float:
+        """Area of the cells under pressure, divided by a^2."""
+        cell = self.forward.step * self.lateral.step
+        return np.count_nonzero(self.values) * cell / self.half**2
+
     def reduced_modulus(self) -> float:
         """G* in working units, which is the largest displacement under full slip for G* = 1."""
         fine = min(max(FINE, *self.values.shape), FINEST)

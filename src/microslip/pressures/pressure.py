@@ -63,6 +63,11 @@ class Pressure:
     mirrored: ClassVar[bool] = True
     hertzian: ClassVar[bool] = False
 
+    @property
+    def area(self) -> float:
+        """Contact area divided by a^2."""
+        return np.pi
+
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
@@ -290,6 +295,10 @@ class Measured(Pressure):
     @cached_property
     def torque(self) -> float:
         return self.grid.mean_distance()
+
+    @property
+    def area(self) -> float:
+        return self.grid.area
 
     @cached_property
     def largest(self) -> float:

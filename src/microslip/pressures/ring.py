@@ -46,6 +46,10 @@ class Ring(RoundPressure):
         return f"a ring-shaped contact with a hole of {self.inner:g} of its radius"
 
     @property
+    def area(self) -> float:
+        return np.pi * (1.0 - self.inner**2)
+
+    @property
     def _half(self) -> float:
         return 0.5 * (1.0 - self.inner)
 

@@ -13,7 +13,10 @@ import yaml
 
 from microslip.foundation.files import write_atomically
 
-RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
+RANGES = (
+    *("mu_macro", "mu_macro_error", "mu_torque", "dissipated_energy", "dissipated_energy_error"),
+    *("reference_error", "seconds"),
+)
 """Variables whose smallest and largest values are on the page."""
 MOST_LINES = 40
 

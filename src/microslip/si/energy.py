@@ -1,55 +1,70 @@
-"""Torque, power and energy per cycle in SI units."""
+"""Torque, power, energy per cycle and wear in SI units."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from microslip.adaptive.point import Result
-from microslip.adaptive.vibration_power import Answer, vibration_power
-from microslip.foundation.arguments import LARGEST
-from microslip.foundation.errors import InputError
+from microslip.estimate.estimate import Estimate
 from microslip.pressures.by_name import pressure_named
-from microslip.si.prediction import Power
+from microslip.si.prediction import Power, Wear
 from microslip.si.request import Request
 
 
 def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
     """Energy fields of a Prediction, for a converged answer.
 
-    They are the power of the drag, the torque and power of a steady spin, and the power of an
-    oscillation if it was requested.  Raises InputError if the power of the oscillation was
-    requested under a force, with a spring, or at a speed or amplitude of 0.
+    They are the power of the drag, the torque of a steady spin, the power of the spin or of the
+    oscillation, and the wear if a wear coefficient is given.
     """
-    contact, motion, still = request.contact, request.motion, request.still
+    motion, still = request.motion, request.still
     speed, friction = motion.known_speed, answer.friction
     speed_error = answer.mean_velocity.error * request.speed_unit if answer.force else 0.0
     drag = still * friction.value * speed
     drag_error = still * (friction.error * speed + friction.value * speed_error)
     fields: dict[str, Any] = {"drag_power_W": drag, "drag_power_error_W": drag_error}
     if answer.torque is not None:
-        unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
-        torque, error = unit * answer.torque.value, unit * answer.torque.error
-        fields |= {"torque_N_m": torque, "torque_error_N_m": error}
-        power, power_error, reason = torque * motion.turn, error * motion.turn, None
-    elif request.arguments["power"] and not motion.steady:
-        vibration = _vibration_power(request, answer)
-        unit = still * contact.u_lim * motion.turn
-        power, power_error = unit * vibration.value, unit * vibration.error
-        reason = vibration.reason
-    else:
+        unit = still * request.contact.contact_radius
+        torque = unit * pressure_named(request.contact.pressure).torque * answer.torque
+        fields |= {"torque_N_m": torque.value, "torque_error_N_m": torque.error}
+        power = motion.turn * torque
+        total, total_error = drag + power.value, drag_error + power.error
+    elif answer.dissipation is None:
         return fields
-    total, total_error = drag + power, drag_error + power_error
-    energy = total / motion.rate, total_error / motion.rate
-    return fields | {"power": Power(power, power_error, reason, total, total_error, *energy)}
+    else:
+        power, total_error = _power_of_oscillation(request, answer)
+        total, total_error = drag + power.value, max(total_error, drag_error)
+    energy = 1.0 / motion.rate * Estimate(total, {"model": total_error})
+    # a dashpot dissipates an unknown part of the power
+    known = not request.drive.damping
+    fields["power"] = Power(
+        vibration_power_W=power.value if known else None,
+        vibration_power_error_W=power.error if known else None,
+        dissipated_power_W=total,
+        dissipated_power_error_W=total_error,
+        energy_per_cycle_J=energy.value,
+        energy_per_cycle_error_J=energy.error,
+    )
+    if request.wear_coefficient is not None:
+        fields["wear"] = _wear(request, request.wear_coefficient / request.contact.mu * energy)
+    return fields
 
 
-def _vibration_power(request: Request, answer: Result) -> Answer:
-    """The dimensionless power of an oscillation."""
-    if answer.force is not None or answer.stiffness is not None:
-        raise InputError("power", True, "allowed only without a force and a spring")
-    velocity, size = request.groups
-    if not velocity or not size:
-        name = "amplitude" if velocity else "speed"
-        raise InputError(name, 0.0, "allowed is above 0 with power")
-    point = request.solver_motion, min(velocity, LARGEST["velocity"]), size
-    return vibration_power(*point, tolerance=request.tolerance, **request.settings)
+def _power_of_oscillation(request: Request, answer: Result) -> tuple[Estimate, float]:
+    """Power of the oscillation, and the error of the dissipated power, W."""
+    problem, dissipation = request.problem(), answer.dissipation
+    assert dissipation is not None  # checked by energy_fields
+    unit = request.still * request.contact.u_lim * request.motion.turn / problem.mean_load
+    advance = problem.mean_load * problem.unit_drift * answer.velocity
+    drag = advance * answer.friction
+    power = 1.0 / (2.0 * math.pi) * dissipation + -drag
+    return unit * power, unit * dissipation.error / (2.0 * math.pi)
+
+
+def _wear(request: Request, volume: Estimate) -> Wear:
+    """Wear in a cycle.  `volume` is the worn volume of a body, m^3."""
+    contact = request.contact
+    area = pressure_named(contact.pressure).area * contact.contact_radius**2
+    depth = 1.0 / (area * request.carriers.count) * volume
+    return Wear(volume.value, volume.error, depth.value, depth.error)

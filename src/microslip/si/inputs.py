@@ -61,6 +61,7 @@ QUANTITIES = {
     "density": Range("kg/m^3"),
     "counter_density": Range("kg/m^3"),
     "reduction": Range("", high=1.0),
+    "wear_coefficient": Range("m^2/N", low_open=False),
 }
 """Arguments of predict that are quantities.  The amplitude of a rotation is an angle."""
 

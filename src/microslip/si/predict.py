@@ -81,8 +81,8 @@ def predict(
     density: object = None,
     counter_hardness: object = None,
     counter_density: object = None,
+    wear_coefficient: object = None,
     tolerance: object = None,
-    power: bool = False,
 ) -> Prediction:
     """Friction of a vibrated contact of two bodies, in SI units.
 
@@ -150,13 +150,14 @@ def predict(
         Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or
         a text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  They are used for warnings
         only.
+    wear_coefficient : quantity, optional
+        Wear coefficient of Archard's law, m^2/N: worn volume of a body divided by load and sliding
+        distance, such as "1e-5 mm^3/N/m".
     tolerance : quantity
         Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it
         is the largest accepted relative error of the speed, and the default is 1e-2.  For speeds
         below a thousandth of the unit of speed, which is omega u_lim or that of the motion, the
         error is relative to this thousandth.
-    power : bool
-        True to also compute the power of the oscillation.
 
     Returns
     -------
@@ -176,7 +177,6 @@ def predict(
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
-NOTHING["power"] = False
 """Arguments of predict except the motion, with their defaults."""
 
 
@@ -214,8 +214,6 @@ def answer_request(request: Request) -> Prediction:
     parts["not_checked"] = tuple(unchecked(most))
     if answer.converged:
         parts |= energy_fields(request, answer)
-        if "power" in parts and not request.motion.steady:
-            parts["converged"] = not parts["power"].vibration_power_reason
     if request.motion.steady:
         parts["rotation_rad_s"] = request.motion.rotation
     else:

@@ -27,8 +27,9 @@ _NAMES = """
     force_threshold_error_N safety_factor safety_factor_error regime natural_frequency pressure
     forward_amplitude_m rotation_amplitude_rad load_amplitude_N phase_rad contacts torque_N_m
     torque_error_N_m drag_power_W drag_power_error_W vibration_power_W vibration_power_error_W
-    vibration_power_reason dissipated_power_W dissipated_power_error_W energy_per_cycle_J
-    energy_per_cycle_error_J load_N sought sought_error mu_macro_spread mu_apparent_spread
+    dissipated_power_W dissipated_power_error_W energy_per_cycle_J energy_per_cycle_error_J
+    wear_volume_per_cycle_m3 wear_volume_per_cycle_error_m3 wear_depth_per_cycle_m
+    wear_depth_per_cycle_error_m load_N sought sought_error mu_macro_spread mu_apparent_spread
     friction_force_spread_N speed_spread_m_s sought_spread mu_static_spread mu_static_low
     mu_static_high mu_static_apparent_spread mu_static_apparent_low mu_static_apparent_high
     force_threshold_spread_N force_threshold_low_N force_threshold_high_N safety_factor_spread
@@ -39,13 +40,13 @@ COLUMNS = tuple(_NAMES.split())
 """Names of the columns of JSON and of tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
-PARTS = ("body", "travel", "search", "power", "uncertainty")
+PARTS = ("body", "travel", "search", "power", "wear", "uncertainty")
 """Fields that are records with columns of their own."""
 
 UNITS = {
     **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
-    "_s": "s",
+    **{"_s": "s", "_m3": "m3"},
 }
 """Unit of a column, by the ending of its name.  The first matching end counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
@@ -117,24 +118,40 @@ class Power:
 
     Attributes
     ----------
-    vibration_power_W, vibration_power_error_W : float
-        Mean power of the oscillation or of the spin, W.
-    vibration_power_reason : str or None
-        Why the error is above the tolerance.  It is empty if the error is within the tolerance,
-        and None for a closed form.
+    vibration_power_W, vibration_power_error_W : float or None
+        Mean power of the oscillation or of the spin, W.  None with a dashpot, which dissipates an
+        unknown part of it.
     dissipated_power_W, dissipated_power_error_W : float
-        Mean power of the oscillation and of the drag together, W.
+        Mean power that friction dissipates, W.  Without a dashpot it is the power of the
+        oscillation and of the drag together.
     energy_per_cycle_J, energy_per_cycle_error_J : float
         Energy that friction dissipates in a period or in a turn, J.
     """
 
-    vibration_power_W: float
-    vibration_power_error_W: float
-    vibration_power_reason: str | None
+    vibration_power_W: float | None
+    vibration_power_error_W: float | None
     dissipated_power_W: float
     dissipated_power_error_W: float
     energy_per_cycle_J: float
     energy_per_cycle_error_J: float
+
+
+@dataclass(frozen=True)
+class Wear:
+    """Wear of a body in a period or in a turn, by Archard's law.
+
+    Attributes
+    ----------
+    wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float
+        Worn volume, m^3: the wear coefficient times the dissipated energy, divided by mu.
+    wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float
+        Mean depth over the contact area, m.
+    """
+
+    wear_volume_per_cycle_m3: float
+    wear_volume_per_cycle_error_m3: float
+    wear_depth_per_cycle_m: float
+    wear_depth_per_cycle_error_m: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,14 +202,16 @@ class Prediction:
         Contact model, or "closed-form".
     converged, reason : bool, str
         True if the error estimate is at most the tolerance; otherwise `reason` is set.  The error
-        is that of mu_macro, or of the speed under a force.  If vibration_power_W was requested,
-        its error must be within the tolerance, too.
+        is that of mu_macro, or of the speed under a force.
     warnings : tuple of str
         Assumptions of the theory that the contact violates.
     not_checked : tuple of str
         Checks that need a missing property.
     power : Power or None
-        Power of the spin, or power of the oscillation if the user requested it.
+        Power of the spin or of the oscillation, and dissipated energy; None if the answer is not
+        converged.
+    wear : Wear or None
+        Wear in a cycle, if the user gave a wear coefficient.
     uncertainty : mapping
         Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
         inputs, by column.  The columns are NAME_spread, NAME_low and NAME_high, `interval_method`
@@ -232,6 +251,7 @@ class Prediction:
     warnings: tuple = ()
     not_checked: tuple = ()
     power: Power | None = None
+    wear: Wear | None = None
     uncertainty: Mapping[str, Any] = field(default_factory=dict)
 
     @property

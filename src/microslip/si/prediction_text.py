@@ -117,7 +117,9 @@ def prediction_text(record: Any) -> str:
     lines += show("torque", "{torque_N_m}")
     lines += show("power", "{vibration_power_W} for the {added}")
     lines += show("", "{drag_power_W} for the drag", record.power is not None)
-    lines += show("energy", "{energy_per_cycle_J} of heat a cycle") + not_converged(record)
+    lines += show("energy", "{energy_per_cycle_J} of heat a cycle")
+    lines += show("wear", "{wear_depth_per_cycle_m} a cycle, mean depth over the contact")
+    lines += not_converged(record)
     lines += [f"warning: {text}" for text in record.warnings]
     return "\n".join(lines + [f"not checked: {text}" for text in record.not_checked])
 
@@ -290,7 +292,7 @@ class _Texts(dict[str, Any]):
         unit = self.units.get(end, ("", 1.0))
         if end == "_s":
             unit = unit_for(value, TIMES)
-        elif end in ("_J", "_N_m"):
+        elif end in ("_J", "_N_m") or stem.startswith("wear_"):
             unit = prefixed(value, end[1:].replace("_", " "))
         if stem.endswith("_spread"):
             return number_text(value / unit[1], 0.0, unit[0], digits=2)

@@ -103,9 +103,7 @@ def not_converged(prediction: Any) -> list[str]:
     lines = []
     if not prediction.converged and prediction.outcome != "runs away":
         name = "mu_macro" if prediction.force_N is None else "speed"
-        reason = prediction.vibration_power_reason
-        name = "vibration power" if reason else prediction.sought or name
-        lines.append(f"NOT CONVERGED: {name}: {reason or prediction.reason}")
+        lines.append(f"NOT CONVERGED: {prediction.sought or name}: {prediction.reason}")
     if prediction.mu_static_reason:
         lines.append(f"NOT CONVERGED: static friction: {prediction.mu_static_reason}")
     return lines

@@ -42,6 +42,7 @@ EXAMPLES = {
     "N/m": "10 N/um",
     "kg": "20 g",
     "N*s/m": "5 N*s/m",
+    "m^2/N": "1e-5 mm^3/N/m",
     "": "0.3",
 }
 """An example of a quantity for each SI unit."""

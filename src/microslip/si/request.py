@@ -126,6 +126,12 @@ class Request:
         """Force, stiffness, mass and damping for microslip.solve, for one contact."""
         return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
 
+    @property
+    def wear_coefficient(self) -> float | None:
+        """Wear coefficient, m^2/N, or None."""
+        value = self.arguments["wear_coefficient"]
+        return None if value is None else read_argument("wear_coefficient", value).si
+
     def problem(self) -> Problem:
         """The dimensionless Problem in the limit of vanishing speed.
 
@@ -226,8 +232,6 @@ def request_of(motion: str, arguments: Arguments) -> Request:
         if name != "counterbody" and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
-    if not isinstance(arguments["power"], bool):
-        raise InputError("power", arguments["power"], "allowed is True or False")
     if arguments["mu"] is None:
         raise InputError("mu", None, "needed")
     sought = _sought(motion, arguments)
@@ -237,11 +241,11 @@ def request_of(motion: str, arguments: Arguments) -> Request:
     if tolerance is None:
         tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
+    if arguments["wear_coefficient"] is not None:
+        read_argument("wear_coefficient", arguments["wear_coefficient"])
     accepted = read("tolerance", tolerance, "", low_open=False, **limits)
     bodies = read_bodies(arguments)
-    carriers, carrier_texts = read_carriers(
-        arguments["contacts"], reduction=arguments["reduction"], power=arguments["power"]
-    )
+    carriers, carrier_texts = read_carriers(arguments["contacts"], reduction=arguments["reduction"])
     load = ANY_LOAD if sought == "load" else arguments["load"]
     contact, contact_texts = read_contact(bodies, arguments, load=load, contacts=carriers.count)
     amplitude = real.load_amplitude

@@ -1,14 +1,18 @@
-"""Mean forces and mean power of the oscillation over a period."""
+"""Mean forces over a period, and the energy that friction dissipates."""
 
 from __future__ import annotations
 
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, Contact, GrowingContact
+from microslip.models.contact import Contact, GrowingContact
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
+from microslip.solver.period_map import PeriodicState
+
+if TYPE_CHECKING:
+    from microslip.models.side_by_side import SideBySide
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -22,29 +26,29 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
-def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float:
-    """Mean power of the oscillation: work of the forces per radian of phase.
+def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> float:
+    """Energy that friction dissipates in a period, divided by mu F_z u_lim.
 
-    The oscillation is the motion minus its mean forward velocity.  An oscillating normal load
-    does no work over a period, since it is a function of the indentation.
+    The elastic energy is the same at both ends of a period, and an oscillating normal load does no
+    net work, since it is a function of the indentation.  So the dissipated energy is the work of
+    the tangential forces on the rigid displacements of the contacts.
 
     Parameters
     ----------
-    problem : problem.Problem
-        The problem.
+    contact : contact.Contact
+        The contact, or several contacts side by side.
     path : path.Path
         Path over a period, or over half a period if the second half is the mirror image of the
         first.
-    forces : np.ndarray, shape (steps + 1, 3)
-        Forward and lateral force divided by mu F_z, and torque divided by mu F_z a, at the phases
-        of the path.
-
-    Returns
-    -------
-    float
-        Power divided by mu times the mean normal load and by u_lim.
+    periodic : period_map.PeriodicState
+        The periodic state.
     """
-    displacement = np.diff(path.positions, axis=0)
-    work = 0.5 * np.vdot(forces[1:] + forces[:-1], displacement)
-    advance = problem.drift * float(path.mean(forces)[FORWARD])
-    return float(work / (path.phase[-1] - path.phase[0]) - advance) / problem.mean_load
+    forces, places = periodic.forces[:, None], path.places
+    if places.shape[1] > 1:
+        assert periodic.fields is not None  # true for all compiled contacts
+        forces = cast("SideBySide", contact).forces_of_each(path, periodic.fields)
+    moves = np.diff(places, axis=0)
+    if periodic.body is not None:
+        moves[..., 0] += np.diff(periodic.body[:, :1], axis=0)
+    work = 0.5 * np.vdot(forces[1:] + forces[:-1], moves)
+    return float(work) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

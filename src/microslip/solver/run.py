@@ -79,9 +79,9 @@ class Run:
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
     velocity : float
         Mean forward velocity under a prescribed force, in the unit of the motion; otherwise NaN.
-    power : float
-        Mean power of the oscillation, divided by u_lim, see means.oscillation_power; NaN if not
-        computed.
+    energy : float
+        Energy that friction dissipates in a period, divided by mu F_z u_lim, see
+        means.dissipated_energy; NaN if not computed.
     """
 
     mu: float
@@ -95,7 +95,7 @@ class Run:
     state: np.ndarray | None = None
     static_force: float = np.nan
     velocity: float = np.nan
-    power: float = np.nan
+    energy: float = np.nan
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:

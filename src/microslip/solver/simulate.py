@@ -19,7 +19,7 @@ from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.means import mean_forces, oscillation_power
+from microslip.solver.means import dissipated_energy, mean_forces
 from microslip.solver.method import Method
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.solver.periodic import find_periodic_state
@@ -139,7 +139,7 @@ def _extrapolated(fine: Run, coarse: Run) -> Run:
         fine,
         mu=2.0 * fine.mu - coarse.mu,
         torque=2.0 * fine.torque - coarse.torque,
-        power=2.0 * fine.power - coarse.power,
+        energy=2.0 * fine.energy - coarse.energy,
         distance=2.0 * fine.distance + coarse.distance,
         solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
         periods=fine.periods + coarse.periods,
@@ -174,12 +174,12 @@ class _Search:
 
     def run(self, guess: Run | None = None) -> Run:
         """Run the search; `guess`: see simulate."""
-        periodic, start = None, self._start_from(guess)
+        start, converged = self._start_from(guess), False
         if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
-            periodic = self._find(start, near=start is not guess.state)
-        if periodic is None or not periodic.converged:
-            periodic = self._search_afresh()
+            converged = self._find(start, near=start is not guess.state).converged
+        if not converged:
+            self._search_afresh()
         return run_of_searches(
             self.contact,
             self.problem,
@@ -188,7 +188,6 @@ class _Search:
             self.step_tolerance,
             self.problem.mean_load,
             static_force=self.drift_rate.static_force,
-            power=oscillation_power(self.problem, self.path, periodic.forces),
         )
 
     def _start_from(self, guess: Run | None) -> np.ndarray | None:
@@ -200,15 +199,11 @@ class _Search:
         start = self.contact.prolonged(guess.state)
         return None if start is None else project(start, self.contact.bound)
 
-    def _search_afresh(self) -> PeriodicState:
+    def _search_afresh(self) -> None:
         slipping = forward_slip(self.contact)
-        if not self.method.prepared:
-            return self._find(slipping)
-        for start in (self._start_near_the_limit(slipping), slipping):
-            periodic = self._find(start)
-            if periodic.converged:
-                break
-        return periodic
+        if self.method.prepared and self._find(self._start_near_the_limit(slipping)).converged:
+            return
+        self._find(slipping)
 
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
         """Tractions of the static limit plus forward tractions, or of full slip if no point sticks.
@@ -289,6 +284,7 @@ def run_of_searches(
         converged=not reason,
         reason=reason,
         state=periodic.start,
+        energy=dissipated_energy(contact, path, periodic),
         **others,
     )
 

@@ -16,11 +16,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
-from microslip.models.contact import Contact
+from microslip.models.contact import Contact, DirectContact, full_slip, rigid_displacement
 from microslip.models.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
@@ -98,3 +98,30 @@ def static_state(contact: Contact, oscillation: Callable, step_tolerance: float)
     march = contact.march(_quarter(oscillation), start, step_tolerance)
     residual = residual_part(-march.state, contact.bound)
     return StaticState(residual, -march.state, march.residual, march.solves)
+
+
+def loop_energy(
+    contact: Contact, oscillation: Callable, oscillating: np.ndarray | None = None
+) -> float:
+    """Energy that an oscillation on a line dissipates in a period, divided by mu F_z u_lim.
+
+    A point that slips does so in a constant direction.  By Masing's rule it slips twice as far
+    between the turning points as in the first loading.  So the energy is four times the friction
+    bound times the slip of the first loading, summed over the points.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        The contact.
+    oscillation : callable
+        Rigid displacement at a phase, as in `static_state`.
+    oscillating : np.ndarray or None
+        Tractions of the oscillation at the first turning point, see StaticState.  None for a
+        contact that never sticks, which computes them directly.
+    """
+    if oscillating is None:
+        path = make_path(oscillation, np.pi * np.array([-0.5, 0.5, 1.5]), EULER)
+        oscillating = cast(DirectContact, contact).periodic_state(path, mirror=False)
+    place = np.array(oscillation(np.array(-0.5 * np.pi)), dtype=float)
+    slip = rigid_displacement(contact, place) - contact.displacement(oscillating)
+    return 4.0 * float(np.vdot(contact.weight * full_slip(contact, *oscillating), slip))

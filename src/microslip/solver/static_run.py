@@ -12,11 +12,11 @@ from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.means import oscillation_power
+from microslip.solver.means import dissipated_energy
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
 from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, periods_of
 from microslip.solver.snapshots import bounds_at_phases
-from microslip.solver.static_limit import at_turning_points, static_state
+from microslip.solver.static_limit import at_turning_points, loop_energy, static_state
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
@@ -60,8 +60,10 @@ def simulate_static(
 
 def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
     force, solves, residual, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
+    oscillating = None
     if contact.sticks:
         limit = static_state(contact, problem.displacement, step_tolerance)
+        oscillating = limit.oscillating
         force = float(forces(contact, limit.residual)[FORWARD])
         solves, residual = limit.solves, limit.solver_residual
     reason = unsolved(residual, solves, step_tolerance)
@@ -70,6 +72,7 @@ def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
         torque=0.0,
         distance=0.0,
         solver_residual=residual / problem.mean_load,
+        energy=loop_energy(contact, problem.displacement, oscillating),
         periods=0.0,  # the limit needs a march of a quarter period and no search
         effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
@@ -217,6 +220,6 @@ def _on_these_points(
         converged=not reason,
         reason=reason,
         # a constant traction does no work over a closed loop
-        power=oscillation_power(problem, path, periodic.forces),
+        energy=dissipated_energy(contact, path, periodic),
     )
     return run, sticks

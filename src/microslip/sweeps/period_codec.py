@@ -1,8 +1,8 @@
 """Compact storage of a period of the periodic state.
 
 Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
-as fractions of the friction bound in steps of 1/127, the resolution of a drawing.  Forces have
-seven decimals.  Slip flags are exact.
+as fractions of the friction bound in steps of 1/127, the resolution of a drawing.  The density of
+the dissipated energy has 65,535 steps.  Forces have seven decimals.  Slip flags are exact.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 SHARES = 127
 """Number of steps between 0 and the friction bound in stored tractions."""
+DENSITIES = 65535
+"""Number of steps between 0 and the largest density of the dissipated energy."""
 DECIMALS = 7
 """Number of decimals of stored forces and displacements."""
 HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lateral", "torque")
@@ -39,7 +41,9 @@ def packed(period: Period, angles: int) -> dict:
     dict
         radius, bound: lists over rings, (cells,).  The names in HISTORIES: lists over time, (steps
         + 1,). tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in
-        steps of bound/127. slips: base64 of bits, (steps/2 + 1, angles, cells). turned: True if the
+        steps of bound/127. slips: base64 of bits, (steps/2 + 1, angles, cells). densities: base64
+        of uint16, (angles, cells), density of the dissipated energy in steps of its largest value
+        divided by 65535. turned: True if the
         other half of the disc is this half rotated by half a turn, as in translations; False if it
         is the mirror image across the lateral axis. mu_macro, converged, reason: values of the
         Period.
@@ -50,12 +54,14 @@ def packed(period: Period, angles: int) -> dict:
     shares = np.clip(both[:frames, :, :half] / bound, -1.0, 1.0)
     slips = period.slips[:frames, :half]
     radius = np.hypot(period.forward_position, period.lateral_position)[:half]
+    density = np.maximum(period.dissipated_energy_density[:half], 0.0)
     histories = {name: np.round(getattr(period, name), DECIMALS) for name in HISTORIES}
     return histories | {
         "radius": radius.reshape(angles, -1)[0],
         "bound": bound.reshape(angles, -1)[0],
         "tractions": text_of(np.round(SHARES * shares).astype(np.int8)),
         "slips": text_of(np.packbits(slips)),
+        "densities": text_of(np.round(DENSITIES * density / density.max()).astype(np.uint16)),
         "angles": angles,
         "turned": bool(period.lateral_position[half] != period.lateral_position[0]),
         "mu_macro": period.mu_macro,

@@ -134,6 +134,40 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
     return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.bound(t, 1.0) / t, axis=-1)
 
 
+def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
+    """Energy that an oscillating torsion without sliding dissipates in a period.
+
+    By Masing's rules it is 8 W - 4 T phi, with the work W of the first loading.  The torque T is
+    that of punches of all radii s, (16/3) G s^3 (-d phi(s)).  Integration by parts gives
+    64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere it is the energy of Lubkin and
+    Deresiewicz.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Pressure of an axisymmetric indenter.
+    angle : float
+        Amplitude of the rotation in u_lim / a, >= 0.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+
+    Returns
+    -------
+    float
+        Energy divided by mu F_z u_lim.
+    """
+    c = max(torsion_stick_radius(pressure, angle, poisson), SMALLEST_STICK_RADIUS)
+    middle = min(max(_kink(pressure), c), 1.0)
+    total = 0.0
+    for start, end in ((c, middle), (middle, 1.0)):
+        half = 0.5 * np.pi * _NODES  # the angle has square-root ends
+        radii = start + (end - start) * np.sin(half) ** 2
+        step = 0.5 * np.pi * (end - start) * np.sin(2.0 * half) * _WEIGHTS
+        turned = np.array([torsion_angle(pressure, s, poisson) for s in radii])
+        total += float(np.sum(step * radii**2 * turned * (angle - turned))) if end > start else 0.0
+    return 16.0 * (2.0 - poisson) * pressure.G_star * total
+
+
 def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
     """Static friction under oscillating bore for v -> 0.
 

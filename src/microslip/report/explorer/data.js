@@ -23,19 +23,21 @@ function decoded(map) {
       phases: new Uint16Array(bytesOf(p.phases).buffer),
       radii: new Uint16Array(bytesOf(p.radii).buffer),
       bounds: new Uint16Array(bytesOf(p.bounds).buffer),
+      densities: new Uint16Array(bytesOf(p.densities).buffer),
     });
   }
   return decodedMaps.get(map.id);
 }
 
 // The stored period of a point of a map: forces over mu F_z and phases in rad at every frame, radii
-// over a and bounds over mu F_z/a^2 of the rings. Null without a period; then `whyNone` has the reason.
+// over a and bounds over mu F_z/a^2 of the rings, and densities of the dissipated energy over the largest
+// one, cell by cell. Null without a period; then `whyNone` has the reason.
 function periodAt(map, row, column) {
   const p = map.periods;
   if (p.count === 0) return null;
   const k = p.index[row][column];
   if (k < 0) return null;
-  const { forces, phases, radii, bounds } = decoded(map);
+  const { forces, phases, radii, bounds, densities } = decoded(map);
   const rows = p.frames + 1;
   const part = (array, count, scale) =>
     Array.from(array.subarray(k * count, (k + 1) * count), (n) => n * scale);
@@ -48,6 +50,7 @@ function periodAt(map, row, column) {
     other: pairs.slice(rows),
     radius: part(radii, p.cells, 1 / NUMBERS.unsigned),
     bound: part(bounds, p.cells, 1 / NUMBERS.unsigned),
+    density: part(densities, p.angles * p.cells, 1 / NUMBERS.unsigned),
     mean: p.mean[k],
     converged: p.converged[k],
     reason: p.reason[k],

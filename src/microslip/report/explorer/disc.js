@@ -1,4 +1,5 @@
-// The contact at one phase: cells in stick, cells in slip, and tractions.
+// The contact at one phase: cells in stick, cells in slip, and tractions. Lines enclose the cells that
+// dissipate half the energy of the period.
 
 const STICK = "#56B4E9", SLIP = "#E69F00";
 const LONGEST = 0.17; // length of an arrow, over a, where the traction is the largest bound
@@ -12,7 +13,7 @@ function discOf(period) {
   const rims = [0, ...inner, 1];
   const half = Math.PI / angles / 2;
   const largest = Math.max(...period.bound);
-  const disc = { outlines: [], arrows: [], period };
+  const disc = { outlines: [], arrows: [], period, hottest: hottestCells(period, rims) };
   theta.forEach((angle, j) => {
     const turns = [angle - half, angle, angle + half];
     for (let i = 0; i < cells; i++) {
@@ -32,6 +33,26 @@ function discOf(period) {
     }
   });
   return disc;
+}
+
+// The fewest cells of half the disc that dissipate half the energy, as their indices.
+function hottestCells({ density, map }, rims) {
+  const { cells } = map.periods;
+  const energy = density.map((one, k) => one * (rims[(k % cells) + 1] ** 2 - rims[k % cells] ** 2));
+  const enough = energy.reduce((all, one) => all + one, 0) / 2;
+  let sum = 0;
+  return density.map((one, k) => k).sort((a, b) => density[b] - density[a]).filter((k) => {
+    const needed = sum < enough;
+    sum += energy[k];
+    return needed;
+  });
+}
+
+// Outlines of the hottest cells of both halves of the disc, as one line with gaps.
+function hottestLines({ outlines, hottest, period }) {
+  const half = period.density.length;
+  const every = hottest.flatMap((k) => [outlines[k], outlines[k + half]]);
+  return [0, 1].map((axis) => every.flatMap((ring) => [...ring[axis], null]));
 }
 
 // Outlines of all cells in slip, or in stick, as one line with gaps.
@@ -68,11 +89,14 @@ function drawDisc(element, disc, frame) {
     line: { color: "#fff", width: 0.6 }, hoverinfo: "skip",
   });
   const turns = Array.from({ length: 121 }, (_, k) => (k * Math.PI) / 60);
+  const hottest = hottestLines(disc);
   Plotly.react(element, [
     area("sticks", STICK, parts[0]),
     area("slips", SLIP, parts[1]),
     { type: "scatter", mode: "lines", name: "traction on the flat", x: parts[2][0], y: parts[2][1],
       line: { color: INK, width: 1.3 }, hoverinfo: "skip" },
+    { type: "scatter", mode: "lines", name: "half of the heat", x: hottest[0], y: hottest[1],
+      line: { color: VERMILLION, width: 1 }, hoverinfo: "skip" },
     { type: "scatter", mode: "lines", x: turns.map(Math.cos), y: turns.map(Math.sin),
       line: { color: INK, width: 1.2 }, hoverinfo: "skip", showlegend: false },
   ], layout({

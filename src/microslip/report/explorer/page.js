@@ -182,11 +182,13 @@ function tell(drawn) {
   paragraph("certificate", !at("converged") ? `At ${place}; not converged: ${at("reason")}`
     : `At ${place}; converged.${sources.length ? " Its error by source:" : ""}`, !at("converged"));
   table("sources", sources.map(([name, source]) => [source, digits(at(name), 2)]));
+  const energy = !map.points.dissipated_energy ? "" : ` In a period, friction dissipates ` +
+    `${digits(at("dissipated_energy"))} ± ${digits(at("dissipated_energy_error"), 2)} μF_z u_lim.`;
   const counts = [["cells", "rings"], ["angles", "angles on half a ring"],
     ["steps_per_period", "steps in a period"]].filter(([name]) => map.points[name] && at(name) > 1);
   const model = [`Model ${at("model")}`, ...counts.map(([name, word]) => `${at(name)} ${word}`)].join(", ");
   const limits = map.limits.map((given) => `${given.label} ${digits(limitAt(given, row, column))}`);
-  paragraph("spent", `${model}.`);
+  paragraph("spent", `${model}.${energy}`);
   paragraph("theory", limits.length ? `Theory here: ${limits.join("; ")}.` : "");
   if (!period) {
     const missing = map.periods.index !== null && map.amplitude[row] > 0 && map.velocity[column] > 0;

@@ -2,7 +2,8 @@
 
 Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64, with
 these steps: bound/127 for tractions, 2 pi/65535 for phases, 1/65535 for radii and bounds, and the
-largest force divided by 32767 for forces.
+largest force divided by 32767 for forces. Densities of the dissipated energy are those of the
+stored period.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from microslip.report.explorer.certified import packed
 from microslip.report.figures import drawing
 from microslip.report.figures.data import require, sweep
 from microslip.sweeps.evaluate import plain
-from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
+from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half, values_of
 from microslip.theory.catalogue import FORMS
 
 UNSIGNED, SIGNED = 65535, 32767
@@ -39,6 +40,7 @@ ERRORS = {
     "error_model": "closed form",
 }
 POINTS = ("mu_macro", "mu_macro_error", *ERRORS, "converged", "cells", "angles")
+POINTS += ("dissipated_energy", "dissipated_energy_error")
 POINTS += ("steps_per_period", "model", "reason")
 
 
@@ -142,6 +144,7 @@ def _packed(results: list[dict], force: str) -> dict:
         "turned": results[0]["turned"],
         "tractions": text_of(shares),
         "slips": text_of(np.packbits(slips.reshape(count, -1), axis=1)),
+        "densities": text_of(np.array([values_of(r["densities"], np.uint16) for r in results])),
         "force_step": step,
         "forces": text_of(np.round(forces / step).astype(np.int16)),
         "start": start,
