@@ -41,6 +41,7 @@ _WHERE = {
     "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
     "predict_table": "microslip.si.table",
+    "predict_grid": "microslip.si.grid",
     "Material": "microslip.si.materials",
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",

@@ -27,6 +27,7 @@ COMMANDS = {
     "fit": "coefficient of friction and u_lim from measured friction",
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
     "response": "forces of a contact that follows the path of a file",
+    "export": "an Iwan model or a friction table of a contact, for other programs",
 }
 """Commands that have a separate module in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."

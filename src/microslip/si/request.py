@@ -24,6 +24,7 @@ from microslip.si.dimensionless import (
     solver_motion,
     speed_unit,
 )
+from microslip.si.friction_map import REFUSED, FrictionMap
 from microslip.si.inputs import (
     DRIVE_FIELDS,
     Arguments,
@@ -122,6 +123,22 @@ class Request:
         """Force, stiffness, mass and damping for microslip.solve, for one contact."""
         return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
 
+    @cached_property
+    def map(self) -> FrictionMap | None:
+        """The map that replaces the solver, or None.
+
+        Raises InputError if it is not a map of this motion, this pressure and this drive.
+        """
+        dataset = self.arguments["map"]
+        if dataset is None:
+            return None
+        for name in REFUSED:
+            if self.arguments[name] is not None:
+                raise InputError(name, self.arguments[name], "allowed only without a map")
+        if self.arguments["power"]:
+            raise InputError("power", True, "allowed only without a map")
+        return FrictionMap(dataset, self.solver_motion, self.contact.pressure)
+
     def problem(self) -> Problem:
         """The dimensionless Problem in the limit of vanishing speed.
 
@@ -177,6 +194,9 @@ class Request:
         if velocity is not None:
             velocity = min(velocity, LARGEST["velocity"])
         size = self.groups[1] if amplitude is None else amplitude
+        if self.map is not None:
+            assert velocity is not None  # a map is not allowed with a force
+            return self.map.solve(velocity, size, poisson=settings["poisson"], tolerance=tolerance)
         try:
             return solve(self.solver_motion, velocity, size, **settings)
         except InputError as error:
@@ -217,7 +237,7 @@ class Request:
 def request_of(motion: str, arguments: Arguments) -> Request:
     """The Request for all arguments of predict by name.  Raises InputError."""
     for name, value in arguments.items():
-        if name != "counterbody" and _is_sequence(value):
+        if name not in ("counterbody", "map") and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
     if not isinstance(arguments["power"], bool):
@@ -256,6 +276,8 @@ def request_of(motion: str, arguments: Arguments) -> Request:
         request.check_range()
     if carrier_texts:
         request.problem()  # raises InputError if several contacts are not allowed
+    if request.map is not None:
+        understood["map"] = "friction from a map in place of the solver"
     return request
 
 
