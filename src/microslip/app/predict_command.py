@@ -159,16 +159,20 @@ def _answer(options: argparse.Namespace) -> Answer:
     arguments = typed_options(options)
     if options.map is not None:
         arguments["map"] = opened_map(options.map)
-    ranges = [name for name, value in arguments.items() if is_range(name, value)]
-    for name in ranges if options.table is not None or options.propulsion else ():
-        raise InputError(name, arguments[name], "a range; allowed without --table and --propulsion")
+    ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
+    many = ranges if options.table is None else {"table": options.table}
+    for name, value in many.items():
+        if options.propulsion or "points" in arguments:
+            raise InputError(name, value, "allowed without --propulsion")
+    if options.table is not None and ranges:
+        raise InputError(*next(iter(ranges.items())), "a range; allowed without --table")
     for name in WITH:
         allowed = WITH[name]
         if getattr(options, name) is not None and not (
             options.table is not None and "--table" in allowed or ranges and "range" in allowed
         ):
             raise InputError(name, getattr(options, name), f"allowed only with {allowed}")
-    if options.table is not None or ranges:
+    if many:
         return predicted_table.answer(options, arguments)
     with elapsed_time("microslip predict"):
         if options.propulsion:

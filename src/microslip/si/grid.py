@@ -55,7 +55,7 @@ def values_of(name: str, text: str) -> list[str]:
         count = spec.read(name, numbers.pop(0), whole=True) if numbers else VALUES
     except (UnitError, InputError):
         raise InputError(name, text, ALLOWED) from None
-    fits = -math.inf < low < high < math.inf and 2 <= count <= MOST_CASES
+    fits = -math.inf < low < high < math.inf and 2 <= count <= MOST_CASES and DOTS not in last
     if not fits or numbers or options.count("log") > 1 or log and low <= 0.0:
         above = ", from a number above 0 with log" if log else ""
         raise InputError(name, text, f"{ALLOWED}; the second number is the larger one{above}")
