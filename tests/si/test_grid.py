@@ -28,19 +28,9 @@ def test_a_range_has_equal_steps_or_equal_ratios(text, values):
 @pytest.mark.parametrize(
     "text",
     [
-        "2..0 um",
-        "1..1 um",
-        "..2 um",
-        "0..um",
-        "0..2 um, 1",
-        "0..2 um, 5, 5",
-        "0..2 um, cubic",
-        "0..2 um, 5, log",
-        "1..2 um, log, log",
-        "1 um..2 um",
-        "0..inf um",
-        "0..1..2 um",
-        "0..2..um",
+        *("2..0 um", "1..1 um", "..2 um", "0..um", "1 um..2 um", "0..inf um"),
+        *("0..1..2 um", "0..2..um", "0..2 um, 1", "0..2 um, 5, 5", "0..2 um, cubic"),
+        *("0..2 um, 5, log", "1..2 um, log, log"),
     ],
 )
 def test_other_texts_are_refused_with_an_example(text):

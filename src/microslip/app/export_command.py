@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.app import modelica_text
@@ -188,10 +189,16 @@ def _answer(
     comments: Sequence[str],
     writers: dict[str, Callable],
 ) -> Answer:
-    """Write the file of --output, or print the table as CSV."""
-    text = "".join(f"# {one}\n" for one in comments)
-    text += frame.to_csv(index=False, lineterminator="\n")
+    """Write the file of --output, or print the table as CSV with six digits."""
     if options.output is None:
-        return Answer(plain, text.rstrip("\n"), True)
-    write_output(options.output, {".csv": lambda file: file.write_text(text)} | writers)
+        csv = frame.to_csv(index=False, float_format="%.6g", lineterminator="\n")
+        comments = [f"# {one}" for one in comments]
+        return Answer(plain, "\n".join([*comments, csv.rstrip("\n")]), True)
+
+    def write_csv(file: Path) -> None:
+        with file.open("w", encoding="utf-8", newline="\n") as stream:
+            stream.writelines(f"# {one}\n" for one in comments)
+            frame.to_csv(stream, index=False, lineterminator="\n")
+
+    write_output(options.output, {".csv": write_csv} | writers)
     return Answer(plain, "\n".join(comments), True)

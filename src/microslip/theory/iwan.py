@@ -105,12 +105,17 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
     """Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
 
     The intervals have nearly equal errors: an interval with the stiffness k and the width w of slip
-    displacements has the error k w / 8, so sqrt(k w) is divided into equal parts.
+    displacements has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end of
+    a punch is an interval of its own.
     """
     parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
     measure = np.concatenate([[0.0], np.cumsum(parts)])
-    c = np.interp(np.linspace(0.0, measure[-1], count + 1), measure, _GRID)
-    c[-1] = 0.0
+    stop = int(np.argmax(measure == measure[-1]))
+    flat = float(_GRID[stop])
+    ends = np.linspace(0.0, measure[-1], count + (flat == 0.0))
+    c = np.interp(ends, measure[: stop + 1], _GRID[: stop + 1])
+    if flat > 0.0:
+        c = np.append(c, 0.0)
     slip, slope = 1.0 - pressure.depth(c), 2.0 * pressure.G_star * c
     force = pressure.loading(slip)
     stiffness, limit = -np.diff(slope), np.diff(force - slip * slope)
