@@ -6,9 +6,11 @@ import math
 import pandas as pd
 import pytest
 import xarray as xr
+from stubs import certified_stub
 
 import microslip
 from microslip.app import cli
+from microslip.datasets import certified_map
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -227,3 +229,25 @@ def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, c
     assert cli.main([*RANGED, *words]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
+
+
+@pytest.mark.long
+def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
+    axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "adaptive": {"error": 2e-2}}
+    map_ = certified_stub.configured("transverse", **axes)
+    dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    (folder / "results").mkdir()
+    certified_map.write(folder / "results" / "certified_transverse.nc", dataset)
+    words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]
+    words += ["--mu", "0.3", "--frequency", "20 kHz", "--load", "10 N", "--speed", "10 mm/s"]
+    words += ["--amplitude", "0.2..0.4 um, 3", "--tolerance", "0.05", "--json"]
+    found = []
+    for name in ("certified_transverse", "results/certified_transverse.nc"):
+        assert cli.main([*words, "--map", name]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+    assert found[0] == found[1] and {one["model"] for one in found[0]} == {"map"}
+    bore = [word if word != "transverse" else "bore" for word in words]
+    bore[bore.index("--amplitude") + 1] = "0.1 deg"
+    assert cli.main([*bore, "--map", "certified_transverse"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("microslip predict: --map = 'certified_transverse': allowed is")
