@@ -19,6 +19,7 @@ def curves(speeds=(0.001, 0.01, 0.1), loads=(5.0, 10.0)):
     converged[0, 1] = False
     force = mu * np.array(loads)[:, None]
     variables = {"mu_apparent": mu, "mu_apparent_error": 0.01 * mu, "converged": converged}
+    variables["force_N"] = np.full(mu.shape, np.nan)
     variables |= {"friction_force_N": force, "friction_force_error_N": 0.01 * force}
     coordinates = {
         "speed_m_s": ("speed_m_s", list(speeds), speed),
@@ -42,6 +43,18 @@ def test_lines_and_bands_have_the_values_of_the_dataset():
         bands = [one for one in axes.collections if one.get_gid() == "error"]
         ends = np.concatenate([path.vertices[:, 1] for path in bands[1].get_paths()])
         assert ends.max() == pytest.approx(1.01 * dataset[name].values[1].max())
+
+
+def test_under_a_force_the_speed_is_drawn():
+    force = "force_N", [1.0, 2.0, 3.0], {"units": "N", "long_name": "force"}
+    variables = {"speed_m_s": [0.0, 1e-6, 5e-6], "speed_error_m_s": [0.0, 1e-8, 5e-8]}
+    variables["converged"] = [True] * 3
+    columns = {name: ("force_N", values) for name, values in variables.items()}
+    dataset = xr.Dataset(columns, {"force_N": force})
+    (panel,) = drawing.draw("curve", {"curve": dataset}).axes
+    (line,) = panel.get_lines()
+    assert line.get_ydata() == pytest.approx([0.0, 1.0, 5.0])
+    assert "speed" in panel.get_ylabel() and panel.get_xlabel() == "force (N)"
 
 
 def test_one_range_needs_no_legend():

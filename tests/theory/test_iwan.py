@@ -99,7 +99,7 @@ def test_the_error_contains_the_effect_of_poissons_ratio():
     ("arguments", "name"),
     [
         ({"pressure": "ring"}, "pressure"),
-        ({"pressure": "ellipse", "poisson": 0.3}, "poisson"),
+        ({"pressure": "ellipse", "poisson": 0.3}, "pressure"),
         ({"elements": 0}, "elements"),
         ({"elements": 3, "tolerance": 1e-3}, "elements"),
         ({"tolerance": 0.0}, "tolerance"),

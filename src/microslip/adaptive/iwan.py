@@ -64,8 +64,8 @@ def iwan(
         allowed = "allowed is an axisymmetric indenter or an ellipse: hertz, power, punch, ellipse"
         raise InputError("pressure", record.name, allowed)
     if poisson and not record.is_indenter:
-        allowed = "allowed for an ellipse is 0: above, its stiffness depends on the direction"
-        raise InputError("poisson", poisson, allowed)
+        allowed = "allowed at nu > 0 is an axisymmetric indenter: hertz, power, punch"
+        raise InputError("pressure", record.name, allowed)
     shape = record if record.is_indenter else HERTZ  # an ellipse has the loading of a sphere
     if elements is not None and tolerance is not None:
         raise InputError("elements", elements, "allowed only without a tolerance")
