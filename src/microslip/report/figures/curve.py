@@ -42,7 +42,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             panel.plot(x, y, color=color, ls=ls, marker=marker, ms=2.4, lw=1.0, label=title)
         panel.set_ylabel(f"{label}({prefixed or 'dimensionless'})")
         panel.set_ylim(bottom=0.0)
-        panels.letter(panel, which)
+        if len(shown) > 1:
+            panels.letter(panel, which)
     panels.logarithmic_if_wide(axes[-1], x)
     axes[-1].set_xlabel(f"{dataset[abscissa].attrs['long_name']} ({unit or 'dimensionless'})")
     if others:
