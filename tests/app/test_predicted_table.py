@@ -6,9 +6,11 @@ import math
 import pandas as pd
 import pytest
 import xarray as xr
+from stubs import certified_stub
 
 import microslip
 from microslip.app import cli
+from microslip.datasets import certified_map
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -171,3 +173,81 @@ def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, words
     assert len(line.splitlines()) == 1 and sorted(p.name for p in folder.iterdir()) == [
         "contacts.csv"
     ]
+
+
+RANGED = ["predict", "transverse", *WORDS, "--tolerance", "0.01", "--load", "10 N"]
+RANGED += ["--amplitude", "0..0.4 um, 3", "--speed", "5..20 mm/s, 2"]
+
+
+@pytest.mark.slow
+def test_ranges_give_a_table_a_file_and_a_figure(folder, capsys):
+    pytest.importorskip("matplotlib")
+    files = ["--output", "curve.csv", "--figure", "curve.png"]
+    assert cli.main([*RANGED, *files]) == 0
+    heading, *rows = capsys.readouterr().out.splitlines()[:7]
+    assert heading.split()[:4] == ["amplitude", "speed", "mu_apparent", "+-"]
+    assert [row.split()[:4] for row in rows[:2]] == [
+        ["0", "um", "5", "mm/s"],
+        ["0", "um", "20", "mm/s"],
+    ]
+    frame = pd.read_csv(folder / "curve.csv")
+    assert list(frame.columns[:2]) == ["amplitude_si", "speed_m_s"] and len(frame) == 6
+    one = frame.iloc[3]
+    asked = SHARED | {"tolerance": 0.01, "load": 10, "amplitude": one.amplitude_si}
+    alone = microslip.predict("transverse", **asked, speed=one.speed_m_s)
+    assert one.mu_apparent == pytest.approx(alone.mu_apparent, rel=1e-9)
+    assert float(rows[3].split()[4]) == pytest.approx(one.mu_apparent, rel=1e-2)
+    assert (folder / "curve.png").read_bytes().startswith(b"\x89PNG")
+    assert cli.main([*RANGED, "--json"]) == 0
+    points = json.loads(capsys.readouterr().out)
+    assert [point["mu_apparent"] for point in points] == pytest.approx(list(frame.mu_apparent))
+    assert [point["speed_m_s"] for point in points[:2]] == [0.005, 0.02]
+
+
+@pytest.mark.slow
+def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
+    words = [word if word != "0..0.4 um, 3" else "0..10 m, 2" for word in RANGED]
+    assert cli.main(words) == 1
+    out, error = capsys.readouterr()
+    assert out.count("no prediction") == 2
+    first, _ = error.splitlines()
+    assert first.startswith("microslip predict: amplitude 10 m, speed 5 mm/s: --amplitude = ")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--table", "contacts.csv"], "--amplitude = '0..0.4 um, 3': a range; allowed without"),
+        (["--propulsion"], "--amplitude = '0..0.4 um, 3': allowed without --propulsion"),
+        (["--figure", "a.jpg"], "--figure = 'a.jpg': allowed is a name that ends in .png or .pdf"),
+        (["--output", "a.txt"], "--output = 'a.txt': allowed is a name that ends in .csv or .nc"),
+        (["--phase", "0..1 deg", "--figure", "a.png"], "allowed with one range, or with a second"),
+        (["--decimal", ","], "--decimal = ',': allowed only with --table"),
+    ],
+)
+def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, capsys):
+    assert cli.main([*RANGED, *words]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+@pytest.mark.long
+def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
+    axes = {"velocity": [0.05, 1], "amplitude": [0.5, 2], "adaptive": {"error": 2e-2}}
+    map_ = certified_stub.configured("transverse", **axes)
+    dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    (folder / "results").mkdir()
+    certified_map.write(folder / "results" / "certified_transverse.nc", dataset)
+    words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]
+    words += ["--mu", "0.3", "--frequency", "20 kHz", "--load", "10 N", "--speed", "10 mm/s"]
+    words += ["--amplitude", "0.2..0.4 um, 3", "--tolerance", "0.05", "--json"]
+    found = []
+    for name in ("certified_transverse", "results/certified_transverse.nc"):
+        assert cli.main([*words, "--map", name]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+    assert found[0] == found[1] and {one["model"] for one in found[0]} == {"map"}
+    bore = [word if word != "transverse" else "bore" for word in words]
+    bore[bore.index("--amplitude") + 1] = "0.1 deg"
+    assert cli.main([*bore, "--map", "certified_transverse"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("microslip predict: --map = 'certified_transverse': allowed is")

@@ -29,6 +29,7 @@ COMMANDS = {
     "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
     "response": "forces of a contact that follows the path of a file",
     "fold": "one period of a motion from a long record, such as that of a vibrometer",
+    "export": "an Iwan model or a friction table of a contact, for other programs",
 }
 """Commands that have a separate module in this package, and their results."""
 BORE = "Bore means spin: rotation about the contact normal."

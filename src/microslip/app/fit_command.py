@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from microslip.app.option_parser import format_as_options
-from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.app.question import (
+    Answer,
+    add_json,
+    add_options,
+    opened_map,
+    refuse_figure,
+    refuse_output,
+    respond,
+    typed_options,
+    write_output,
+)
 from microslip.app.terminal import complain
-from microslip.foundation import extras
-from microslip.foundation.errors import CacheError, InputError
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.printed_lines import force_unit, in_unit, line, prefixed
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from microslip.si.fitting.fitted import Fit
 
 OPTIONS = {
@@ -68,10 +73,11 @@ def run(options: argparse.Namespace) -> int:
 def _answer(options: argparse.Namespace) -> Answer:
     from microslip import fit
 
-    _refuse_files(options)
+    refuse_figure(options.figure)
+    refuse_output(options.output, options.measured, (".nc",))
     arguments = {name: value for name, value in typed_options(options).items() if name not in FILES}
     if options.map is not None:
-        arguments["map"] = _opened(options.map)
+        arguments["map"] = opened_map(options.map)
     result = fit(options.motion, options.measured, **arguments)
     _write(result, options)
     for text in result.left_out:
@@ -80,39 +86,14 @@ def _answer(options: argparse.Namespace) -> Answer:
     return Answer(result.to_dict(), _as_text(result), complete)
 
 
-def _opened(path: str) -> xr.Dataset:
-    from microslip.datasets.query.open_map import open_map
-
-    try:
-        return open_map(Path(path)) if path.endswith(".nc") else open_map(path)
-    except InputError as error:
-        raise error.renamed("map") from None
-    except CacheError as error:
-        raise CacheError(f"--map: {error}") from None
-
-
-def _refuse_files(options: argparse.Namespace) -> None:
-    """Raise InputError for an output file with an unknown ending, and for a figure without
-    matplotlib."""
-    for name, endings in (("figure", (".png", ".pdf")), ("output", (".nc",))):
-        path = getattr(options, name)
-        if path is not None and Path(path).suffix.lower() not in endings:
-            allowed = f"allowed is a name that ends in {' or '.join(endings)}"
-            raise InputError(name, path, allowed)
-    hint = extras.missing("matplotlib") if options.figure is not None else ""
-    if hint:
-        raise InputError("figure", options.figure, hint)
-
-
 def _write(result: Fit, options: argparse.Namespace) -> None:
     if not (options.figure or options.output):
         return
     dataset = result.to_xarray()
     if options.output:
-        from microslip.foundation.files import writing_beside
-
-        with writing_beside(Path(options.output)) as beside:
-            dataset.to_netcdf(beside, engine="netcdf4")
+        write_output(
+            options.output, {".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4")}
+        )
     if options.figure:
         from microslip.report.figures.drawing import draw, save
 

@@ -5,8 +5,16 @@ from __future__ import annotations
 import argparse
 
 from microslip.app import predicted_propulsion, predicted_table
-from microslip.app.question import Answer, add_json, add_options, respond, typed_options
+from microslip.app.question import (
+    Answer,
+    add_json,
+    add_options,
+    opened_map,
+    respond,
+    typed_options,
+)
 from microslip.foundation.errors import InputError
+from microslip.si.grid import is_range
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
 
@@ -77,11 +85,19 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
             "--propulsion); with --force relative, of the speed (1e-2)",
         ),
         "points": ("N", "with --propulsion: number of points on the line, both ends included (9)"),
+        "map": (
+            "NAME",
+            "certified map (a name, or a .nc file) of this motion, pressure and Poisson's ratio, "
+            "in place of the solver",
+        ),
         "decimal": ("MARK", "with --table: decimal mark of the file, a point or a comma (.)"),
         "encoding": ("NAME", "with --table: encoding of the file, such as cp1252 (utf-8)"),
     },
 }
 """Options by heading of the help.  Each option has a metavar and a help text."""
+WITH = {"output": "--table or a range", "figure": "a range", "decimal": "--table"}
+WITH["encoding"] = "--table"
+"""Options that need another one."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
@@ -98,7 +114,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "friction with vibration divided by friction without.  mu_apparent is the coefficient of "
         "friction with vibration.  For a quantity with a standard uncertainty, such as "
         "'0.15 +- 0.05' or '10 N +- 5 %', the answer has intervals and the probability of each "
-        "outcome."
+        "outcome.  A quantity can be a range: '0..2 um' has 11 values, '0..2 um, 21' has 21, and "
+        "'0.1..10 mm/s, 21, log' has equal ratios.  The answer is then a table."
     )
     motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(
@@ -124,7 +141,12 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "load [N],speed [mm/s],material; the other options hold for all lines",
     )
     group.add_argument(
-        "--output", metavar="FILE", help="with --table: write all columns to a .csv or .nc file"
+        "--output",
+        metavar="FILE",
+        help="with --table or ranges: write all columns to a .csv or .nc file",
+    )
+    group.add_argument(
+        "--figure", metavar="FILE", help="with one or two ranges: draw friction, .png or .pdf"
     )
     add_json(group)
 
@@ -141,11 +163,23 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip.app.progress import elapsed_time
 
     arguments = typed_options(options)
-    if options.table is not None:
+    if options.map is not None:
+        arguments["map"] = opened_map(options.map)
+    ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
+    many = ranges if options.table is None else {"table": options.table}
+    for name, value in many.items():
+        if options.propulsion or "points" in arguments:
+            raise InputError(name, value, "allowed without --propulsion")
+    if options.table is not None and ranges:
+        raise InputError(*next(iter(ranges.items())), "a range; allowed without --table")
+    for name in WITH:
+        allowed = WITH[name]
+        if getattr(options, name) is not None and not (
+            options.table is not None and "--table" in allowed or ranges and "range" in allowed
+        ):
+            raise InputError(name, getattr(options, name), f"allowed only with {allowed}")
+    if many:
         return predicted_table.answer(options, arguments)
-    for name in ("output", "decimal", "encoding"):
-        if getattr(options, name) is not None:
-            raise InputError(name, getattr(options, name), "allowed only with --table")
     with elapsed_time("microslip predict"):
         if options.propulsion:
             line = predicted_propulsion.line_of(options.motion, arguments)

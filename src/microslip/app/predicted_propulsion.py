@@ -18,6 +18,7 @@ REFUSED["rotation"] = "a self-propelled motion has no steady spin"
 REFUSED |= dict.fromkeys(
     ("radius_across", "contact_radius", "pressure"), "the contact is that of a sphere"
 )
+REFUSED["map"] = "a map contains the friction at a speed"
 REFUSED |= dict.fromkeys(
     ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     "numbers behind the name of the motion set the components and their phases",

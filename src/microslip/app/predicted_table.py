@@ -1,13 +1,21 @@
-"""The command `microslip predict --table`: one contact for each line of a CSV file."""
+"""Predictions of many contacts: the lines of the file of --table, or the values of ranges."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from microslip.app.option_parser import format_as_options, option
-from microslip.app.question import Answer, refuse_output, write_output
+from microslip.app.question import (
+    Answer,
+    dataset_writers,
+    refuse_figure,
+    refuse_output,
+    write_output,
+)
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
@@ -16,9 +24,16 @@ from microslip.si.prediction import EMPTY, NoPrediction, Prediction
 from microslip.si.printed_lines import not_converged, probability_text, runs_away
 from microslip.si.tables import Table
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 FORMAT = ("decimal", "encoding")
 """Options that describe the format of the file."""
 WIDTH = 13
+MOST_COMPLAINTS = 10
+"""Largest number of error messages of contacts without a prediction."""
+MOST_LINES = 8
+"""Largest number of lines in a figure."""
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
 """Columns of a periodic motion.  They are empty for a contact that runs away."""
 PROBABILITIES = {
@@ -29,68 +44,148 @@ PROBABILITIES = {
 """Columns of the probabilities of the outcomes, by heading."""
 
 
-def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
-    """The predictions of a table, as an Answer.  It is complete if all predictions converged.
+class _Cases(NamedTuple):
+    """The contacts of a table or of ranges, and how they are called in the output.
 
-    Error messages of lines without a prediction are written to standard error.
+    Attributes
+    ----------
+    table : Table
+        Arguments of predict that differ between the contacts.
+    shared : dict
+        Arguments of predict that all contacts share.
+    dataset : callable
+        dataset(answers) -> xarray.Dataset with all columns of the predictions.
+    names : list of str
+        Name of each contact in messages.
+    cells : dict of list of str
+        First columns of the printed table, by heading.
+    values : dict of list
+        First values of each contact in JSON, by name.
+    """
+
+    table: Table
+    shared: dict[str, Any]
+    dataset: Callable[[Sequence[Prediction | NoPrediction]], xr.Dataset]
+    names: list[str]
+    cells: dict[str, list[str]]
+    values: dict[str, list[Any]]
+
+
+def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
+    """The predictions of a table or of ranges, as an Answer.
+
+    It is complete if all predictions converged.  Error messages of contacts without a prediction
+    are written to standard error.
 
     Parameters
     ----------
     options : argparse.Namespace
         Options of predict.
     arguments : mapping
-        Values of the options on the command line.
+        Values of the options on the command line, with the map of --map.
 
     Raises
     ------
     InputError
-        If an option is invalid, or the table has no valid line.
+        If an option is invalid, or no contact is valid.
     """
     from tqdm import tqdm
 
-    from microslip.si.table import NAMES, predictions
+    from microslip.si.table import predictions
+
+    refuse_output(options.output, options.table)
+    refuse_figure(options.figure)
+    cases = _lines_of_file(options, arguments) if options.table else _points(options, arguments)
+    try:
+        lazy = predictions(options.motion, cases.table, cases.shared)
+    except InputError as error:
+        from_table = error.argument in cases.table.columns and error.argument not in cases.shared
+        if not (options.table and from_table):
+            raise
+        problem = _problem(error, cases.table.columns)
+        raise InputError("table", options.table, problem) from None
+    answers = list(tqdm(lazy, "contacts", len(cases.names), leave=False, disable=None))
+    rows = _rows(cases, answers, cases.table.columns if options.table else ())
+    if options.output is not None or options.figure is not None:
+        dataset = cases.dataset(answers)
+        errors = np.reshape([row["error"] or "" for row in rows], dataset["error"].shape)
+        dataset["error"] = dataset["error"].copy(data=errors)
+        _write(options, dataset)
+    missing = [
+        f"{name}: {row['error']}" if isinstance(one.error, InputError) else row["error"]
+        for name, row, one in zip(cases.names, rows, answers, strict=True)
+        if isinstance(one, NoPrediction)
+    ]
+    more = len(missing) - MOST_COMPLAINTS
+    for text in missing[:MOST_COMPLAINTS] + [f"{more} more without a prediction"] * (more > 0):
+        complain(f"microslip predict: {text}")
+    return Answer(rows, _as_text(cases, answers), all(one.converged for one in answers))
+
+
+def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
+    """The contacts of a file, one on each line."""
+    from microslip.si.table import NAMES, as_dataset
     from microslip.si.tables import table_of
 
-    if options.propulsion or "points" in arguments:
-        raise InputError("table", options.table, "allowed without --propulsion")
-    refuse_output(options.output, options.table)
     format: dict[str, Any] = {name: arguments[name] for name in FORMAT if name in arguments}
     shared = {name: value for name, value in arguments.items() if name not in FORMAT}
     table = table_of("table", options.table, NAMES, **format)
-    try:
-        cases = predictions(options.motion, table, shared)
-    except InputError as error:
-        if error.argument not in table.columns or error.argument in shared:
-            raise
-        raise InputError("table", options.table, _problem(error, table.columns)) from None
-    answers = list(tqdm(cases, "contacts", len(table.lines), leave=False, disable=None))
-    rows = _rows(table, answers)
-    if options.output is not None:
-        _write(options.output, options.motion, table, answers, rows)
-    for row, one in zip(rows, answers, strict=True):
-        if isinstance(one, NoPrediction):
-            where = f"line {row['line']}: " if isinstance(one.error, InputError) else ""
-            complain(f"microslip predict: {where}{row['error']}")
-    return Answer(rows, _as_text(table, answers), all(one.converged for one in answers))
+
+    def dataset(answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
+        lines = "case", table.lines, {"long_name": "line of the file"}
+        return as_dataset(options.motion, table, answers).assign_coords(line=lines)
+
+    labels = {name: [text or "" for text in texts] for name, texts in table.labels.items()}
+    cells = {"line": list(map(str, table.lines))} | labels
+    values = {"line": table.lines} | table.labels
+    names = [f"line {line}" for line in table.lines]
+    return _Cases(table, shared, dataset, names, cells, values)
 
 
-def _rows(table: Table, answers: Sequence[Prediction | NoPrediction]) -> list[dict[str, Any]]:
-    """A dict for each line, with its number, its labels, its error message or None, and its
-    columns."""
+def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
+    """The contacts of all combinations of the values of ranges."""
+    from microslip.si.grid import grid_of
+
+    grid = grid_of(options.motion, arguments)
+    sizes = sorted(len(axis.values) for axis in grid.axes.values())
+    if options.figure is not None and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
+        allowed = f"allowed with one range, or with a second one of at most {MOST_LINES} values"
+        raise InputError("figure", options.figure, allowed)
+    columns = map(list, zip(*grid.combinations, strict=True))
+    values = dict(zip(grid.axes, columns, strict=True))
+    texts = {name: list(map(_short, one)) for name, one in grid.table.columns.items()}
+    names = [
+        ", ".join(f"{name} {text}" for name, text in zip(texts, case, strict=True))
+        for case in zip(*texts.values(), strict=True)
+    ]
+    return _Cases(grid.table, grid.shared, grid.dataset, names, texts, values)
+
+
+def _short(text: str) -> str:
+    """A quantity with at most four digits."""
+    number, _, unit = text.partition(" ")
+    return f"{float(number):.4g} {unit}".strip()
+
+
+def _rows(
+    cases: _Cases, answers: Sequence[Prediction | NoPrediction], headings: Collection[str]
+) -> list[dict[str, Any]]:
+    """A dict for each contact, with its first values, its error message or None, and its columns.
+
+    headings: names of arguments that messages do not replace by options.
+    """
     rows = []
-    for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
-        labels = {name: texts[index] for name, texts in table.labels.items()}
-        row: dict[str, Any] = {"line": line, **labels, "error": None}
+    for values, one in zip(zip(*cases.values.values(), strict=True), answers, strict=True):
+        row = dict(zip(cases.values, values, strict=True))
         if isinstance(one, NoPrediction):
-            row["error"] = _problem(one.error, table.columns)
+            rows.append(row | {"error": _problem(one.error, headings)})
         else:
-            row |= one.to_dict()
-        rows.append(row)
+            rows.append(row | {"error": None} | one.to_dict())
     return rows
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
-    """The error message of a line, in which names of columns and options replace arguments.
+    """The error message of a contact, in which names of columns and options replace arguments.
 
     An InputError about an empty cell or a missing column has no value.
     """
@@ -105,21 +200,14 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
     return " ".join(f"{name}{value}: {allowed}".split())
 
 
-def _write(
-    path: str,
-    motion: str,
-    table: Table,
-    answers: Sequence[Prediction | NoPrediction],
-    rows: Sequence[Mapping[str, Any]],
-) -> None:
-    """Write all columns of all cases to a .csv or .nc file atomically.  Raises InputError."""
-    from microslip.si.table import as_dataset
+def _write(options: argparse.Namespace, dataset: xr.Dataset) -> None:
+    """Write the files of --output and --figure.  Raises InputError."""
+    if options.output is not None:
+        write_output(options.output, dataset_writers(dataset, dataset.to_dataframe()))
+    if options.figure is not None:
+        from microslip.report.figures.drawing import draw, save
 
-    dataset = as_dataset(motion, table, answers)
-    dataset["error"] = dataset["error"].copy(data=[row["error"] or "" for row in rows])
-    lines = "case", table.lines, {"long_name": "line of the file"}
-    dataset = dataset.assign_coords(line=lines)
-    write_output(path, dataset, lambda file: dataset.to_dataframe().to_csv(file))
+        save(draw("curve", {"curve": dataset}), options.figure)
 
 
 class _Quantity(NamedTuple):
@@ -140,16 +228,16 @@ class _Quantity(NamedTuple):
     sought: str | None = None
 
 
-def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
+def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str:
     """The printed table, with a row for each case and remarks below."""
     some = [one for one in answers if isinstance(one, Prediction)]
     quantities, verdict = _quantities(some), _verdict_headings(some)
     headings = [text for one in quantities for text in one.headings if text] + verdict
-    lines = ["".join(f"{title:>{WIDTH}}" for title in ("line", *table.labels, *headings))]
-    remarks: list[str] = []
-    for index, (line, one) in enumerate(zip(table.lines, answers, strict=True)):
-        labels = (f" {texts[index] or '':>{WIDTH - 1}}" for texts in table.labels.values())
-        start = f"{line:>{WIDTH}}{''.join(labels)}"
+    lines = ["".join(f"{title:>{WIDTH}}" for title in (*cases.cells, *headings))]
+    remarks: dict[str, list[str]] = {}
+    starts = zip(*cases.cells.values(), strict=True)
+    for name, texts, one in zip(cases.names, starts, answers, strict=True):
+        start = "".join(f" {text:>{WIDTH - 1}}" for text in texts)
         if isinstance(one, NoPrediction):
             lines.append(f"{start}  no prediction")
             continue
@@ -157,11 +245,14 @@ def _as_text(table: Table, answers: Sequence[Prediction | NoPrediction]) -> str:
         cells = [cell for quantity in quantities for cell in _cells(row, quantity)]
         cells += _verdict_cells(row)[: len(verdict)]
         lines.append(start + "".join(f"{cell:>{WIDTH}}" for cell in cells))
-        if row["outcome"] == "runs away":
-            remarks.append(f"line {line}: {runs_away(one)}")
-        remarks += [f"line {line}: {text}" for text in not_converged(one)]
-        remarks += [f"line {line}: warning: {text}" for text in one.warnings]
-    return "\n".join(lines + remarks)
+        own = [runs_away(one)] if row["outcome"] == "runs away" else []
+        own += [*not_converged(one), *(f"warning: {text}" for text in one.warnings)]
+        for text in own:
+            remarks.setdefault(text, []).append(name)
+    for text, names in remarks.items():
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        lines.append(f"{names[0]}{more}: {text}")
+    return "\n".join(lines)
 
 
 def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:

@@ -12,13 +12,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.app.option_parser import StoreSpelling, format_as_options, option
 from microslip.app.terminal import complain
+from microslip.foundation import extras
 from microslip.foundation.errors import CacheError, InputError, shown
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 ENDINGS = (".csv", ".nc")
 """Endings of the names of output files."""
+FIGURES = (".png", ".pdf")
+"""Endings of the names of figures."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
 
@@ -118,23 +122,51 @@ def respond(
     return 0 if result.complete else 1
 
 
-def refuse_output(path: str | None, table: str) -> None:
+def refuse_output(
+    path: str | None, table: str | None = None, endings: tuple[str, ...] = ENDINGS
+) -> None:
     """Raise InputError if the output file cannot be written, or is the input table."""
     if path is None:
         return
     file, allowed = Path(path), ""
-    if file.suffix.lower() not in ENDINGS:
-        allowed = f"a name that ends in {' or '.join(ENDINGS)}"
+    if file.suffix.lower() not in endings:
+        allowed = f"a name that ends in {' or '.join(endings)}"
     elif file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
         allowed = "a file in a folder that can be written to"
-    elif file.resolve() == Path(table).resolve():
+    elif table is not None and file.resolve() == Path(table).resolve():
         allowed = "another file than the table that is read"
     if allowed:
         raise InputError("output", path, f"allowed is {allowed}")
 
 
-def write_output(path: str, dataset: xr.Dataset, to_csv: Callable[[Path], object]) -> None:
-    """Write a dataset to a .nc file, or call `to_csv` for a .csv file, atomically.
+def refuse_figure(path: str | None) -> None:
+    """Raise InputError for a figure with an unknown ending, and for a figure without
+    matplotlib."""
+    if path is None:
+        return
+    if Path(path).suffix.lower() not in FIGURES:
+        raise InputError("figure", path, f"allowed is a name that ends in {' or '.join(FIGURES)}")
+    if hint := extras.missing("matplotlib"):
+        raise InputError("figure", path, hint)
+
+
+def opened_map(path: str) -> xr.Dataset:
+    """The dataset of the option --map: a path that ends in .nc, or the name of a sweep.
+
+    Raises InputError and CacheError.
+    """
+    from microslip.datasets.query.open_map import open_map
+
+    try:
+        return open_map(Path(path)) if path.endswith(".nc") else open_map(path)
+    except InputError as error:
+        raise error.renamed("map") from None
+    except CacheError as error:
+        raise CacheError(f"--map: {error}") from None
+
+
+def write_output(path: str, writers: Mapping[str, Callable[[Path], object]]) -> None:
+    """Write a file atomically with the writer for the ending of its name.
 
     Raises InputError if the file cannot be written.
     """
@@ -142,9 +174,14 @@ def write_output(path: str, dataset: xr.Dataset, to_csv: Callable[[Path], object
 
     try:
         with writing_beside(Path(path)) as beside:
-            if Path(path).suffix.lower() == ".csv":
-                to_csv(beside)
-            else:
-                dataset.to_netcdf(beside, engine="netcdf4")
+            writers[Path(path).suffix.lower()](beside)
     except (OSError, CacheError) as error:
         raise InputError("output", path, f"cannot be written: {error}") from None
+
+
+def dataset_writers(dataset: xr.Dataset, frame: pd.DataFrame, **to_csv: Any) -> dict[str, Any]:
+    """Writers of a dataset: to a .csv file as a table, or to a .nc file."""
+    return {
+        ".csv": lambda file: frame.to_csv(file, **to_csv),
+        ".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4"),
+    }

@@ -13,6 +13,7 @@ from microslip.app.question import (
     Answer,
     add_json,
     add_options,
+    dataset_writers,
     refuse_output,
     respond,
     typed_options,
@@ -37,6 +38,7 @@ OUTPUT = {
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
 }
+LOAD = {"load": ("F", "normal load of the reference state, such as '10 N'")}
 ROUNDING = 1e-9
 """A force is printed as 0 if its absolute value, divided by the error estimate, is at most this
 number."""
@@ -65,8 +67,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("path", metavar="CSV", help="the path")
     bodies = parser.add_argument_group("bodies")
     add_options(bodies, GROUPS["bodies"])
-    load = {"load": ("F", "normal load of the reference state, such as '10 N'")}
-    add_options(bodies, load)
+    add_options(bodies, LOAD)
     output = parser.add_argument_group("output")
     add_options(output, OUTPUT)
     add_json(output)
@@ -90,7 +91,7 @@ def _answer(options: argparse.Namespace) -> Answer:
         answer = (_real if real else _dimensionless)(options.path, arguments)
     dataset = answer.to_xarray()
     if output is not None:
-        write_output(output, dataset, lambda file: _frame(dataset).to_csv(file, index=False))
+        write_output(output, dataset_writers(dataset, _frame(dataset), index=False))
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
     plain |= answer.attributes | {"converged": answer.converged}
     return Answer(plain, _as_text(dataset, answer), answer.converged)

@@ -15,6 +15,7 @@ from microslip.motions.drive import Spring
 from microslip.pressures.by_name import pressure_named
 from microslip.si.drive_result import answer_of
 from microslip.si.energy import energy_fields
+from microslip.si.friction_map import MAP
 from microslip.si.prediction import (
     Drift,
     DrivenBody,
@@ -83,6 +84,7 @@ def predict(
     counter_density: object = None,
     wear_coefficient: object = None,
     tolerance: object = None,
+    map: object = None,
 ) -> Prediction:
     """Friction of a vibrated contact of two bodies, in SI units.
 
@@ -158,6 +160,12 @@ def predict(
         is the largest accepted relative error of the speed, and the default is 1e-2.  For speeds
         below a thousandth of the unit of speed, which is omega u_lim or that of the motion, the
         error is relative to this thousandth.
+    power : bool
+        True to also compute the power of the oscillation.
+    map : xarray.Dataset, optional
+        Dataset of a sweep with this motion, pressure and Poisson's ratio, see `open_map`.  It
+        replaces the solver: an answer takes milliseconds.  The error is the error bound of the
+        map, which must be within the tolerance.
 
     Returns
     -------
@@ -202,6 +210,11 @@ def answer_request(request: Request) -> Prediction:
     limit = static_limit(request)
     threshold = force_threshold(request, limit)
     answer = answer_of(request, limit, threshold)
+    if answer.model == MAP and not answer.converged:
+        where = f"velocity {answer.velocity:.3g}"
+        if answer.amplitude is not None:
+            where += f", amplitude {answer.amplitude:.3g}"
+        raise InputError("map", answer.motion, f"at {where}: {answer.reason}")
     velocity = request.groups[0]
     if velocity is None:
         unit, velocity = request.speed_unit, answer.velocity

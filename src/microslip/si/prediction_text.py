@@ -34,7 +34,7 @@ UNDERSTOOD = (
     *("contact_radius", "pressure", "load", "contacts", "mu", "speed"),
     *("force", "drive_stiffness", "mass", "damping"),
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
-    *("frequency", "rotation", "reduction"),
+    *("frequency", "rotation", "reduction", "map"),
 )
 """Arguments of predict, in the order in which they are printed."""
 PROBABILITIES = {

@@ -26,6 +26,7 @@ from microslip.si.dimensionless import (
     solver_motion,
     speed_unit,
 )
+from microslip.si.friction_map import REFUSED, FrictionMap
 from microslip.si.inputs import (
     DRIVE_FIELDS,
     Arguments,
@@ -132,6 +133,20 @@ class Request:
         value = self.arguments["wear_coefficient"]
         return None if value is None else read_argument("wear_coefficient", value).si
 
+    @cached_property
+    def map(self) -> FrictionMap | None:
+        """The map that replaces the solver, or None.
+
+        Raises InputError if it is not a map of this motion, this pressure and this drive.
+        """
+        dataset = self.arguments["map"]
+        if dataset is None:
+            return None
+        for name in REFUSED:
+            if self.arguments[name] is not None:
+                raise InputError(name, self.arguments[name], "allowed only without a map")
+        return FrictionMap(dataset, str(self.solver_motion), self.contact.pressure)
+
     def problem(self) -> Problem:
         """The dimensionless Problem in the limit of vanishing speed.
 
@@ -187,6 +202,9 @@ class Request:
         if velocity is not None:
             velocity = min(velocity, LARGEST["velocity"])
         size = self.groups[1] if amplitude is None else amplitude
+        if self.map is not None:
+            assert velocity is not None  # a map is not allowed with a force
+            return self.map.solve(velocity, size, poisson=settings["poisson"], tolerance=tolerance)
         try:
             return solve(self.solver_motion, velocity, size, **settings)
         except InputError as error:
@@ -229,7 +247,7 @@ def request_of(motion: str, arguments: Arguments) -> Request:
     if speaks_of_file(motion):
         arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():
-        if name != "counterbody" and _is_sequence(value):
+        if name not in ("counterbody", "map") and _is_sequence(value):
             allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
             raise InputError(name, value, allowed)
     if arguments["mu"] is None:
@@ -266,6 +284,8 @@ def request_of(motion: str, arguments: Arguments) -> Request:
         request.check_range()
     if carrier_texts:
         request.problem()  # raises InputError if several contacts are not allowed
+    if request.map is not None:
+        understood["map"] = "friction from a map in place of the solver"
     return request
 
 

@@ -8,7 +8,7 @@ forward [um],lateral [um],load [N]
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
@@ -19,6 +19,7 @@ import numpy as np
 from microslip.adaptive.response import Response, response
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError, shown
+from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
 from microslip.si.inputs import read_bodies, read_contact
 from microslip.si.quantities import read
@@ -140,16 +141,8 @@ def predict_response(
     InputError
         If an argument or a column is invalid.  The message names it.
     """
-    strange = sorted(contact.keys() - set(ARGUMENTS))
-    if strange:
-        allowed = f"allowed are {', '.join(ARGUMENTS)}"
-        raise InputError(strange[0], contact[strange[0]], allowed)
-    arguments = dict.fromkeys(ARGUMENTS) | contact
-    for name in ("mu", "load"):
-        if arguments[name] is None:
-            raise InputError(name, None, "needed")
+    real = contact_of(contact)
     columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
-    real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
     units = scales(real, columns)
     answer = response_to(
         path,
@@ -180,6 +173,20 @@ def predict_response(
         converged=answer.converged,
         reason=answer.reason,
     )
+
+
+def contact_of(contact: Mapping[str, object]) -> TwoBodies:
+    """The contact for some of ARGUMENTS by name.  Raises InputError."""
+    strange = sorted(contact.keys() - set(ARGUMENTS))
+    if strange:
+        allowed = f"allowed are {', '.join(ARGUMENTS)}"
+        raise InputError(strange[0], contact[strange[0]], allowed)
+    arguments: dict[str, Any] = {**dict.fromkeys(ARGUMENTS), **contact}
+    for name in ("mu", "load"):
+        if arguments[name] is None:
+            raise InputError(name, None, "needed")
+    real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
+    return real
 
 
 def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_CASES = 100_000
-NAMES = dict.fromkeys(NOTHING, False)
+NAMES = {name: False for name in NOTHING if name != "map"}
 """Allowed columns of a file.  Each one is an argument of predict, and needs no unit in its
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")

@@ -15,7 +15,7 @@ class IndenterPressure(Protocol):
     ----------
     G_star, stiffness : float
         Reduced shear modulus, and force per unit of uniform displacement without slip.
-    bound, depth, radius, of_load, load : callable
+    bound, depth, radius, of_load, load, loading : callable
         See pressure.Pressure.
     """
 
@@ -39,6 +39,9 @@ class IndenterPressure(Protocol):
 
     @property
     def load(self) -> Callable: ...
+
+    @property
+    def loading(self) -> Callable: ...
 
     def total(self, depth: np.ndarray) -> np.ndarray:
         """Load at an indentation depth >= 0, with the shape of the depth."""

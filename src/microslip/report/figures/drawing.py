@@ -48,10 +48,11 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "claims_patches": ("claims.patches", "claims"),
     "propulsion": ("propulsion.draw", "propulsion"),
     "fit": ("fit.draw", "fit"),
+    "curve": ("curve.draw", "curve"),
 }
 """For each figure, the module and function that draw it, and the names of its datasets."""
 
-ON_DEMAND = {"fit": ("fit",)}
+ON_DEMAND = {"fit": ("fit",), "curve": ("curve",)}
 """Figures that commands draw from their own results, and the names of their datasets."""
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
 """Figures of the workflow, and the names of their datasets.

@@ -9,7 +9,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import EngFormatter
 
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
@@ -32,8 +31,6 @@ PARAMETERS = (
 """Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
 BAND = 2.0
 """Half the width of the band with about 95 % of the residuals, in standard errors."""
-WIDE = 10.0
-"""An axis is logarithmic if the ratio of its ends is above this number."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -46,10 +43,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     abscissa = abscissa_of({each: dataset[each].values for each in CONDITIONS})
     figure = look.new_figure(look.SINGLE, 4.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    unit, prefixed = _prefix(dataset[abscissa].values, _unit(abscissa, dataset))
+    unit, prefixed = look.prefixed(dataset[abscissa].values, _unit(abscissa, dataset))
     along = dataset[abscissa].values / unit
     what, si = MEASURED[dataset.attrs["quantity"]]
-    factor, friction = _prefix(dataset["measured"].values, si)
+    factor, friction = look.prefixed(dataset["measured"].values, si)
     for (title, chosen), ink in zip(_series(dataset, abscissa), look.LINES, strict=False):
         rows = dataset.isel(row=chosen)
         color, marker, _ = ink
@@ -64,9 +61,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         lower.plot(along[chosen], residual, marker, color=color, ms=3.2, gid="residual")
     lower.axhspan(-BAND, BAND, color=look.PALE, lw=0, zorder=0.4)
     lower.axhline(0.0, color=look.GREY, lw=0.7, zorder=0.5)
-    if along.min() > 0.0 and along.max() > WIDE * along.min():
-        lower.set_xscale("log")
-        panels.logarithmic(lower.xaxis)
+    panels.logarithmic_if_wide(lower, along)
     upper.set_ylabel(f"{what} ({friction or 'dimensionless'})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
     lower.set_xlabel(f"{CONDITIONS[abscissa][0]} ({prefixed})")
@@ -135,18 +130,8 @@ def _unit(condition: str, dataset: xr.Dataset) -> str:
 
 
 def _value(condition: str, value: float, dataset: xr.Dataset) -> str:
-    factor, unit = _prefix(value, _unit(condition, dataset))
+    factor, unit = look.prefixed(value, _unit(condition, dataset))
     return f"{CONDITIONS[condition][0]} {value / factor:.3g} {unit}"
-
-
-def _prefix(values: np.ndarray | float, unit: str) -> tuple[float, str]:
-    """Return the power of ten of an SI prefix for values, and the unit with this prefix.
-
-    Without a unit, the power is 1.
-    """
-    largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
-    power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
-    return 10.0**power, EngFormatter.ENG_PREFIXES[power] + unit
 
 
 def _parameters(dataset: xr.Dataset) -> str:
@@ -158,7 +143,7 @@ def _parameters(dataset: xr.Dataset) -> str:
             continue
         value, low, high = (float(dataset[each]) for each in names)
         if np.isfinite([value, low, high]).all():
-            factor, prefixed = _prefix(value, unit)
+            factor, prefixed = look.prefixed(value, unit)
             half = float(f"{max(high - value, value - low) / factor:.2g}")
             parts.append(rf"${symbol} = {value / factor:.3g} \pm {half:g}$ {prefixed}".strip())
     return ", ".join(parts)

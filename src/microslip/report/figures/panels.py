@@ -17,6 +17,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan
 
+WIDE = 10.0
+"""An axis is logarithmic if the ratio of its ends is above this number."""
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn. Smaller ones are hidden by the markers."""
 
@@ -69,6 +71,13 @@ def colour_bar(
 def ticks_outside(axes: Axes) -> None:
     """Move the ticks of a filled panel outside, below and left of it."""
     axes.tick_params(which="both", direction="out", top=False, right=False)
+
+
+def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
+    """Make the abscissa logarithmic if the values are above 0 and their ratios exceed WIDE."""
+    if values.min() > 0.0 and values.max() > WIDE * values.min():
+        axes.set_xscale("log")
+        logarithmic(axes.xaxis)
 
 
 def logarithmic(axis: Axis) -> None:

@@ -11,6 +11,7 @@ import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.textpath import TextPath
+from matplotlib.ticker import EngFormatter
 
 from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
@@ -135,6 +136,16 @@ def number(value: float) -> str:
     mantissa, exponent = text.split("e")
     power = f"10^{{{int(exponent)}}}"
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
+
+
+def prefixed(values: np.ndarray | float, unit: str) -> tuple[float, str]:
+    """Return the power of ten of an SI prefix for values, and the unit with this prefix.
+
+    Without a unit, the power is 1.
+    """
+    largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
+    power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
+    return 10.0**power, EngFormatter.ENG_PREFIXES[power] + unit
 
 
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:

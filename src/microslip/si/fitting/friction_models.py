@@ -17,6 +17,7 @@ from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.fitting.scales import Points
+from microslip.si.friction_map import FrictionMap
 
 LEAST, MOST = 0.03, 20.0
 """Smallest and largest amplitude of the coarse map.  Below, nearly all of the contact sticks;
@@ -74,15 +75,7 @@ class MapFriction(FrictionModel):
     """
 
     def __init__(self, dataset: Any, motion: str, poisson: float | None):
-        attributes = getattr(dataset, "attrs", {})
-        if attributes.get("motion") != motion or attributes.get("pressure", "hertz") != "hertz":
-            kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
-            what = attributes.get("motion") or kind
-            raise InputError("map", what, f"allowed is the dataset of a sweep of {motion}")
-        if {"drive", "contacts"} & set(attributes):
-            allowed = "allowed is a map of one contact with a prescribed velocity"
-            raise InputError("map", motion, f"it has a drive or several contacts; {allowed}")
-        self._dataset, self._poisson = dataset, poisson
+        self._map, self._poisson = FrictionMap(dataset, motion), poisson
         axes = (dataset[name] for name in ("velocity", "amplitude"))
         self._ends = [(float(axis.where(axis > 0.0).min()), float(axis.max())) for axis in axes]
         self._proved = motion in PROVED and poisson == 0.0
@@ -98,19 +91,13 @@ class MapFriction(FrictionModel):
             return self._answer(points)[1]
         except ValueError as error:
             problem = f"does not contain the rows at the best fit: {error}"
-            raise InputError("map", self._dataset.attrs.get("motion"), problem) from None
+            raise InputError("map", self._map.motion, problem) from None
 
     def _answer(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         from xarray import DataArray
 
         velocity, amplitude = (DataArray(part, dims="row") for part in points)
-        try:
-            answer = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
-        except InputError as error:
-            if error.argument == "poisson":
-                raise error.renamed("nu") from None
-            raise
-        return answer.mu_macro.values, answer.mu_macro_error.values
+        return self._map.at(velocity, amplitude, self._poisson)
 
 
 class SolvedFriction(FrictionModel):

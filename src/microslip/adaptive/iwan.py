@@ -1,0 +1,91 @@
+"""Iwan model of a contact, and its error due to Poisson's ratio."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from microslip.adaptive.response import response
+from microslip.foundation.arguments import SMALLEST_TOLERANCE, count, real
+from microslip.foundation.errors import InputError
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.theory.iwan import Iwan, with_elements, with_tolerance
+
+TOLERANCE = 1e-3
+"""Default tolerance of the discretisation, and tolerance of the full contact in the comparison."""
+MOST_ELEMENTS = 10_000
+BEYOND_FULL_SLIP = 1.2
+"""Turning points of the loop of the comparison, in u_lim."""
+ROWS = 13
+"""Number of rows of the first loading in the comparison; a branch of the loop has twice as many
+intervals."""
+
+
+def iwan(
+    pressure: str | Pressure = HERTZ,
+    *,
+    poisson: float = 0.0,
+    elements: int | None = None,
+    tolerance: float | None = None,
+) -> Iwan:
+    """Iwan model of a contact that moves along a line: parallel springs with sliders.
+
+    At nu = 0 the model with many elements is exact.  At nu > 0 it is compared with the full contact
+    on a first loading and a loop, and the difference is part of the error.
+
+    Parameters
+    ----------
+    pressure : str or Pressure
+        Pressure as for `microslip.solve`: an axisymmetric indenter, or an ellipse at nu = 0.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    elements : int or None
+        Number of elements.
+    tolerance : float or None
+        Largest error due to the number of elements, divided by mu F_z; give either this (1e-3) or
+        `elements`.
+
+    Returns
+    -------
+    Iwan
+        Elements whose displacements are divided by u_lim and forces by mu F_z.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid.
+    """
+    record = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    if not (record.is_indenter or record.hertzian):
+        allowed = "allowed is an axisymmetric indenter or an ellipse: hertz, power, punch, ellipse"
+        raise InputError("pressure", record.name, allowed)
+    if poisson and not record.is_indenter:
+        allowed = "allowed at nu > 0 is an axisymmetric indenter: hertz, power, punch"
+        raise InputError("pressure", record.name, allowed)
+    shape = record if record.is_indenter else HERTZ  # an ellipse has the loading of a sphere
+    if elements is not None and tolerance is not None:
+        raise InputError("elements", elements, "allowed only without a tolerance")
+    if elements is not None:
+        model = with_elements(shape, count("elements", elements, 1, most=MOST_ELEMENTS))
+    else:
+        accepted = TOLERANCE if tolerance is None else tolerance
+        model = with_tolerance(shape, real("tolerance", accepted, SMALLEST_TOLERANCE, 1.0))
+    if not poisson:
+        return model
+    return dataclasses.replace(model, poisson_error=_poisson_error(shape, poisson))
+
+
+def _poisson_error(pressure: Pressure, poisson: float) -> float:
+    """Largest difference between the full contact and the exact model at nu = 0 on a first loading
+    and a loop between full slip in both directions."""
+    rise = np.linspace(0.0, BEYOND_FULL_SLIP, ROWS)
+    half = np.linspace(0.0, BEYOND_FULL_SLIP, 2 * ROWS - 1)[1:]  # of the displacement since a turn
+    path = np.concatenate([rise, BEYOND_FULL_SLIP - 2.0 * half, 2.0 * half - BEYOND_FULL_SLIP])
+    back = 1.0 - 2.0 * pressure.loading(half)
+    forces = np.concatenate([pressure.loading(rise), back, -back])
+    full = response(path, pressure=pressure, poisson=poisson, tolerance=TOLERANCE)
+    return float(np.max(np.abs(full.force_forward - forces) + full.force_error[:, 0]))

@@ -1,0 +1,204 @@
+"""The command `microslip export`: models of a contact for other programs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from microslip.app import modelica_text
+from microslip.app.predict_command import GROUPS
+from microslip.app.progress import elapsed_time
+from microslip.app.question import (
+    Answer,
+    add_json,
+    add_options,
+    opened_map,
+    refuse_output,
+    respond,
+    typed_options,
+    write_output,
+)
+from microslip.app.response_command import LOAD
+from microslip.app.terminal import complain
+from microslip.foundation import spec
+from microslip.si.prediction import NoPrediction
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+IWAN_OPTIONS = {
+    "elements": ("N", "number of elements"),
+    "tolerance": (
+        "T",
+        "in place of --elements: largest error due to their number, divided by mu times the load "
+        "(1e-3)",
+    ),
+    "output": ("FILE", "write a .csv file"),
+}
+TABLE_OPTIONS = {name: GROUPS["output"][name] for name in ("tolerance", "map")} | {
+    "output": ("FILE", "write a .csv file, or a .txt file for Modelica.Blocks.Tables")
+}
+NO_FRICTION = ("force", "reduction")
+"""Options of predict whose answer is not the friction."""
+WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
+"""Options that are also allowed without a contact in SI units."""
+COLUMNS = {
+    "mu_apparent": ("1", "coefficient of friction with vibration"),
+    "mu_apparent_error": ("1", "error estimate of mu_apparent"),
+    "friction_force": ("N", "mean friction force"),
+    "friction_force_error": ("N", "error estimate of the friction force"),
+}
+"""Unit and long name of the columns of a friction table."""
+
+
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `export` to its parser."""
+    parser.description = "A model of a contact as a table, with its error."
+    models = parser.add_subparsers(dest="export", required=True, metavar="MODEL")
+    iwan = models.add_parser(
+        "iwan",
+        allow_abbrev=False,
+        help="an Iwan model: parallel springs with sliders",
+        description="An Iwan model of a contact that moves along a line: the stiffness and the "
+        "limit force of parallel Jenkins elements, each a spring in series with a slider.  At "
+        "nu = 0 the model with many elements is exact for every load path.  At nu > 0 it is "
+        "compared with the full contact, and the difference is part of the error.  Without a "
+        "contact, forces are divided by mu times the load, and displacements by u_lim.",
+    )
+    bodies = iwan.add_argument_group("bodies")
+    add_options(bodies, GROUPS["bodies"] | LOAD)
+    add_options(iwan, IWAN_OPTIONS)
+    add_json(iwan)
+    table = models.add_parser(
+        "table",
+        allow_abbrev=False,
+        help="a table of friction over speed, amplitude, load or other quantities",
+        description="Friction over the ranges of one or more quantities, such as --speed '0.1..10 "
+        "mm/s, 21, log': 21 values in equal ratios.  '0..2 um' has 11 values in equal steps.",
+    )
+    table.add_argument("motion", metavar="MOTION", help="motion, as for `microslip predict`")
+    for title in ("bodies", "load", "motion", "drive"):
+        options = {name: one for name, one in GROUPS[title].items() if name not in NO_FRICTION}
+        add_options(table.add_argument_group(title), options)
+    add_options(table, TABLE_OPTIONS)
+    add_json(table)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the model.  Returns the exit code: 0, 1 if a point of a table is not converged, 2 for
+    bad input."""
+    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
+    answer = {"iwan": _iwan, "table": _table}[options.export]
+    command = f"microslip export {options.export}"
+    return respond(command, options, answer, {"motion": "MOTION"}, names)
+
+
+def _iwan(options: argparse.Namespace) -> Answer:
+    import pandas as pd
+
+    from microslip.adaptive.iwan import iwan
+    from microslip.si.iwan import predict_iwan
+
+    refuse_output(options.output, endings=(".csv",))
+    arguments = typed_options(options)
+    arguments.pop("output", None)
+    for name in arguments.keys() & {"elements", "tolerance"}:
+        arguments[name] = spec.read(name, arguments[name], whole=name == "elements")
+    real = arguments.keys() - WITHOUT_CONTACT
+    with elapsed_time("microslip export iwan"):
+        if real:
+            model, force, stiffness = predict_iwan(**arguments), "N", "N/m"
+        else:
+            if "nu" in arguments:
+                arguments["poisson"] = spec.read("nu", arguments.pop("nu"))
+            model, force, stiffness = iwan(**arguments), "1", "1"
+    unit = " N" if real else ""
+    comments = [
+        "Iwan model: parallel springs (stiffness), each in series with a slider (limit_force)",
+        f"error of the force on a first loading and on loops between two displacements: "
+        f"{model.error:.3g}{unit}",
+        f"error of the force on any path: {model.error_on_any_path:.3g}{unit}",
+    ]
+    if not real:
+        comments.append("forces are divided by mu times the load, displacements by u_lim")
+    units = {"stiffness": stiffness, "limit_force": force, "force_error": force}
+    frame = pd.DataFrame({_heading(name, one): getattr(model, name) for name, one in units.items()})
+    plain = {name: getattr(model, name).tolist() for name in units}
+    plain |= {"error": model.error, "error_on_any_path": model.error_on_any_path}
+    return _answer(options, plain, frame, comments, {})
+
+
+def _table(options: argparse.Namespace) -> Answer:
+    from tqdm import tqdm
+
+    from microslip.si.grid import grid_of, interpolation_error
+    from microslip.si.table import predictions
+
+    refuse_output(options.output, endings=(".csv", ".txt"))
+    arguments = typed_options(options)
+    arguments.pop("output", None)
+    if options.map is not None:
+        arguments["map"] = opened_map(options.map)
+    grid = grid_of(options.motion, arguments)
+    lazy = predictions(options.motion, grid.table, grid.shared)
+    points = grid.combinations
+    answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))
+    for point, one in zip(points, answers, strict=True):
+        if not one.converged:
+            where = ", ".join(f"{name} = {x:.4g}" for name, x in zip(grid.axes, point, strict=True))
+            reason = one.error if isinstance(one, NoPrediction) else one.reason
+            complain(f"microslip export table: not converged at {where}: {reason}; no table")
+            return Answer({"converged": False}, "", False)
+    dataset = _friction_table(grid.dataset(answers))
+    errors = [float(dataset[f"{name}_error"].max()) for name in ("mu_apparent", "friction_force")]
+    comments = [
+        f"friction of a contact, motion {options.motion}, from microslip predict",
+        f"largest errors of the values: {errors[0]:.2g} of mu_apparent, {errors[1]:.2g} N",
+        "mu_apparent differs from the linear interpolation of the neighbouring values by up to "
+        f"{interpolation_error(dataset.mu_apparent):.2g}",
+    ]
+    frame = dataset.to_dataframe().reset_index()
+    plain = frame.to_dict("records")
+    frame.columns = [_heading(name, dataset[name].attrs["units"]) for name in frame.columns]
+    writers = {".txt": lambda file: file.write_text(modelica_text.text_of(dataset, comments))}
+    return _answer(options, plain, frame, comments, writers)
+
+
+def _friction_table(dataset: xr.Dataset) -> xr.Dataset:
+    """The columns of a friction table; an axis has the name of its argument."""
+    variables = {
+        name: (tuple(dataset.dims), dataset[column].values, {"units": unit, "long_name": text})
+        for name, (unit, text) in COLUMNS.items()
+        for column in [name if unit == "1" else f"{name}_{unit}"]
+    }
+    axes = {axis: dataset[axis].attrs["long_name"].replace(" ", "_") for axis in dataset.dims}
+    return dataset.drop_vars(list(dataset.data_vars)).assign(variables).rename(axes)
+
+
+def _heading(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+def _answer(
+    options: argparse.Namespace,
+    plain: Any,
+    frame: pd.DataFrame,
+    comments: Sequence[str],
+    writers: dict[str, Callable],
+) -> Answer:
+    """Write the file of --output, or print the table as CSV with six digits."""
+    if options.output is None:
+        csv = frame.to_csv(index=False, float_format="%.6g", lineterminator="\n")
+        comments = [f"# {one}" for one in comments]
+        return Answer(plain, "\n".join([*comments, csv.rstrip("\n")]), True)
+
+    def write_csv(file: Path) -> None:
+        with file.open("w", encoding="utf-8", newline="\n") as stream:
+            stream.writelines(f"# {one}\n" for one in comments)
+            frame.to_csv(stream, index=False, lineterminator="\n")
+
+    write_output(options.output, {".csv": write_csv} | writers)
+    return Answer(plain, "\n".join(comments), True)

@@ -1,0 +1,93 @@
+"""Friction from the dataset of a sweep, such as a certified map, in place of the solver."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from microslip.adaptive.point import Result
+from microslip.estimate.estimate import Estimate
+from microslip.foundation.errors import InputError
+
+MAP = "map"
+"""Name of the model of a Result from a map."""
+REFUSED = ("force", "drive_stiffness", "contacts", "wear_coefficient")
+"""Arguments of predict that are not allowed with a map."""
+
+
+class FrictionMap:
+    """Friction from the dataset of a sweep, by its accessor, see datasets.query.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset of a sweep.
+    motion, pressure : str
+        Motion and pressure of the contact.
+
+    Raises
+    ------
+    InputError
+        If the dataset is not of this motion and pressure, or has a drive or several contacts.
+    """
+
+    def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
+        attributes = getattr(dataset, "attrs", {})
+        own = attributes.get("motion"), attributes.get("pressure", "hertz")
+        if own != (motion, pressure):
+            kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
+            what = kind if own[0] is None else f"{own[0]}, pressure {own[1]}"
+            allowed = f"allowed is the dataset of a sweep of {motion}, pressure {pressure}"
+            raise InputError("map", what, allowed)
+        if {"drive", "contacts"} & set(attributes):
+            allowed = "allowed is a map of one contact with a prescribed velocity"
+            raise InputError("map", motion, f"it has a drive or several contacts; {allowed}")
+        self.dataset, self.motion, self.pressure = dataset, motion, pressure
+
+    def at(
+        self, velocity: Any, amplitude: Any, poisson: float | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Friction and its error bound at points; raises InputError about `nu`, and ValueError for
+        points outside the map."""
+        try:
+            answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
+        except InputError as error:
+            if error.argument == "poisson":
+                raise error.renamed("nu") from None
+            raise
+        return answer.mu_macro.values, answer.mu_macro_error.values
+
+    def solve(
+        self, velocity: float, amplitude: float | None, *, poisson: float, tolerance: float
+    ) -> Result:
+        """A Result like that of microslip.solve.
+
+        It is not converged if the error bound is above the tolerance, or if the map does not
+        contain the point.
+        """
+        try:
+            value, error = (float(one) for one in self.at(velocity, amplitude, poisson))
+            reason = f"the error bound of the map is {error:.1e}; allowed is at most {tolerance:g}"
+            reason = "" if error <= tolerance else reason
+        except InputError as problem:
+            value, error, reason = math.nan, math.inf, f"{problem.argument} = {problem.value}: "
+            reason += problem.allowed.partition(";")[0]
+        except ValueError as problem:
+            value, error, reason = math.nan, math.inf, str(problem)
+        return Result(
+            motion=self.motion,
+            pressure=self.pressure,
+            mean_velocity=Estimate(velocity),
+            amplitude=amplitude,
+            poisson=poisson,
+            model=MAP,
+            tolerance=tolerance,
+            method="shipped",
+            friction=Estimate(value, {"model": error}),
+            converged=not reason,
+            periodic=True,
+            reason=reason,
+            solve_time_s=0.0,
+        )

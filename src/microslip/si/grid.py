@@ -1,0 +1,200 @@
+"""Predictions over ranges of quantities, such as a curve over the amplitude.
+
+A range is a text "0..2 um", with the number of values and `log` for equal ratios after commas:
+"0.1..10 mm/s, 21, log".
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+from microslip.si.inputs import QUANTITIES
+from microslip.si.motions import unit_of_amplitude
+from microslip.si.prediction import NoPrediction, Prediction
+from microslip.si.quantities import read
+from microslip.si.table import MOST_CASES, as_dataset, predictions
+from microslip.si.tables import Table
+from microslip.si.uncertain import refuse_uncertainty
+from microslip.si.units import UnitError, split_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+VALUES = 11
+"""Default number of values of a range."""
+DOTS = ".."
+ALLOWED = (
+    "allowed is a range such as '0..2 um' (11 values), '0..2 um, 21' (21 values) or "
+    "'0.1..10 mm/s, 21, log' (21 values in equal ratios)"
+)
+
+
+def is_range(name: str, value: object) -> bool:
+    """True for the text of a range of a quantity."""
+    return name in QUANTITIES and isinstance(value, str) and DOTS in value
+
+
+def values_of(name: str, text: str) -> list[str]:
+    """The values of a range, as texts with the unit of the range.  Raises InputError."""
+    ends, *options = (part.strip() for part in text.split(","))
+    log = "log" in options
+    numbers = [option for option in options if option != "log"]
+    first, _, last = ends.partition(DOTS)
+    try:
+        digits, unit = split_number(last)
+        low, high = spec.read(name, first), float(digits)
+        count = spec.read(name, numbers.pop(0), whole=True) if numbers else VALUES
+    except (UnitError, InputError):
+        raise InputError(name, text, ALLOWED) from None
+    fits = -math.inf < low < high < math.inf and 2 <= count <= MOST_CASES and DOTS not in last
+    if not fits or numbers or options.count("log") > 1 or log and low <= 0.0:
+        above = ", from a number above 0 with log" if log else ""
+        raise InputError(name, text, f"{ALLOWED}; the second number is the larger one{above}")
+    values = (np.geomspace if log else np.linspace)(low, high, int(count))
+    return [f"{value:.12g} {unit}".strip() for value in values]
+
+
+class Axis(NamedTuple):
+    """An axis of a grid: name of the argument, values as the user wrote them and in the SI unit,
+    and this unit."""
+
+    name: str
+    texts: list[Any]
+    values: list[float]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Grid:
+    """All combinations of the values of some arguments of predict.
+
+    Attributes
+    ----------
+    motion : str
+        Motion of all contacts.
+    axes : dict of Axis
+        Axes by the name of the coordinate, such as speed_m_s.
+    table : Table
+        The combinations; the last axis changes fastest.
+    shared : dict
+        The other arguments.
+    """
+
+    motion: str
+    axes: dict[str, Axis]
+    table: Table
+    shared: dict[str, Any]
+
+    @property
+    def combinations(self) -> list[tuple[float, ...]]:
+        """Values of the axes in SI units, for each combination."""
+        return list(product(*(axis.values for axis in self.axes.values())))
+
+    def dataset(self, answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
+        """The predictions over the axes, see `predict_grid`."""
+        import xarray as xr
+
+        flat = as_dataset(self.motion, self.table, answers)
+        shape, dims = [len(axis.values) for axis in self.axes.values()], tuple(self.axes)
+        inputs = {f"case_{name}" for name in self.table.columns}
+        variables = {
+            name: (dims, one.values.reshape(shape), one.attrs)
+            for name, one in flat.data_vars.items()
+            if name not in inputs and name not in dims
+        }
+        coordinates = {
+            name: (
+                name,
+                axis.values,
+                {"long_name": axis.name.replace("_", " "), "units": axis.unit or "1"},
+            )
+            for name, axis in self.axes.items()
+        }
+        return xr.Dataset(variables, coordinates, flat.attrs)
+
+
+def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
+    """The Grid for arguments of predict, in which ranges and sequences are axes.
+
+    Raises InputError if a range is invalid, if there is none, or if there are too many
+    combinations.
+    """
+    axes, shared = {}, dict(arguments)
+    for name in [name for name in arguments if name in QUANTITIES]:
+        values = shared[name]
+        if is_range(name, values):
+            values = values_of(name, values)
+        if isinstance(values, str) or np.ndim(values) != 1:
+            continue
+        unit = (name == "amplitude" and unit_of_amplitude(motion)) or QUANTITIES[name].unit
+        for value in values:
+            refuse_uncertainty({name: value}, "a range")
+        si = [read(name, value, unit, low=-math.inf).si for value in values]
+        axes[_coordinate(name, unit)] = Axis(name, list(values), si, unit)
+        del shared[name]
+    count = math.prod(len(axis.values) for axis in axes.values())
+    if not axes or not 1 <= count <= MOST_CASES:
+        allowed = f"the ranges have {count} combinations; allowed are 1 to {MOST_CASES}"
+        name = max(axes.values(), key=lambda axis: len(axis.values)).name if axes else "amplitude"
+        raise InputError(name, arguments.get(name), allowed if axes else ALLOWED)
+    cases = zip(*product(*(axis.texts for axis in axes.values())), strict=True)
+    columns = {axis.name: list(texts) for axis, texts in zip(axes.values(), cases, strict=True)}
+    return Grid(motion, axes, Table(columns, [], {}), shared)
+
+
+def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
+    """Predictions over ranges of quantities: a curve, a map, or a table of more dimensions.
+
+    Parameters
+    ----------
+    motion : str
+        Motion of all contacts, as for `microslip.predict`.
+    **arguments
+        Arguments of `microslip.predict`.  A quantity can be a range: "0..2 um" has 11 values in
+        equal steps, "0..2 um, 21" has 21, and "0.1..10 mm/s, 21, log" has 21 in equal ratios.  It
+        can also be a sequence of quantities.
+
+    Returns
+    -------
+    xarray.Dataset
+        Every column of a Prediction, with units.  Each range is a dimension, in the order of the
+        arguments.  Its name is that of the argument with the SI unit: speed_m_s, load_N,
+        frequency_Hz; amplitude_si for the amplitude.  Missing values are NaN.  `error` is the error
+        message of a point without a prediction, else empty.
+
+    Raises
+    ------
+    InputError
+        If an argument is invalid for all points, or without any range.
+    """
+    grid = grid_of(motion, arguments)
+    return grid.dataset(list(predictions(motion, grid.table, grid.shared)))
+
+
+def interpolation_error(values: xr.DataArray) -> float:
+    """Largest difference between a value and the linear interpolation of its neighbours.
+
+    The differences along all axes with three or more values are added.  Linear interpolation
+    between the values has an error of a quarter of it where they are smooth.
+    """
+    total = 0.0
+    for name in values.dims:
+        f = np.moveaxis(values.values, values.get_axis_num(name), -1)
+        left, right = np.diff(values[name].values)[:-1], np.diff(values[name].values)[1:]
+        between = (right * f[..., :-2] + left * f[..., 2:]) / (left + right)
+        total += float(np.max(np.abs(f[..., 1:-1] - between), initial=0.0))
+    return total
+
+
+def _coordinate(name: str, unit: str) -> str:
+    """Name of a coordinate: that of the column of a Prediction, or a name built likewise."""
+    return "amplitude_si" if name == "amplitude" else "_".join([name, *re.findall(r"\w+", unit)])

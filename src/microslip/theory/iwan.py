@@ -1,0 +1,136 @@
+"""Iwan model of a contact: parallel Jenkins elements, each a spring in series with a slider.
+
+Along one line at nu = 0, the force F of the first loading is 1 minus the load at the indentation
+depth 1 - u, and its slope is 2 G* c with the contact radius c at this depth.  An Iwan model whose
+sliders have the density rho over the slip displacement phi has the slope Integral_u^1 rho dphi.  So
+
+    rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
+
+which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every history of the
+displacement, because both follow Masing's rules.  Under a punch, the sliders below its flat end
+slip together at phi = 1.
+
+The discrete model divides the contact radius into intervals.  One element replaces the sliders of
+each interval.  It has their total stiffness and their total limit force, so the model has the
+initial stiffness of the contact and its force at full slip.  The first loading of the model
+consists of tangents of F at the ends of the intervals, and its force is never below F.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.theory.indenter_pressure import IndenterPressure
+
+_GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
+"""Contact radii of the table from which the intervals are interpolated."""
+LOOP_ERRORS = 3.0
+"""Largest error on loops, divided by the largest error on the first loading.  A branch of a loop is
+F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to this error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Iwan:
+    """Parallel Jenkins elements whose forces add up to the tangential force.
+
+    Without units, displacements are divided by u_lim, forces by mu F_z and stiffnesses by
+    mu F_z / u_lim.  `microslip.predict_iwan` uses m, N and N/m.
+
+    Attributes
+    ----------
+    stiffness : np.ndarray, shape (elements,)
+        Stiffness of the springs, in the order in which the elements slip on the first loading.
+    limit_force : np.ndarray, shape (elements,)
+        Force at which each element slips.
+    force_error : np.ndarray, shape (elements,)
+        Largest error of the force on the first loading around the displacement at which each
+        element slips, due to the finite number of elements.
+    poisson_error : float
+        Largest difference from the force of the full contact on a first loading and a loop between
+        full slip in both directions, due to Poisson's ratio.  It is 0 for nu = 0.
+    """
+
+    stiffness: np.ndarray
+    limit_force: np.ndarray
+    force_error: np.ndarray
+    poisson_error: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """Error of the force on a first loading and on loops between any two displacements."""
+        return LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
+
+    @property
+    def error_on_any_path(self) -> float:
+        """Error of the force on any path, which can have many nested loops.
+
+        The force of a slider is a Lipschitz function of its slip displacement, with the constant
+        1.  Hence the error is at most the total variation of the error on the first loading.
+        """
+        return 2.0 * float(self.force_error.sum()) + self.poisson_error
+
+    def force(self, displacement: np.ndarray) -> np.ndarray:
+        """Force along a path that begins without tangential forces at the displacement 0.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (rows,)
+            Displacement at each row.  It changes linearly between rows.
+
+        Returns
+        -------
+        np.ndarray, shape (rows,)
+            Sum of the forces of the elements.
+        """
+        forces, out = np.zeros_like(self.stiffness), []
+        for step in np.diff(np.asarray(displacement, float), prepend=0.0):
+            forces = np.clip(forces + step * self.stiffness, -self.limit_force, self.limit_force)
+            out.append(forces.sum())
+        return np.array(out)
+
+    def scaled(self, force: float, displacement: float) -> Iwan:
+        """Copy in other units; force and displacement: values of the present units in the new
+        ones."""
+        return Iwan(
+            self.stiffness * (force / displacement),
+            self.limit_force * force,
+            self.force_error * force,
+            self.poisson_error * force,
+        )
+
+
+def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
+    """Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
+
+    The intervals have nearly equal errors: an interval with the stiffness k and the width w of slip
+    displacements has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end of
+    a punch is an interval of its own.
+    """
+    parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
+    measure = np.concatenate([[0.0], np.cumsum(parts)])
+    stop = int(np.argmax(measure == measure[-1]))
+    flat = float(_GRID[stop])
+    ends = np.linspace(0.0, measure[-1], count + (flat == 0.0))
+    c = np.interp(ends, measure[: stop + 1], _GRID[: stop + 1])
+    if flat > 0.0:
+        c = np.append(c, 0.0)
+    slip, slope = 1.0 - pressure.depth(c), 2.0 * pressure.G_star * c
+    force = pressure.loading(slip)
+    stiffness, limit = -np.diff(slope), np.diff(force - slip * slope)
+    own = limit / stiffness  # slip displacement of an element
+    tangents = force[:-1] + slope[:-1] * (own - slip[:-1])
+    return Iwan(stiffness, limit, np.maximum(tangents - pressure.loading(own), 0.0))
+
+
+def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
+    """Iwan model at nu = 0 with about the smallest number of elements whose `error` is at most the
+    tolerance."""
+    model = with_elements(pressure, 1)
+    while model.error > tolerance:  # the error is proportional to the number of elements, power -2
+        count = len(model.stiffness)
+        model = with_elements(
+            pressure, max(count + 1, int(count * np.sqrt(model.error / tolerance)))
+        )
+    return model

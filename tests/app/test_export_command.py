@@ -1,0 +1,181 @@
+"""`microslip export`: the files, read back and compared with the contact itself."""
+
+import json
+import re
+import shlex
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import microslip
+from microslip.app import cli
+
+BODY = "--young '210 GPa' --nu 0 --mu 0.3 --radius '5 mm'"
+SAME = {"young": "210 GPa", "nu": 0, "mu": 0.3, "radius": "5 mm"}
+VIBRATED = f"{BODY} --frequency '20 kHz' --tolerance 0.01"
+
+
+def run(capsys, command):
+    code = cli.main(["export", *shlex.split(command)])
+    out, error = capsys.readouterr()
+    return code, out, error
+
+
+def jenkins(stiffness, limit, path):
+    """Force of springs in series with sliders along a path."""
+    slid, forces = np.zeros(len(stiffness)), []
+    for x in path:
+        force = stiffness * (x - slid)
+        excess = np.maximum(np.abs(force) - limit, 0.0) * np.sign(force)
+        slid += excess / stiffness
+        forces.append(np.sum(force - excess))
+    return np.array(forces)
+
+
+def errors_of(text):
+    """The errors in the comments: on loops, and on any path."""
+    return [float(x) for x in re.findall(r"^# error of the force.*: ([\d.e+-]+)", text, re.M)]
+
+
+def test_an_iwan_model_follows_the_response_of_the_contact(tmp_path, capsys):
+    file = tmp_path / "iwan.csv"
+    code, out, _ = run(capsys, f"iwan {BODY} --load '10 N' --elements 15 --output {file}")
+    assert code == 0 and "displacements" in out
+    on_loops, on_any_path = errors_of(file.read_text())
+    frame = pd.read_csv(file, comment="#")
+    columns = ["stiffness [N/m]", "limit_force [N]", "force_error [N]"]
+    assert list(frame.columns) == columns and len(frame) == 15
+    stiffness, limit = (frame[name].values for name in columns[:2])
+    loop = 1e-6 * np.array([0, 0.1, 0.2, 0.25, 0.1, -0.1, -0.2, -0.1, 0.1, 0.25])
+    wild = 1e-6 * np.array([0, 0.2, 0.05, 0.15, 0.1, 0.12, -0.3, -0.1, -0.2, 0.1])
+    for path, bound in ((loop, on_loops), (wild, on_any_path)):
+        real = microslip.predict_response({"forward": path}, **SAME, load="10 N", tolerance=1e-4)
+        miss = np.abs(jenkins(stiffness, limit, path) - real.force_forward_N)
+        assert np.all(miss <= bound + real.force_error_N)
+    # Mindlin's stiffness 8 G a / (2 - nu) and full slip at mu times the load
+    assert stiffness.sum() == pytest.approx(4.0 * 105e9 * real.contact_radius_m)
+    assert limit.sum() == pytest.approx(3.0)
+
+
+def test_an_iwan_model_without_a_contact_is_dimensionless(capsys):
+    code, out, _ = run(capsys, "iwan --pressure power:exponent=1 --tolerance 1e-2")
+    lines = [line for line in out.splitlines() if not line.startswith("#")]
+    assert code == 0 and lines[0] == "stiffness,limit_force,force_error"
+    stiffness, limit, _ = np.array([line.split(",") for line in lines[1:]], float).T
+    assert errors_of(out)[0] <= 1e-2
+    path = np.linspace(0.0, 1.2, 200)
+    cone = 1.0 - np.maximum(1.0 - path, 0.0) ** 2
+    assert jenkins(stiffness, limit, path) == pytest.approx(cone, abs=errors_of(out)[0])
+    code, out, _ = run(capsys, "iwan --pressure power:exponent=1 --tolerance 1e-2 --json")
+    assert json.loads(out)["stiffness"] == pytest.approx(stiffness, rel=1e-5)
+
+
+GRID = "--load '10..20 N, 2' --speed '5..20 mm/s, 3' --amplitude '0.1..0.4 um, 3'"
+
+
+def test_a_table_has_the_predictions_with_their_errors(tmp_path, capsys):
+    file = tmp_path / "friction.csv"
+    code, out, _ = run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")
+    assert code == 0 and "linear interpolation" in out
+    frame = pd.read_csv(file, comment="#")
+    axes, force = ["load [N]", "speed [m/s]", "amplitude [m]"], "friction_force [N]"
+    columns = ["mu_apparent", "mu_apparent_error", force, "friction_force_error [N]"]
+    assert list(frame.columns) == axes + columns and len(frame) == 18
+    row = frame.iloc[16]
+    assert row[axes].tolist() == pytest.approx([20.0, 0.02, 2.5e-7])
+    quantities = {"load": "20 N", "speed": "20 mm/s", "amplitude": "0.25 um"}
+    alone = microslip.predict("transverse", **SAME, **quantities, frequency=2e4, tolerance=0.01)
+    assert row[force] == pytest.approx(alone.friction_force_N, rel=1e-12)
+    assert row["mu_apparent_error"] == pytest.approx(alone.mu_apparent_error, rel=1e-9)
+
+
+def tables_of(text):
+    """Tables of a file for Modelica: numbers in the order of rows, and # before comments."""
+    lines = [line.partition("#")[0].strip() for line in text.splitlines()[1:]]
+    words = " ".join(lines)
+    found = re.findall(r"double (\w+)\((\d+),(\d+)\)([^a-z(]*(?:e[^a-z(]*)*)", words)
+    return {
+        name: np.array(numbers.split(), float).reshape(int(rows), int(columns))
+        for name, rows, columns, numbers in found
+    }
+
+
+def test_tables_for_modelica_have_the_values_of_the_csv(tmp_path, capsys):
+    text, csv = tmp_path / "friction.txt", tmp_path / "friction.csv"
+    for file in (text, csv):
+        assert run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")[0] == 0
+    assert text.read_text().startswith("#1\n")
+    tables, frame = tables_of(text.read_text()), pd.read_csv(csv, comment="#")
+    heads = {"mu_apparent": "mu_apparent", "friction_force": "friction_force [N]"}
+    heads |= {"mu_apparent_error": "mu_apparent_error"}
+    heads["friction_force_error"] = "friction_force_error [N]"
+    assert tables.keys() == {f"{name}_{number}" for name in heads for number in (1, 2, 3)}
+    for name, head in heads.items():
+        values = frame[head].values.reshape(2, 3, 3)
+        for number in range(3):
+            table = tables[f"{name}_{number + 1}"]
+            assert table[1:, 0].tolist() == [10.0, 20.0]  # u1: load
+            assert table[0, 1:] == pytest.approx([0.005, 0.0125, 0.02])  # u2: speed
+            assert table[0, 0] == 0.0
+            assert table[1:, 1:] == pytest.approx(values[:, :, number], rel=1e-14)
+
+
+def test_one_axis_gives_one_table_with_columns(tmp_path, capsys):
+    file = tmp_path / "friction.txt"
+    axis = "--load '10 N' --amplitude '0.2 um' --speed '5..20 mm/s, 4'"
+    assert run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")[0] == 0
+    (table,) = tables_of(file.read_text()).values()
+    assert table[:, 0] == pytest.approx([0.005, 0.01, 0.015, 0.02])
+    assert table[:, 3] == pytest.approx(10.0 * table[:, 1])  # force and coefficient of friction
+    code, out, _ = run(capsys, f"table transverse {VIBRATED} {axis} --json")
+    assert [row["mu_apparent"] for row in json.loads(out)] == pytest.approx(table[:, 1])
+
+
+def test_interpolated_friction_is_within_the_stated_difference(capsys):
+    axis = "--load '10 N' --speed '10 mm/s' --amplitude '0..0.6 um, 7'"
+    _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis} --json")
+    rows = json.loads(out)
+    _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis}")
+    (stated,) = re.findall(r"values by up to ([\d.e-]+)", out)
+    amplitude, friction = (
+        np.array([row[name] for row in rows]) for name in ("amplitude", "mu_apparent")
+    )
+    middle = 0.5 * (amplitude[1:] + amplitude[:-1])
+    contact = SAME | {"load": 10, "frequency": 2e4, "tolerance": 0.01}
+    fine = microslip.predict_grid("transverse", **contact, speed=0.01, amplitude=middle)
+    miss = fine.mu_apparent.values - np.interp(middle, amplitude, friction)
+    assert np.abs(miss).max() <= float(stated)
+
+
+@pytest.mark.parametrize(
+    ("command", "parts"),
+    [
+        ("iwan --pressure ring", ("--pressure = 'ring'", "axisymmetric")),
+        ("iwan --elements 2.5", ("--elements = '2.5'", "whole number")),
+        ("iwan --elements 2 --tolerance 1e-2", ("--elements", "without")),
+        ("iwan --material steel", ("--mu", "needed")),
+        ("iwan --nu 0.7", ("--poisson", "0.5")),
+        ("iwan --output a.txt", ("--output = 'a.txt'", ".csv")),
+        (f"table transverse {VIBRATED} --load '1 N' --speed 0", ("--amplitude", "range")),
+        (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".txt")),
+        (f"table sideways {VIBRATED} {GRID}", ("MOTION = 'sideways'",)),
+        (f"table transverse {VIBRATED} {GRID} --map nowhere.nc", ("--map", "not there")),
+    ],
+)
+def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
+    code, out, error = run(capsys, command)
+    assert code == 2 and not out
+    (line,) = error.splitlines()
+    assert line.startswith("microslip export") and all(part in line for part in parts)
+
+
+def test_a_table_with_a_point_that_is_not_converged_is_not_written(tmp_path, capsys):
+    file = tmp_path / "a.csv"
+    code, out, error = run(
+        capsys,
+        f"table transverse {VIBRATED} --load '10 N' --speed '10 mm/s' --amplitude '0.1e-6..1 m, 2' "
+        f"--output {file}",
+    )
+    assert code == 1 and not file.exists()
+    assert "amplitude_si = 1" in error and "no table" in error and not out.strip()

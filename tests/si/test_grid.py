@@ -1,0 +1,94 @@
+"""Ranges of quantities, and predictions over them."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.foundation.errors import InputError
+from microslip.si.grid import interpolation_error, values_of
+
+CONTACT = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("0..2 um, 5", ["0 um", "0.5 um", "1 um", "1.5 um", "2 um"]),
+        ("0.1..10 mm/s, 3, log", ["0.1 mm/s", "1 mm/s", "10 mm/s"]),
+        ("1..100um,log,3", ["1 um", "10 um", "100 um"]),
+        ("1e-1 .. .5, 2", ["0.1", "0.5"]),
+        ("0...5 N,2", ["0 N", "0.5 N"]),
+    ],
+)
+def test_a_range_has_equal_steps_or_equal_ratios(text, values):
+    assert values_of("load", text) == values
+    assert len(values_of("load", "0..2 N")) == 11
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("2..0 um", "1..1 um", "..2 um", "0..um", "1 um..2 um", "0..inf um"),
+        *("0..1..2 um", "0..2..um", "0..2 um, 1", "0..2 um, 5, 5", "0..2 um, cubic"),
+        *("0..2 um, 5, log", "1..2 um, log, log"),
+    ],
+)
+def test_other_texts_are_refused_with_an_example(text):
+    with pytest.raises(InputError, match=r"0.1..10 mm/s, 21, log"):
+        microslip.predict_grid("transverse", amplitude=text, speed="1 mm/s", load="1 N", **CONTACT)
+
+
+@pytest.mark.slow
+def test_each_point_is_its_prediction(tmp_path):
+    grid = microslip.predict_grid(
+        "transverse", speed="1..10 mm/s, 2", amplitude="0..0.5 um, 3", load="10 N", **CONTACT
+    )
+    assert dict(grid.sizes) == {"speed_m_s": 2, "amplitude_si": 3}
+    assert grid.amplitude_si.values == pytest.approx([0.0, 2.5e-7, 5e-7], rel=1e-12)
+    assert grid.speed_m_s.attrs["units"] == "m/s"
+    alone = microslip.predict(
+        "transverse", speed="10 mm/s", amplitude="0.25 um", load="10 N", **CONTACT
+    )
+    point = grid.isel(speed_m_s=1, amplitude_si=1)
+    for name in ("mu_apparent", "mu_apparent_error", "friction_force_N", "u_lim_m"):
+        assert float(point[name]) == getattr(alone, name)
+    assert np.all(grid.mu_macro.isel(amplitude_si=0) == 1.0)
+    grid.to_netcdf(tmp_path / "grid.nc", engine="netcdf4")
+
+
+@pytest.mark.slow
+def test_sequences_are_axes_and_other_points_survive_a_bad_one():
+    grid = microslip.predict_grid(
+        "transverse", load=["10 N", 20.0], amplitude=["0.1 um", "1 m"], speed=0.01, **CONTACT
+    )
+    assert grid.load_N.values.tolist() == [10.0, 20.0]
+    assert np.isnan(grid.mu_macro.isel(amplitude_si=1)).all()
+    assert np.isfinite(grid.mu_macro.isel(amplitude_si=0)).all()
+    assert all("allowed" in text for text in grid.error.values[:, 1])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "argument"),
+    [
+        ({"amplitude": "1 um"}, "amplitude"),
+        ({"amplitude": "0..1 um +- 0.1 um"}, "amplitude"),
+        ({"amplitude": "0..1 um, 1000", "speed": "0..1 m/s, 500"}, "amplitude"),
+        ({"amplitude": "0..1 s"}, "amplitude"),
+        ({"amplitude": "0..1 um", "load": "1 kg"}, "load"),
+        ({"amplitude": "0..1 um", "speeds": "0..1 m/s"}, "speeds"),
+    ],
+)
+def test_bad_grids_are_refused_by_name(arguments, argument):
+    whole = {"speed": "1 mm/s", "load": "1 N"} | CONTACT | arguments
+    with pytest.raises(InputError) as error:
+        microslip.predict_grid("transverse", **whole)
+    assert error.value.argument == argument
+
+
+def test_interpolation_errors_of_parabolas():
+    # x^2 differs from the interpolation of its neighbours at x - h and x + k by h k
+    import xarray as xr
+
+    x, y = np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0])
+    values = xr.DataArray(np.add.outer(x**2, y**2), {"x": x, "y": y}, dims=("x", "y"))
+    assert interpolation_error(values) == pytest.approx(1.0 * 2.0)
