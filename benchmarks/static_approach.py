@@ -21,7 +21,7 @@ import sys
 import tables
 
 import microslip
-from microslip.theory.catalogue import FORMS, STATIC
+from microslip.datasets.catalogue import FORMS, STATIC
 
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}

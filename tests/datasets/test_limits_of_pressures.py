@@ -6,9 +6,9 @@ from scipy.integrate import quad
 
 from microslip.config import load as config
 from microslip.datasets import theory_limits
+from microslip.datasets.catalogue import FORMS
 from microslip.pressures.by_name import pressure_named
 from microslip.theory import axisymmetric
-from microslip.theory.catalogue import FORMS
 
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
 

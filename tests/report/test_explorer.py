@@ -11,9 +11,9 @@ from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
 from microslip.config import load
+from microslip.datasets.catalogue import FORMS
 from microslip.report.explorer import explorer, page, payload
 from microslip.sweeps.store import Store
-from microslip.theory.catalogue import FORMS
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from microslip.theory.catalogue import DRIFT_FORMS, FORMS
+from microslip.datasets.catalogue import DRIFT_FORMS, FORMS
 from microslip.theory.drift import antiphase_drift
 
 FORCES = np.linspace(0.1, 0.9, 9)

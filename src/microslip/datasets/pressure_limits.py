@@ -10,10 +10,10 @@ from functools import partial
 
 import numpy as np
 
+from microslip.datasets.catalogue import FORMS, STATIC, ClosedForm
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.pressure import Pressure
 from microslip.theory import axisymmetric, hertz, indenters, masing, paper
-from microslip.theory.catalogue import FORMS, STATIC, ClosedForm
 
 ZONE = replace(
     FORMS["transverse"]["mu_static_stick_zone"],

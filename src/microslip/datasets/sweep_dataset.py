@@ -18,12 +18,12 @@ from microslip.config.extended import solver_names
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.config.records import Sweep
 from microslip.datasets import netcdf, point_variables, theory_limits
+from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.foundation.files import writing_beside
 from microslip.motions.by_name import motion_named
-from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
 METHOD = "boundary element method, elastic half-space with local Coulomb friction"

@@ -8,9 +8,9 @@ import numpy as np
 
 from microslip.config.extended import solver_names
 from microslip.config.records import Sweep
+from microslip.datasets import catalogue
+from microslip.datasets.catalogue import ClosedForm
 from microslip.datasets.variables import variable
-from microslip.theory import catalogue
-from microslip.theory.catalogue import ClosedForm
 
 CURVE_POINTS = 241
 

@@ -13,11 +13,11 @@ import jinja2
 import numpy as np
 import xarray as xr
 
+from microslip.datasets.catalogue import FORMS
 from microslip.foundation.files import write_atomically
 from microslip.report.dataset_page import provenance
 from microslip.studies.claims.static_limits import FORMULAS
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
-from microslip.theory.catalogue import FORMS
 
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 

@@ -1,7 +1,7 @@
 """Closed forms of motions under Hertz's pressure, which replace simulations.
 
 Stored results depend on this file and on its functions. The names of these and other formulas are
-in catalogue.py. Stored results do not depend on that file.
+in datasets/catalogue.py. Stored results do not depend on that file.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
+from microslip.datasets.catalogue import FORMS
 from microslip.datasets.query import beyond, cells, inverse
 from microslip.datasets.query.answers import (
     EXACT,
@@ -37,7 +38,6 @@ from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import speaks_of_file
 from microslip.motions.by_name import motion_named
-from microslip.theory.catalogue import FORMS
 
 Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Friction, its error bound and its source as a code of SOURCES; shape (n,) each."""

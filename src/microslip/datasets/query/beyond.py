@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from microslip.theory.catalogue import FORMS
+from microslip.datasets.catalogue import FORMS
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 ROUNDING = 1e-12

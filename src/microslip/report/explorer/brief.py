@@ -13,6 +13,7 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
+from microslip.datasets.catalogue import FORMS, ClosedForm
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.canonical import number
 from microslip.report.figures import style
@@ -20,7 +21,6 @@ from microslip.report.figures.data import at_each_poisson, curve, limit, require
 from microslip.report.figures.formulas import html
 from microslip.report.figures.maps import CURVES
 from microslip.sweeps.evaluate import plain
-from microslip.theory.catalogue import FORMS, ClosedForm
 
 POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")

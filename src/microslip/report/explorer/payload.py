@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from microslip.datasets.catalogue import FORMS
 from microslip.foundation.canonical import number
 from microslip.report.explorer import brief, si_form
 from microslip.report.explorer.certified import packed
@@ -22,7 +23,6 @@ from microslip.report.figures import drawing
 from microslip.report.figures.data import require, sweep
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half, values_of
-from microslip.theory.catalogue import FORMS
 
 UNSIGNED, SIGNED = 65535, 32767
 

@@ -14,10 +14,10 @@ from matplotlib.patches import Circle
 from scipy.interpolate import griddata
 
 from microslip.config.quantities import AMPLITUDE, FORWARD, LATERAL, VELOCITY, Quantity
+from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns
-from microslip.theory.catalogue import FORMS, STATIC
 
 BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
 LIMIT = "limit", STATIC, look.BLUE, look.SOLID

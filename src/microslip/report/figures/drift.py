@@ -12,11 +12,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
+from microslip.datasets.catalogue import STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import columns, curve, limit, sweep
 from microslip.report.figures.map_panel import bands
-from microslip.theory.catalogue import STATIC
 
 DECADES = np.linspace(-3.0, 1.0, 17)
 """Decimal logarithms of the dimensionless velocities at the edges of the bands."""

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
+from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_each_poisson, columns, curve, limit, require, sweep
 from microslip.report.figures.map_panel import fill
-from microslip.theory.catalogue import FORMS, STATIC
 
 MOTIONS = {"fig2_transverse_map": "transverse", "fig6_bore_map": "bore"}
 """Motion that each figure shows."""

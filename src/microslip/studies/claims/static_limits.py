@@ -13,13 +13,13 @@ from scipy.special import j0
 
 from microslip.config.records import STATIC_AMPLITUDES
 from microslip.config.settings import Claims
+from microslip.datasets.catalogue import FORMS, STATIC
 from microslip.datasets.variables import variable
 from microslip.studies.claims import claims
 from microslip.studies.claims.runs import Run, Runs, friction
 from microslip.studies.tables import value_of
 from microslip.theory import hertz
 from microslip.theory import paper as theory
-from microslip.theory.catalogue import FORMS, STATIC
 
 FORMULAS = {
     "transverse": {
