@@ -84,7 +84,7 @@ class Result:
         Effort of all runs.
     exhausted : str
         Name of the limit that ended the search, otherwise empty.  It is "work" or "time"; the
-        second limit depends on the machine.
+        effect of a time limit depends on the machine.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -158,7 +158,8 @@ class Result:
         return None if self.dissipation is None else self.dissipation.error
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets; omits fields that do not apply."""
+        """Convert to a dict with the names of JSON and datasets, without fields that do not
+        apply."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}
@@ -222,7 +223,7 @@ class Exact(NamedTuple):
 
 
 def of_closed_form(point: dict, exact: Exact, seconds: float) -> Result:
-    """Build the Result of a closed form from other fields (`point`)."""
+    """Build the Result of a closed form; `point` contains the fields copied from the request."""
     error, tolerance = exact.error, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(
