@@ -107,6 +107,5 @@ class Elliptic(Motion):
         return velocity * phase + ahead, aside, np.zeros_like(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation with the same largest distance from the mean
-        position."""
+        """Stick radius of a straight oscillation with the amplitude of `reach`."""
         return stick_focus(amplitude * self.reach, pressure)

@@ -23,7 +23,7 @@ EVEN = 1e-2
 
 
 def table_of(file: NamedFile, content: bytes) -> NumberTable:
-    """Parse a file and return its table; for ValueError see `columns_of`."""
+    """Parse the content of a file; raises ValueError.  See `columns_of`."""
     if file.grid != GRID or file.pitch:
         raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
     return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)

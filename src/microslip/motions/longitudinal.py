@@ -30,8 +30,8 @@ class Longitudinal(Motion):
         return stick_focus(amplitude, pressure)
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases at which the velocity v~ + x~ cos t changes its sign.  They are -pi/2, pi/2 and 3
-        pi/2 if the sign never changes."""
+        """Phases at which v~ + x~ cos t changes its sign, or -pi/2, pi/2 and 3 pi/2 without a
+        change."""
         back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
         return -back, back, 2.0 * np.pi - back
 

@@ -108,8 +108,7 @@ class SampledPath(_Samples):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Largest displacement of a contact point between consecutive rows, in u_lim, shape (rows -
-        1,).
+        """Largest displacement of a contact point from row to row, in u_lim, shape (rows - 1,).
 
         A change of the indentation counts as a displacement by the change of the local u_lim.
         """
@@ -241,7 +240,7 @@ class Sampled(_Samples):
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Stick radius of a straight oscillation with the same largest distance from the centre.
-        Under an oscillating load it is the smallest contact radius divided by the largest."""
+        Under an oscillating load, the smallest contact radius divided by the largest."""
         if self.loads:
             least, most = self._extremes(amplitude, pressure)
             return within_rings(float(pressure.radius(least) / pressure.radius(most)))

@@ -29,9 +29,9 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
 def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> float:
     """Energy that friction dissipates in a period, divided by mu F_z u_lim.
 
-    The elastic energy is the same at both ends of a period, and an oscillating normal load does no
-    net work, since it is a function of the indentation.  So the dissipated energy is the work of
-    the tangential forces on the rigid displacements of the contacts.
+    The elastic energy is the same at both ends of a period.  An oscillating normal load does no net
+    work, because the load is a function of the indentation.  So the dissipated energy is the work
+    of the tangential forces on the rigid displacements of the contacts.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ class Run:
     solver_residual : float
         Residual of the step solver summed over the last period, as a force divided by mu F_z.
     periods : float
-        Number of full periods marched in search of the periodic state; 0 for a steady motion.
+        Number of full periods marched in the search for the periodic state; 0 for a steady motion.
     effort : Effort
         Effort of all searches.
     converged : bool
@@ -99,7 +99,7 @@ class Run:
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
-    """Reason why the stages are not solved to their tolerance; empty if they are.
+    """Reason why the stages are not solved to their tolerance, otherwise empty.
 
     Parameters
     ----------
