@@ -236,9 +236,9 @@ def _without_runs(
     energy: Estimate | None,
     reason: str = "",
 ) -> Result:
-    """Result for a velocity and a dissipated energy that need no run.
+    """Build a Result without a run, from a velocity and a dissipated energy.
 
-    `reason` says why it is not converged.
+    `reason` says why the result is not converged.
     """
     force, tolerance = force_of(request.problem), request.tolerance
     return Result(
@@ -256,8 +256,8 @@ def _without_runs(
 def _moving(request: Request, moving_force: float) -> Result:
     """Compute the Result of a moving contact.
 
-    The runs use `moving_force`, under which the contact certainly moves.  If it is larger than the
-    requested force, the velocity lies between 0 and the velocity in the runs.
+    The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
+    than the requested force, the velocity lies between 0 and the velocity in the runs.
     """
     force, original = force_of(request.problem), request
     request = _driven(request, force=moving_force)

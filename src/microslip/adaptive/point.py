@@ -75,8 +75,8 @@ def solve(
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
         Absolute tolerance of mu_macro.  Under a force it is the tolerance of the velocity, relative
-        for a velocity above 1.  With imposed cells and steps the tolerance can be None, so that any
-        error is accepted.
+        for a velocity above 1.  With imposed cells and steps the tolerance can be None, which means
+        that any error is accepted.
     cells, steps : int or None
         Imposed number of cells, and of steps in a full period.  By default they are chosen
         according to the tolerance.

@@ -55,8 +55,8 @@ FACTOR = 4.0
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5
-"""Factor for the first step away from the no-load velocity.  The unit of this step is the distance
-over which friction rises by its error."""
+"""First step away from the no-load velocity, in units of the distance over which friction rises by
+its error."""
 MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
 """Reason for a motion that propels nothing; the fields are the lowest and the highest force."""
@@ -68,8 +68,7 @@ class PropulsionLine:
 
     All values except the time are dimensionless.  Forces are divided by mu times the mean normal
     load; powers are also divided by u_lim omega.  Velocities are in the same unit as the velocity
-    of the motion.  A field whose name ends with `_error` is the error estimate of the field without
-    this ending.
+    of the motion.  The field `x_error` is the error estimate of the field `x`.
 
     Attributes
     ----------
@@ -83,8 +82,8 @@ class PropulsionLine:
     no_load_velocity, no_load_velocity_error : float
         Velocity without a load, with the sign of the stall force.
     holding_force_low, holding_force_low_error : float or None
-        Lowest force against which friction holds the body at rest.  It is negative, which means
-        backward.  None if the motion propels the body.
+        Lowest force against which friction holds the body at rest.  It is negative, that is, it
+        acts backward.  None if the motion propels the body.
     holding_force_high, holding_force_high_error : float or None
         Highest force against which friction holds the body at rest.  None if the motion propels the
         body.
@@ -435,8 +434,8 @@ def _root(
 def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
     """Find a velocity near `velocity` at which friction certainly has the sign `sign`.
 
-    A negative sign is searched for at lower velocities, a positive sign at higher ones.  Returns 0
-    if no lower velocity has the sign, and None if no higher velocity has it.
+    For a negative sign the search goes down and returns 0 if it fails.  For a positive sign the
+    search goes up and returns None if it fails.
     """
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):

@@ -38,8 +38,8 @@ STEP_SHARE = 0.05
 MOST_VALUES = 2e7
 """Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
 STEPS = LOAD.steps / 2.0
-"""Number of time steps for a path of length u_lim, divided by the level.  LOAD, for oscillating
-loads, has this density at a stroke of u_lim, because half a period is then 2 u_lim long."""
+"""Number of time steps for a path of length u_lim, divided by the level.  It equals the density in
+LOAD, for oscillating loads, if the stroke is u_lim and half a period is 2 u_lim long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ class Response:
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
         """Unit and values of every column, by name.
 
-        The column `force_error` is the larger of the errors of the two force components.
+        The column `force_error` is the larger error of the two force components.
         """
         columns = {
             "force_forward": self.force_forward,

@@ -215,7 +215,7 @@ def _threshold(request: Request) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Compute the fields of a Shakedown that result from its runs."""
+    """Compute the fields of a Shakedown that result from runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     ladder = ladder_for(planned, request.model, request.accuracy)
     # the contact must come to rest in the coarsest run too

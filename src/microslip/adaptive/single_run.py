@@ -27,7 +27,7 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
-"""Tolerance of a step whose cost is measured, as a force divided by mu F_z."""
+"""Step tolerance in measurements of the cost, as a force divided by mu F_z."""
 
 
 def applies(

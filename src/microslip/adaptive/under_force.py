@@ -29,7 +29,7 @@ advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
 of the friction, 1.1e-16, causes the relative error 1.1e-16 / (2 (1 - force)) in the velocity.  At
-this force the stated error is 1e-9."""
+this force it is about the stated error of 1e-9."""
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
 """Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
@@ -82,9 +82,9 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    Then the threshold of motion equals the static limit.  Several contacts exert no forward force
-    if each of them exerts none.  The same is true if each contact has a partner that exerts the
-    opposite force.
+    In this case the threshold of motion equals the static limit.  Several contacts exert no forward
+    force if each of them exerts none.  The same is true if each contact has a partner that exerts
+    the opposite force.
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
@@ -185,8 +185,8 @@ class Near(NamedTuple):
 def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
     """Find the velocity at which the friction equals a force, to within a factor of about two.
 
-    The search for the velocity under the force starts from this velocity.  It also determines the
-    time steps.
+    The search for the velocity under the force starts from this velocity.  This velocity also
+    determines the time steps.
 
     Parameters
     ----------

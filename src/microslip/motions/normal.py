@@ -6,9 +6,9 @@ With the amplitude A, the normal load divided by its reference value is 1 + A lo
 `indentation` is above 0, the indentation depth divided by its reference value is 1 + A indentation
 sin(K t) instead.  Contact is lost while the load or the depth would be below 0.  In the plane the
 displacement is v~ t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim; the angle is
-that of a bore with the amplitude A B, times sin(Q t + P).  P is in degrees.  The units u_lim, a and
-mu F_z are those of the state without oscillation.  Friction is divided by mu times the actual mean
-load."""
+sin(Q t + P) times the largest angle of a bore with the amplitude A B.  P is in degrees.  The units
+u_lim, a and mu F_z are those of the state without oscillation.  Friction is divided by mu times the
+actual mean load."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class Problem:
         Contacts that carry the body; empty for a single contact.
     backward : bool
         Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
-        velocity v is then minus that of the original motion at -v.
+        velocity v is then minus the friction of the original motion at -v.
     follows : bool
         Whether the body follows the mean forward oscillation of its contacts, as a massless body
         under a constant force does.  The mean oscillation is then subtracted from each contact's
@@ -118,7 +118,7 @@ class Problem:
         words += [f"contacts={contacts_text(self.contacts)}"] if self.contacts else []
         return " ".join(words)
 
-    # Symmetries of the motion that the pressure has as well
+    # Symmetries that both the motion and the pressure have
 
     @property
     def half_period_mirror(self) -> bool:

@@ -67,7 +67,7 @@ class _Samples(Motion):
 
 @dataclass(frozen=True, eq=False)
 class SampledPath(_Samples):
-    """A motion through a sequence of rows, which does not repeat.  The phase is the row number."""
+    """A motion through a sequence of rows, without repetition.  The phase is the row number."""
 
     periodic = False
     summary = "a path through rows"
@@ -280,7 +280,7 @@ ROUNDING = 1e-9
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:
     """Index of the time that is farthest from equal spacing.  It is None if the times increase and
-    are all within `most` spacings."""
+    all deviate by at most `most` spacings."""
     even = np.linspace(time[0], time[-1], len(time))
     distance = np.abs(time - even)
     step = (time[-1] - time[0]) / max(len(time) - 1, 1)

@@ -1,4 +1,4 @@
-"""Symmetry of an oscillation that follows from the numbers of cycles of its components."""
+"""Symmetry of an oscillation, derived from the number of cycles of each component."""
 
 from __future__ import annotations
 

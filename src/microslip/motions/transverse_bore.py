@@ -2,9 +2,9 @@
 
     transverse-bore:lateral=L,angle=B,phase=P
 
-With the amplitude A, the lateral displacement is A L sin(t).  The angle is that of a bore with the
-amplitude A B, times sin(t + P), with P in degrees.  B = 0 gives the transverse motion.  L = 0 gives
-the bore, except that the velocity is divided by omega u_lim.
+With the amplitude A, the lateral displacement is A L sin(t).  The angle is sin(t + P) times the
+largest angle of a bore with the amplitude A B; P is in degrees.  B = 0 gives the transverse motion.
+L = 0 gives the bore, except that the velocity is divided by omega u_lim.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ class Resolution:
 
 
 def focus_strength(drift: float) -> float:
-    """Strength of the grading of rings towards the stick radius.
+    """Strength of the ring grading towards the stick radius.
 
     `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 

@@ -10,10 +10,10 @@ The state is a one-dimensional array.  It contains the tractions and, for bodies
 the state after half a period does not change x and x'.
 
 During one period unbalanced forces hardly move a heavy body, and the force of a soft spring hardly
-changes.  So the map scales the changes of x and x' up, as if the spring were no softer than the
-contact and the body no heavier than this stiffness can move in a period.  The fixed point of the
-map stays the same.  A contact in full slip is much more compliant than a sticking contact.  Its
-stiffness is the rise of the mean force with the displacement.
+changes.  So the map scales up the changes of x and x', as for a stiffer spring and a lighter body
+that match the stiffness of the contact.  The fixed point of the map stays the same.  A contact in
+full slip is much more compliant than a sticking contact.  Its stiffness is the rise of the mean
+force with the displacement.
 """
 
 from __future__ import annotations
@@ -139,9 +139,9 @@ class _DrivenSearch:
 
     @property
     def force_of_answer(self) -> float:
-        """Force, divided by mu F_z, that corresponds to an error of 1 in the answer.
+        """Force, divided by mu F_z, that corresponds to an error of 1 in the result.
 
-        For a spring the answer is a force.  For a prescribed force the answer is a velocity, and
+        For a spring the result is a force.  For a prescribed force the result is a velocity, and
         there are two estimates.  The first divides the force by the stiffness and by the length of
         the interval.  The second divides the unbalanced force by the rise of friction with the
         velocity.  The smaller force is used.
@@ -206,7 +206,7 @@ class _DrivenSearch:
         return run
 
     def _at_prescribed_velocity(self, tolerance: float) -> Run:
-        """The Run at the problem's velocity as a prescribed velocity."""
+        """The Run without a drive, at the prescribed velocity of the problem."""
         share = max(tolerance, LOOSEST_START) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
@@ -257,7 +257,7 @@ class DrivenMap(PeriodMap):
     body : driven_body.Body
         The body and its drive.
     drift_rate : period_map.DriftRate or None
-        Drift rate, for motions with a known velocity that can be slow.
+        Drift rate, for motions that have a known velocity and can be slow.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     slope : float

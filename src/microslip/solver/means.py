@@ -19,7 +19,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     """Mean forces over a march, shape (3,).  `forces` are the forces at the phases of the path."""
     if problem.depth is None:
         return path.mean(forces)
-    # the trapezoidal rule integrates only the difference from full slip, whose mean is exact
+    # the mean of full slip is exact, so the trapezoidal rule integrates only the difference
     growing = cast(GrowingContact, contact)  # because the load oscillates
     bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]

@@ -116,8 +116,8 @@ class PeriodMap:
     contact : contact.Contact
         The contact.
     path : path.Path
-        Path.  With `mirror` it covers half a period, from turning point to turning point, otherwise
-        a whole period.
+        Path over half a period, from turning point to turning point.  Without `mirror` the path
+        covers a whole period.
     drift_rate : DriftRate or None
         Data for slow motions, or None if the motion is not slow.
     mirror : bool

@@ -42,8 +42,8 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build the contact of a problem with the method's step solver.  Its marches are
-        counted."""
+        """Build the contact of a problem with the method's step solver.  The contact counts its
+        marches."""
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
@@ -55,7 +55,7 @@ AS_SHIPPED = Settings()
 class Run:
     """Result of one run: forces divided by their full-slip values, and the effort.
 
-    If the normal load oscillates, forces are divided by mu times its mean.
+    If the normal load oscillates, forces are divided by mu times the mean load.
 
     Attributes
     ----------

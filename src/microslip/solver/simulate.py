@@ -173,7 +173,7 @@ class _Search:
         self.searches: list[PeriodicState] = []
 
     def run(self, guess: Run | None = None) -> Run:
-        """Run the search; `guess`: see simulate."""
+        """Run the search.  For `guess` see `simulate`."""
         start, converged = self._start_from(guess), False
         if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)

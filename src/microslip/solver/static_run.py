@@ -100,7 +100,7 @@ def edges_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Find the edges of the stick zone of a motion on a loop, for which there is no formula.
+    """Find the edges of the stick zone for a motion on a loop by runs, since there is no formula.
 
     The arguments are those of `simulate_static`.  In addition, `progress` is called with every
     run's Resolution before the run starts.  Returns the Runs and the radii of the edges; the last
@@ -127,7 +127,7 @@ def edges_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Find the edges of the stick zone of a motion on a line, from the tractions at the turning
+    """Find the edges of the stick zone for a motion on a line, using the tractions at its turning
     points.
 
     The arguments are those of `edges_on_a_loop`.  In addition, `near` contains approximate radii;
@@ -154,11 +154,11 @@ def _edges(
     *,
     radii: tuple[float, ...] = (),
 ) -> tuple[float, ...]:
-    """Find the radii of the edges of the stick zone, on rings graded towards these edges.
+    """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
     Repeats the run on new rings until the radii stay the same, or at most MOST_PASSES times.
-    `points_that_stick(contact)` returns a mask of the sticking points, or None if it is unknown.
-    `radii` are the edges for the first grading.
+    `points_that_stick(contact)` returns a mask of the sticking points, or None if the mask is
+    unknown.  `radii` are the edges for the first grading.
     """
     for _ in range(MOST_PASSES):
         if progress is not None:

@@ -55,9 +55,9 @@ def edge_focus(
     model : str
         Name in models.registry.MODELS.
     budget : budget.Budget or None
-        Budget of the runs of the search.  None means unlimited.
+        Budget of the search.  None means unlimited.
     progress : callable or None
-        Called with the Resolution of every run of the search before it starts.
+        Called with the Resolution of every run in the search before the run starts.
 
     Returns
     -------

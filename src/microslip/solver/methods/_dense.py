@@ -195,8 +195,8 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel
 def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps; `length`, shape (K,), contains their fixed
-    lengths."""
+    """Solve a step by projected gradient steps with the fixed step length `length[k]` at point
+    k."""
     b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

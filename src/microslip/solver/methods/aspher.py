@@ -12,7 +12,7 @@ from the defaults of the package:
   direction, the preconditioned solver needs about five times as many iterations, and the means are
   no more accurate.
 
-- A step that the package rejects counts as failed, and the march continues from its best tractions.
+- A step that the package rejects counts as failed, and the march continues from the best tractions.
   By default the package returns to the tractions before the step, which makes the means wrong.
 
 An iteration computes two products with the influence operator; our solvers compute one.  The effort
@@ -86,7 +86,7 @@ class Solver:
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
     """March one half period; `number` counts the half periods from 0.
 
-    Returns the forward forces at its phases, except the first, and the sum of the residuals.
+    Returns the forward forces at all phases except the first, and the sum of the residuals.
     """
     start, end = path.positions[0, :2], path.positions[-1, :2]
     sign = (-1) ** number

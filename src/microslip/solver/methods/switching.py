@@ -1,4 +1,4 @@
-"""Fixed-point stick/slip switching, which alternates updates of the points and a linear solve.
+"""Fixed-point stick/slip switching: updates of the points alternate with linear solves.
 
 The traction of a slipping point is on the bound, in the direction of its last slip; sticking points
 do not slip.  After the solve, points with a traction above the bound slip, and slipping points
