@@ -242,8 +242,7 @@ class _Contact:
         return self._certified(velocity, "mu")
 
     def power(self, velocity: float) -> Answer:
-        """Mean power of the oscillation.  Value and error are those of a force times the mean
-        speed."""
+        """Mean power of the oscillation, computed as a force times the mean speed."""
         answer = self._certified(velocity, "power")
         return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
 

@@ -311,8 +311,7 @@ def _refined(marches: _Marches, first: int) -> Response:
 
 
 def _from_row(values: np.ndarray, first: int) -> np.ndarray:
-    """Values of _Marches.rows from row `first` on; the dissipated energy is counted from that
-    row."""
+    """Values of _Marches.rows from row `first` on; the energy is counted from that row."""
     out = values[first:].copy()
     out[:, 3] -= out[0, 3]
     return out

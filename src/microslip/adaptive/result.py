@@ -159,8 +159,8 @@ class Result:
         return None if self.dissipation is None else self.dissipation.error
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets, without fields that do not
-        apply."""
+        """Convert to a dict with the names of JSON and datasets; fields that do not apply are
+        omitted."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}

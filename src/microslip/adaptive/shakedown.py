@@ -201,8 +201,8 @@ def _answer(request: Request, force: float) -> Shakedown:
 
 
 def _threshold(request: Request) -> tuple[float, float, str]:
-    """Compute the static limit, its error, and a message that is empty unless the contact runs
-    away."""
+    """Compute the static limit, its error, and a message if the contact runs away (otherwise
+    "")."""
     problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):

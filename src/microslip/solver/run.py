@@ -42,8 +42,7 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build the contact of a problem with the method's step solver.  The contact counts its
-        marches."""
+        """Build a contact with the method's step solver.  The contact counts its marches."""
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 

@@ -150,8 +150,7 @@ class DenseContact:
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
-    """Make a function `dress(contact, **parameters)` that returns a DenseContact, see
-    method.Method."""
+    """Make a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 
@@ -195,8 +194,7 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel
 def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps with the fixed step length `length[k]` at point
-    k."""
+    """Solve a step by projected gradient steps; `length[k]` is the fixed step length at point k."""
     b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

@@ -94,8 +94,7 @@ class Marches:
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
-        """Estimate the distance of an interval's state from the fixed point, using a better
-        state."""
+        """Estimate the distance of an interval's state from the fixed point, by a better state."""
         step = energy_norm(self.contact, proposal - interval.state)
         distance = max(step, interval.residual)
         if self.drift_rate is not None:
