@@ -2,7 +2,7 @@
 
 ``solve`` computes the friction at one point, ``solve_stored`` also stores the result.  ``history``
 and ``traction_field`` compute forces and tractions in detail.  Importing the package is fast,
-since each module is imported when one of its names is first used.
+because a module is loaded only when one of its names is first used.
 """
 
 from importlib import import_module as _import_module
@@ -74,7 +74,7 @@ __version__ = "0.1.0"
 
 
 def __dir__() -> list[str]:
-    """Names for completion, including names whose modules are not imported yet."""
+    """List all public names, including those whose modules are not imported yet."""
     return sorted({*globals(), *_WHERE})
 
 

@@ -8,8 +8,9 @@ import signal
 import sys
 
 OBJECTS = 200_000
-"""Number of new objects between two garbage collections: more than the imports create.  With
-Python's default of 700, collections take a tenth of the time of `microslip point`."""
+"""Number of new objects between two garbage collections.  It exceeds the number of objects that the
+imports create.  With Python's default of 700, garbage collection takes a tenth of the run time of
+`microslip point`."""
 
 
 def main() -> int:
@@ -18,13 +19,13 @@ def main() -> int:
     stoppable = sys.argv[1:2] != ["sweep"]  # Snakemake handles the signals of a sweep
     handler = signal.getsignal(signal.SIGINT)
     if handler != signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until the terminal installs its own handler
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until terminal.run installs its handler
     from microslip.app import terminal
 
     if not stoppable:
         signal.signal(signal.SIGINT, handler)
     code = terminal.run(_command, stoppable=stoppable)
-    gc.freeze()  # else the last collection takes as long as the imports
+    gc.freeze()  # otherwise the last collection takes as long as the imports
     return code
 
 

@@ -24,7 +24,8 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 LARGEST_FORCE = 1e6
-"""Largest force divided by mu times the mean normal load.  From 1 on the contact runs away."""
+"""Largest accepted force divided by mu times the mean normal load.  The contact already runs away
+at 1."""
 
 
 def checked_problem(
@@ -108,7 +109,7 @@ def _problem(
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """Problem of a motion at `place` = (velocity, amplitude, poisson), or the given Problem."""
+    """Build the Problem at `place` = (velocity, amplitude, poisson), or return a given Problem."""
     if isinstance(motion, Problem):
         velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
@@ -144,7 +145,7 @@ def _place(
     place: tuple[float | None, float | None, float],
     backward: bool,
 ) -> tuple[float, float | None, float]:
-    """Velocity, amplitude and Poisson's ratio; raises InputError outside the solver's range."""
+    """Check velocity, amplitude and Poisson's ratio; raises InputError if one is out of range."""
     velocity, amplitude, poisson = place
     slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
     velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])

@@ -13,13 +13,13 @@ STEPLESS = ("rigid", "dahl")
 
 
 def choose_model(problem: Problem, model: str = "auto") -> str:
-    """Name of the model to use: the cheapest exact one for "auto", otherwise the requested one.
+    """Return the name of the model: the cheapest exact model for "auto", otherwise `model`.
 
     Rings are chosen if the traction depends only on the radius (translation at nu = 0).  Angular
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
-    are also chosen for the static limit of a contact without symmetry, whose stick zone is not
-    round.  The slider and the rigid contact are never chosen, because their model error can only be
-    bounded by a run of the rings, which already gives the result.
+    are also chosen for the static limit of a contact without symmetry, because its stick zone is
+    not round.  The slider and the rigid contact are never chosen.  Bounding their model error would
+    need a run of the rings, and this run already gives the result.
 
     Parameters
     ----------

@@ -17,11 +17,12 @@ from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 CLOSED_FORM = "closed-form"
 """Name of the model in results that are not marched."""
 QUADRATURE = 1e-7
-"""Error of the quadrature in Eqs 17 and 18 for pressures other than Hertz, which can have kinks."""
+"""Quadrature error in Eqs 17 and 18 for pressures other than Hertz.  Such pressures can have
+kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms by quadrature: over the motion for a sphere, and also over the
-pressure for another indenter."""
+"""Errors of closed forms with a quadrature.  For a sphere it is a quadrature over the motion; for
+another indenter it is also over the pressure."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 
@@ -44,7 +45,7 @@ def no_vibration(problem: Problem) -> Exact | None:
 
 
 def _of_drag(problem: Problem, mu: float, error: float) -> Estimate:
-    """Energy that a constant or slow friction force dissipates, if the oscillation does no work."""
+    """Energy that the friction force `mu` dissipates over the mean displacement of a period."""
     work = 2.0 * math.pi * problem.mean_load * problem.drift
     return work * Estimate(mu, {"model": error})
 
@@ -61,10 +62,10 @@ def unless_imposed(
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Result of a closed form, or None if no closed form applies.
 
-    Closed forms exist in four cases.  The first is the steady state of a motion that does not
-    oscillate, where every point slips along its rigid velocity.  The others are the limit of
-    vanishing velocity, motion along one line at nu = 0, and sliding so fast that the width of the
-    bounds in bounds.py is within the tolerance.
+    Closed forms exist in four cases.  The first is the steady state of a motion without
+    oscillation, where every point slips along its rigid velocity.  The second is the limit of
+    vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is fast
+    sliding, if the bounds in bounds.py differ by less than the tolerance.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
 
 
 def bracket(problem: Problem, drop: float) -> Exact:
-    """Middle of the bounds of fast sliding; `drop` is the largest value of 1 - mu.
+    """Midpoint of the bounds for fast sliding; `drop` is the largest value of 1 - mu.
 
     Per radian, the dissipated energy is between the drift d and d (1 + drop / (4 - 2 drop)), see
     theory/bounds.py.
@@ -126,7 +127,7 @@ def _steady_bore(problem: Problem) -> Exact | None:
 
 
 def _exact(mu: float, energy: float, error: float) -> Exact:
-    """Closed form with an error that is relative for an energy above 1."""
+    """Build an Exact; `error` is absolute for the friction, and relative for an energy above 1."""
     return Exact(mu, error, energy=Estimate(energy, {"model": error * max(1.0, energy)}))
 
 

@@ -4,7 +4,7 @@ The slower the forward motion, the longer its transients.  In long transients ev
 the steps accumulate to a wrong state, and the search needs a better initial guess.  So the second
 attempt solves the steps to a tighter tolerance.  It first finds the periodic state at a higher
 velocity, where this is easier.  Then it lowers the velocity step by step, and each run starts from
-the state of the previous one.
+the previous run's state.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
-"""Ratio of successive velocities.  After a failure it is replaced by its square root, down to
-SMALLEST_FACTOR."""
+"""Ratio of successive velocities.  After a failure the ratio is replaced by its square root, down
+to SMALLEST_FACTOR."""
 MOST_STEPS = 12
 """Largest number of increases of the velocity."""
 
 
 def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
-    """The run at a velocity, with a second attempt if it does not converge.
+    """Run at a velocity, with a second attempt if the run does not converge.
 
     Parameters
     ----------

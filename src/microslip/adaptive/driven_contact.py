@@ -46,16 +46,15 @@ STEADY_ERROR = 1e-9
 COARSE_TOLERANCE = 1e-2
 """Tolerance of the coarse runs that find the approximate velocity under a force."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
-"""Resolution at which the stiffness of the contact is computed to choose the time steps for a
-mass."""
+"""Resolution at which the contact's stiffness is computed.  For a body with mass, the time steps
+depend on this stiffness."""
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Smallest accepted velocity of the coarse run under the force, divided by the velocity at which
-coarse runs at prescribed velocities have this friction.  A slower run is not resolved and is not
-used."""
+"""Smallest accepted velocity of the coarse run under the force, relative to the velocity found by
+coarse runs at prescribed velocities.  A slower run is not resolved and is not used."""
 SCALE_SHARE = 0.9
-"""The relative tolerance refers to this fraction of the velocity of the coarse run."""
+"""The relative tolerance refers to this fraction of the coarse run's velocity."""
 ROUGH_TOLERANCE = 3e-2
 """First tolerance of the static limit.  It is divided by 10 until the difference between the force
 and the limit exceeds the error of the limit."""
@@ -63,7 +62,8 @@ STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
 same value, so both agree on which forces are below the threshold."""
 GAP_MARGIN = 2.0
-"""Distance above the static limit, in units of its error, at which the contact certainly moves."""
+"""The contact certainly moves at this distance above the static limit, in units of the limit's
+error."""
 
 
 def refuse_drive(problem: Problem, model: str) -> None:
@@ -121,9 +121,9 @@ def solve_driven(request: Request) -> Result:
 def _fast(request: Request) -> Exact | None:
     """Closed form from the energy bound of theory/bounds.py.
 
-    Returns None if the error exceeds the tolerance.  The bound for transverse and bore motions
-    also applies to a body on a spring: per period, the spring does the work of the mean force, a
-    mass does none, and a dashpot dissipates energy.
+    Returns None if the error exceeds the tolerance.  The bound for transverse and bore motions also
+    applies to a body on a spring.  Over a period, the spring does the work of the mean force, a
+    mass does no work, and a dashpot dissipates energy.
     """
     motion = request.problem.motion
     imposed = request.cells is not None or request.steps is not None
@@ -138,7 +138,7 @@ def _fast(request: Request) -> Exact | None:
 
 
 def _driven(request: Request, **drive: float) -> Request:
-    """A copy of the request with changed fields of the drive."""
+    """Copy a request and replace fields of its drive."""
     problem = request.problem
     changed = problem.drive
     assert isinstance(changed, Force)
@@ -236,9 +236,9 @@ def _without_runs(
     energy: Estimate | None,
     reason: str = "",
 ) -> Result:
-    """Result for a velocity and a dissipated energy that need no run.
+    """Build a Result without a run, from a velocity and a dissipated energy.
 
-    `reason` says why it is not converged.
+    `reason` says why the result is not converged.
     """
     force, tolerance = force_of(request.problem), request.tolerance
     return Result(
@@ -256,9 +256,8 @@ def _without_runs(
 def _moving(request: Request, moving_force: float) -> Result:
     """Compute the Result of a moving contact.
 
-    `moving_force` is a force under which the contact certainly moves; it is the force in the runs.
-    If it is larger than the requested force, the velocity lies between 0 and the velocity of the
-    runs.
+    The runs use `moving_force`, under which the contact certainly moves.  If this force is larger
+    than the requested force, the velocity lies between 0 and the velocity in the runs.
     """
     force, original = force_of(request.problem), request
     request = _driven(request, force=moving_force)
@@ -326,7 +325,7 @@ def _near(request: Request) -> Near:
 
 
 def _without_answer(request: Request, reason: str) -> Result:
-    """Result of a point without any estimate, with the reason."""
+    """Result without any estimate, for a point that failed because of `reason`."""
     unknown = _without_runs(request, math.nan, math.inf, UNKNOWN, reason)
     return replace(
         unknown,
@@ -357,7 +356,7 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
     readings = [partial(run, problem=other) for other in problem.readings]
     read = attrgetter("mu" if drive.force is None else "velocity")
     unit, work = problem.largest_energy, 0.0
-    if drive.force is not None:  # errors of the velocity change the advance and the forces
+    if drive.force is not None:  # a velocity error changes the drift and the forces
         work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
         unit = accuracy.slope * unit + work
     refined = refine(run, ladder, tolerance, readings, read, energy_unit=unit, drive_work=work)

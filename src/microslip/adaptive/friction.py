@@ -42,9 +42,9 @@ class Plan(NamedTuple):
 
 
 def plan_for(request: Request) -> Plan:
-    """Make the Plan of a point with a velocity of at least 0.
+    """Make the Plan of a point whose velocity is at least 0.
 
-    Its runs raise budget.Spent if the budget of the point is exceeded.
+    The runs of the plan raise budget.Spent if the point's budget is exceeded.
     """
     problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)

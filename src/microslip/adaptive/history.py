@@ -30,9 +30,10 @@ STEP_TOLERANCE = 1e-7
 LONGEST_TRAVEL = 1e6
 """Largest travel of a steady motion, in u_lim.  The motion becomes steady within about 10 u_lim."""
 LONGEST_PHASE = 1e12
-"""Largest rotation of a steady motion, in u_lim / a, at which successive phases still differ."""
+"""Largest rotation of a steady motion, in u_lim / a.  At larger rotations, successive phases could
+be equal because of rounding."""
 MOST_STEPS = 10 * LARGEST["steps"]
-"""Largest number of steps of a history, over all periods."""
+"""Largest number of steps in a history, over all periods."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +205,7 @@ def _contact(problem: Problem, model: str, cells: int | None) -> Contact:
 
 
 def tractions_at_start(contact: Contact, start: str) -> np.ndarray:
-    """Tractions of a contact in one of the initial states STARTS."""
+    """Tractions of a contact in the initial state `start`, one of STARTS."""
     if start == "stress-free":
         return 0.0 * forward_slip(contact)
     if start == "full-slip":

@@ -27,13 +27,13 @@ from microslip.solver.snapshots import bounds_at_phases, frames
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
 """Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
-"""Largest distance from the periodic state, as a force divided by mu F_z.  It is far below 2e-3,
-the error due to the resolution."""
+"""Largest distance from the periodic state, as a force divided by mu F_z.  It is far below the
+error due to the resolution, 2e-3."""
 ON_BOUND = 1.0 - 1e-4
-"""Smallest traction along the slip of a slipping point, divided by the friction bound."""
+"""Smallest traction of a slipping point, divided by the friction bound."""
 MOST_ANGLES = 1000
 MOST_VALUES = 1e8
-"""Largest number of values in a field, points times steps."""
+"""Largest number of values (points times steps) in a field."""
 MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 """Factors by which forward force, lateral force and torque are multiplied after half a period."""
 
@@ -210,7 +210,7 @@ def period(
 
 
 def _work_per_area(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
-    """Work of a traction on a slip in the period, shape (points,); arguments as in Period."""
+    """Work of a traction on a slip over the period, shape (points,); for arguments see Period."""
     return 0.5 * np.sum((traction[1:] + traction[:-1]) * slip[1:], axis=0)
 
 

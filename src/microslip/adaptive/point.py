@@ -49,8 +49,8 @@ def solve(
     velocity : float or None
         The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
         limit.  None under a prescribed force, which determines the velocity.  Negative velocities
-        are allowed for self-propelled motions; for other motions the friction at -v is the opposite
-        of that at v.
+        are allowed for self-propelled motions; for other motions the friction at -v is minus the
+        friction at v.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
     force : float or None
@@ -75,8 +75,8 @@ def solve(
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
         Absolute tolerance of mu_macro.  Under a force it is the tolerance of the velocity, relative
-        for a velocity above 1.  With imposed cells and steps it can be None: then any error is
-        accepted.
+        for a velocity above 1.  With imposed cells and steps the tolerance can be None, which means
+        that any error is accepted.
     cells, steps : int or None
         Imposed number of cells, and of steps in a full period.  By default they are chosen
         according to the tolerance.
@@ -154,14 +154,14 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
-"""Points whose solution compiles kernels, by the name of the kernels."""
+"""Name of kernels -> points.  Solving these points compiles the kernels."""
 
 
 def warm_up(*kernels: str) -> None:
     """Compile kernels of the models that "auto" can choose; Numba caches them.
 
-    The first compilation takes a while.  Several processes can compile different kernels at
-    the same time.  Squares are compiled at their first use.
+    The first compilation takes a while.  Several processes can compile different kernels at the
+    same time.  The kernels of squares are compiled at their first use.
 
     Parameters
     ----------

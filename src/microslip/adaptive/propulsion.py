@@ -1,9 +1,8 @@
 """Self-propelled motions: force between stall and the no-load velocity, power and efficiency.
 
-The sphere moves forward at a prescribed velocity v, like a body that is so heavy that its velocity
-stays constant during a period.  The friction mu(v) is the mean forward force needed to move the
-sphere.  So the contact exerts the force -mu(v) on its own body, against a load that pulls the body
-back:
+The sphere moves forward at a prescribed velocity v, like a body too heavy for its velocity to
+change during a period.  The friction mu(v) is the mean forward force needed to move the sphere.  So
+the contact exerts the force -mu(v) on its own body, and a load pulls the body back:
 
     force(v) = -mu(v)             power out = force v, the work on the load
     stall force = force(v -> 0)   the load that stops it
@@ -56,7 +55,7 @@ FACTOR = 4.0
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5
-"""First distance from the no-load velocity, divided by the distance over which friction rises by
+"""First step away from the no-load velocity, in units of the distance over which friction rises by
 its error."""
 MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
@@ -68,9 +67,8 @@ class PropulsionLine:
     """Load and velocity of a self-propelled motion between stall and no load.
 
     All values except the time are dimensionless.  Forces are divided by mu times the mean normal
-    load, powers by mu times the mean normal load, u_lim and omega.  Velocities are in the same unit
-    as the velocity of the motion.  A field whose name ends with `_error` is the error estimate of
-    the field without this ending.
+    load; powers are also divided by u_lim omega.  Velocities are in the same unit as the velocity
+    of the motion.  The field `x_error` is the error estimate of the field `x`.
 
     Attributes
     ----------
@@ -84,8 +82,8 @@ class PropulsionLine:
     no_load_velocity, no_load_velocity_error : float
         Velocity without a load, with the sign of the stall force.
     holding_force_low, holding_force_low_error : float or None
-        Lowest force against which friction holds the body at rest.  It is negative, which means
-        backward.  None if the motion propels the body.
+        Lowest force against which friction holds the body at rest.  It is negative, that is, it
+        acts backward.  None if the motion propels the body.
     holding_force_high, holding_force_high_error : float or None
         Highest force against which friction holds the body at rest.  None if the motion propels the
         body.
@@ -93,14 +91,14 @@ class PropulsionLine:
         Equidistant velocities from 0 to the no-load velocity, and the force at each velocity.  The
         arrays are empty if the motion propels nothing.
     power_out, power_out_error : np.ndarray, shape (points,)
-        Mean power on the load: force times velocity.
+        Mean power delivered to the load: force times velocity.
     power_in, power_in_error : np.ndarray, shape (points,)
         Mean power of the oscillation.
     efficiency, efficiency_error : np.ndarray, shape (points,)
         Power out divided by power in.
     converged : bool
-        Whether the errors of the forces, and of the powers divided by the mean speed of the
-        oscillation, are within the tolerance.
+        Whether all errors are within the tolerance.  The errors of powers are divided by the mean
+        speed of the oscillation for this comparison.
     reason : str
         Reason why the result is not converged or why the motion propels nothing, otherwise empty.
     solve_time_s : float
@@ -158,8 +156,8 @@ def propulsion(
     Parameters
     ----------
     motion : str
-        A motion that can propel the contact: "elliptic:..." or "normal:forward=1,..." without the
-        symmetry that makes the mean force vanish.
+        A motion that can propel the contact: "elliptic:..." or "normal:forward=1,...", if no
+        symmetry makes the mean force vanish.
     amplitude : float
         Amplitude as in `microslip.solve`, above 0.
     pressure, poisson, model
@@ -205,7 +203,7 @@ class Answer(NamedTuple):
     value, error : float
         The quantity and its estimated error.
     reason : str
-        Reason why the error exceeds the tolerance; empty if it does not.
+        Reason why the error exceeds the tolerance, otherwise empty.
     """
 
     value: float
@@ -244,7 +242,7 @@ class _Contact:
         return self._certified(velocity, "mu")
 
     def power(self, velocity: float) -> Answer:
-        """Mean power of the oscillation.  Its error is that of a force times the mean speed."""
+        """Mean power of the oscillation, computed as a force times the mean speed."""
         answer = self._certified(velocity, "power")
         return Answer(self.speed * answer.value, self.speed * answer.error, answer.reason)
 
@@ -264,7 +262,7 @@ class _Contact:
         return self.cache[velocity, quantity]
 
     def _power_as_force(self, velocity: float, run: Run) -> float:
-        """Power of the oscillation, which is the dissipated power without that of the drive."""
+        """Power of the oscillation (dissipated minus drive power), divided by the mean speed."""
         dissipated = run.energy / (2.0 * math.pi * self.request.problem.mean_load)
         return (dissipated - run.mu * velocity * self.drift) / self.speed
 
@@ -379,7 +377,7 @@ def _record(
 
 
 def no_load(friction: Callable, first: float) -> Answer:
-    """Find the velocity at which friction vanishes; 0 if friction is not negative at velocity 0.
+    """Find the velocity at which friction vanishes, or 0 if friction at velocity 0 is not negative.
 
     Parameters
     ----------
@@ -412,8 +410,8 @@ def _root(
 ) -> tuple[float, float, str]:
     """Find a velocity at which friction is 0 within its error, by secant steps and bisections.
 
-    `low` and `high` are velocity and friction on either side of the root.  Returns the velocity,
-    the slope of the friction, and a reason for failure.
+    `low` and `high` are pairs (velocity, friction) on either side of the root.  Returns the
+    velocity, the slope of the friction, and a reason for failure.
     """
     for turn in range(MOST_HALVINGS):
         width, rise = high[0] - low[0], high[1] - low[1]
@@ -433,9 +431,10 @@ def _root(
 
 
 def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
-    """Find a velocity near another one at which friction certainly has the given sign.
+    """Find a velocity near `velocity` at which friction certainly has the sign `sign`.
 
-    Returns 0 if there is no such velocity below, and None if there is none above.
+    For a negative sign the search goes down and returns 0 if it fails.  For a positive sign the
+    search goes up and returns None if it fails.
     """
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):

@@ -27,7 +27,7 @@ TOLERANCE = 1e-3
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
 """Default limits on the work (step solves times unknowns) by model.  They exceed ten times the work
-of the slowest points in the paper's range at a tolerance of 1e-4."""
+of the slowest points in the paper's range, at a tolerance of 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def request_for(
     time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> Request:
-    """Build the Request for a problem.  Its time limit starts now.
+    """Build the Request for a problem.  The time limit counts from this call.
 
     Parameters
     ----------

@@ -34,13 +34,12 @@ from microslip.solver.snapshots import bounds_at_phases
 
 Progress = Callable[[int, int], None]
 STEP_SHARE = 0.05
-"""Largest sum of the residuals of all steps of a march, divided by the tolerance; see
-refine.RUN_SHARE."""
+"""Largest sum of the step residuals in a march, divided by the tolerance; see refine.RUN_SHARE."""
 MOST_VALUES = 2e7
 """Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
 STEPS = LOAD.steps / 2.0
-"""Number of time steps for a path of length u_lim, divided by the level.  In half a period with a
-stroke of u_lim, which is 2 u_lim long, an oscillating load has the same density of steps."""
+"""Number of time steps for a path of length u_lim, divided by the level.  It equals the density in
+LOAD, for oscillating loads, if the stroke is u_lim and half a period is 2 u_lim long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +56,8 @@ class Response:
     force_error : np.ndarray, shape (rows, 3)
         Estimated errors of the forward force, the lateral force and the torque.
     dissipated_energy, dissipated_energy_error : np.ndarray, shape (rows,)
-        Energy dissipated by friction since the first row, divided by mu F_z u_lim, and its
-        estimated error.
+        Energy dissipated by friction since the first row and its estimated error, both divided by
+        mu F_z u_lim.
     stick_fraction : np.ndarray, shape (rows,)
         Fraction of the contact area that sticks in the step that ends at the row.  It is NaN in the
         first row and without contact.  Its resolution is limited by the mesh.
@@ -94,7 +93,7 @@ class Response:
     def columns(self) -> dict[str, tuple[str, np.ndarray]]:
         """Unit and values of every column, by name.
 
-        The column `force_error` is the larger of the errors of the two force components.
+        The column `force_error` is the larger error of the two force components.
         """
         columns = {
             "force_forward": self.force_forward,
@@ -148,8 +147,8 @@ def response(
         Indentation divided by the indentation under the reference load, >= 0.  Give either this or
         `load`.
     state : Response, str or None
-        State in the first row: another response, at whose end the path begins; "full-slip";
-        "full-rotation"; or None for no tangential tractions.
+        State in the first row.  A Response means the state at its end.  The other states are
+        "full-slip", "full-rotation" and None, which means no tangential tractions.
     pressure : str or Pressure
         Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.
     poisson : float
@@ -226,10 +225,10 @@ class _Marches:
     Attributes
     ----------
     rows : dict of int to np.ndarray
-        Values at every row by level, shape (rows, 5): forward force, lateral force, torque,
-        dissipated energy, and a bound of the sum of the residuals since the start.
+        Values at every row for each level, shape (rows, 5): forward force, lateral force, torque,
+        dissipated energy, and a bound on the sum of the residuals since the start.
     stick : dict of int to np.ndarray
-        Stick fraction at every row, by level.
+        Stick fraction at every row for each level.
     """
 
     def __init__(self, problem: Problem, start: str, tolerance: float, progress: Progress | None):
@@ -312,7 +311,7 @@ def _refined(marches: _Marches, first: int) -> Response:
 
 
 def _from_row(values: np.ndarray, first: int) -> np.ndarray:
-    """Values of _Marches.rows from the row `first` on, with the energy dissipated since then."""
+    """Values of _Marches.rows from row `first` on; the energy is counted from that row."""
     out = values[first:].copy()
     out[:, 3] -= out[0, 3]
     return out
@@ -327,7 +326,7 @@ def _steps(problem: Problem, level: int) -> np.ndarray:
 
 
 def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
-    """First and last rows of the pieces of a path; `size` is the number of values in a state."""
+    """First and last row of each piece of a path; `size` is the number of values in a state."""
     ends, first = np.cumsum(counts), 0
     while first < len(counts):
         values_before = ends[first - 1] if first else 0
@@ -338,7 +337,7 @@ def _pieces(counts: np.ndarray, size: int) -> Iterator[tuple[int, int]]:
 
 
 def _phases(row: int, counts: np.ndarray) -> np.ndarray:
-    """Phases of the steps from a row on; `counts` are the numbers of steps between rows."""
+    """Phases of the steps after row `row`; `counts` are the numbers of steps between rows."""
     parts = [row + k + np.arange(1, count + 1) / count for k, count in enumerate(counts)]
     return np.concatenate([[row], *parts])
 

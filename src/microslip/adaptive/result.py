@@ -59,8 +59,8 @@ class Result:
         Torque divided by its value at zero forward velocity; None for oscillating motions.
     dissipation : Estimate or None
         Energy that friction dissipates in a period, divided by mu F_z u_lim, where F_z is the
-        normal load without oscillation.  None for steady motions, which dissipate the power
-        mu_macro times velocity plus torque times angular velocity.
+        normal load without oscillation.  None for steady motions; they dissipate the power mu_macro
+        times velocity plus torque times angular velocity.
     converged : bool
         Whether the error is within the tolerance and every run found its periodic state.  Without a
         tolerance only the second condition applies.
@@ -76,15 +76,16 @@ class Result:
         Number of time steps in a full period in the finest run.
     observed_order : float or None
         Observed order of convergence of the last three levels, or None if it is unknown.  The
-        expected order is 2.  If it is far below 1, the runs are too coarse for the error estimate.
+        expected order is 2.  If the observed order is far below 1, the runs are too coarse for the
+        error estimate.
     periods : float
         Number of full periods that the longest run marched to find the periodic state; 2.5 means
         five half periods.
     effort : Effort
         Effort of all runs.
     exhausted : str
-        Name of the limit that ended the search, otherwise empty.  It is "work" or "time"; the
-        second limit depends on the machine.
+        Name of the limit that ended the search ("work" or "time"), otherwise empty.  The effect of
+        a time limit depends on the machine.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -158,7 +159,8 @@ class Result:
         return None if self.dissipation is None else self.dissipation.error
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets; omits fields that do not apply."""
+        """Convert to a dict with the names of JSON and datasets; fields that do not apply are
+        omitted."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         flat = {name: value for name, value in plain.items() if name not in inside}
@@ -222,7 +224,7 @@ class Exact(NamedTuple):
 
 
 def of_closed_form(point: dict, exact: Exact, seconds: float) -> Result:
-    """Build the Result of a closed form from other fields (`point`)."""
+    """Build the Result of a closed form; `point` contains the fields copied from the request."""
     error, tolerance = exact.error, point["tolerance"]
     within = tolerance is None or error <= tolerance
     return Result(

@@ -13,7 +13,7 @@ from microslip.solver.effort import Effort
 
 
 def solve_each(request: Request) -> Result:
-    """Solve each contact separately; returns the Result of one contact or the mean over several."""
+    """Solve each contact separately; for several contacts, return the mean of their Results."""
     problem = request.problem
     if not problem.parts:
         return _solve(request)

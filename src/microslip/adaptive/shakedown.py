@@ -3,7 +3,7 @@
 A vibrated contact under a constant force below the static limit comes to rest.  Period by period
 its slip zones relax and transfer their load to the stick zone, until no point slips forward any
 more.  The displacement depends on the history.  Here the force is applied first, to a contact
-without tangential load; then the vibration starts at its mean position.
+without tangential load.  Then the vibration starts at its mean position.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
 TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
-"""Ratio of the tolerance of a shakedown run to that of a periodic state.  The residuals of the
-steps accumulate over all periods, several hundred near the static limit
+"""Tolerance of a shakedown run divided by the tolerance of a periodic state.  The step residuals
+accumulate over all periods; near the static limit there are several hundred
 (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0 the ladder has no time steps."""
@@ -65,7 +65,7 @@ class Shakedown:
         Forward displacement in u_lim from the position without a force to the position at rest, and
         its estimated error.  Infinite if the contact does not come to rest.
     pushed : float
-        Part of the displacement caused by the force before the oscillation starts.
+        Part of the displacement that the force causes before the oscillation starts.
     most_after : float
         Number of periods in which the contact covers nine tenths of the displacement caused by the
         oscillation.
@@ -146,8 +146,7 @@ def shakedown(
     Returns
     -------
     Shakedown
-        The displacement.  If the contact does not come to rest, it is infinite and `reason` says
-        why.
+        The displacement.  It is infinite if the contact does not come to rest; `reason` says why.
 
     Raises
     ------
@@ -202,7 +201,8 @@ def _answer(request: Request, force: float) -> Shakedown:
 
 
 def _threshold(request: Request) -> tuple[float, float, str]:
-    """Compute the static limit, its error, and a message if the contact runs away, otherwise ""."""
+    """Compute the static limit, its error, and a message if the contact runs away (otherwise
+    "")."""
     problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):
@@ -215,7 +215,7 @@ def _threshold(request: Request) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Compute the fields of a Shakedown that result from its runs."""
+    """Compute the fields of a Shakedown that result from runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     ladder = ladder_for(planned, request.model, request.accuracy)
     # the contact must come to rest in the coarsest run too

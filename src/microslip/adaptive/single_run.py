@@ -1,6 +1,7 @@
 """Single runs of a model and a method at one resolution, and the cost of a step.
 
-They are used to compare methods.  Their results have no error estimate for the resolution.
+Single runs are used to compare methods.  Their results do not include an estimate of the
+discretisation error.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
-"""Tolerance of a step whose cost is measured, as a force divided by mu F_z."""
+"""Step tolerance in measurements of the cost, as a force divided by mu F_z."""
 
 
 def applies(
@@ -77,7 +78,7 @@ def run_trial(
         - periods: number of full periods in all searches.
         - iterations, solves, unknowns: number of iterations of the step solver, of step solves, and
           of unknowns in a step.
-        - work, effort: number of solves times unknowns, and of iterations times unknowns.
+        - work, effort: number of solves times unknowns, and number of iterations times unknowns.
 
     Raises
     ------
@@ -109,15 +110,15 @@ def run_trial(
 def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
     """Measure the cost of a backward Euler step.
 
-    The march covers half a period from full slip, of the transverse motion for rings, otherwise of
-    the bore motion.  The time is the median of three marches.  A first march compiles the code.
+    The march starts from full slip and covers half a period.  The motion is transverse for rings,
+    otherwise bore.  The time is the median of three marches.  A first march compiles the code.
 
     Parameters
     ----------
     model : str
         Name in models.registry.MODELS.
     cells, angles, steps : int
-        Number of rings, of angular points, and of steps in half a period.
+        Numbers of rings, of angular points, and of steps in half a period.
     poisson : float
         Poisson's ratio.
 

@@ -31,13 +31,13 @@ def patches(
     dict
         - mu_macro, converged, reason: see `microslip.solve`.
         - phase, shape (steps + 1,): phase in radians.
-        - stick_right, stick_left, shape (steps + 1,): fractions of the contact area that stick at
-          positive and at negative lateral positions.
+        - stick_right, stick_left, shape (steps + 1,): stick area at positive and at negative
+          lateral positions, as fractions of the contact area.
         - least_stick: smallest sum of `stick_right` and `stick_left` over the period.
         - forward_position, lateral_position, area: positions of the points in units of a and their
           areas in units of a^2; the sum of the areas is pi.
-        - moment_phase: phases of four moments: the smallest stick area in a stroke, the middle of
-          the stroke, and both half a period later.
+        - moment_phase: phases of four moments.  The first is that of the smallest stick area in a
+          stroke, and the second is the middle of the stroke.  The others are half a period later.
         - moment_share, shape (moments, points): traction divided by the friction bound at these
           moments; 1 at points that slip.
 

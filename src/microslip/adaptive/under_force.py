@@ -1,7 +1,7 @@
 """Contact under a constant force: whether it stays at rest, its velocity, or whether it runs away.
 
 Friction never decreases with the velocity (theory/bounds.py).  So the contact comes to rest under
-every force under which it can rest, and a larger force moves it faster.
+every force that allows a state of rest.  A larger force moves the contact faster.
 """
 
 from __future__ import annotations
@@ -20,23 +20,24 @@ from microslip.motions.problem import Problem
 from microslip.theory import paper
 
 RETURNED = 1e-12
-"""Largest ratio of the forward oscillation to the amplitude that is treated as a rounding error."""
+"""A forward oscillation below this fraction of the amplitude is treated as a rounding error."""
 
 CLOSEST_FORCE = 0.9999
-"""Force, divided by mu times the mean normal load, from which on (up to 1) no velocity is computed.
-With a transverse oscillation, runs converged up to 0.9998, where the contact already advances by
-200 amplitudes per period."""
+"""Force divided by mu times the mean normal load.  From this force up to 1, no velocity is
+computed.  With a transverse oscillation, runs converged up to 0.9998, where the contact already
+advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
-"""Largest force on a steady rotation, divided by mu times the mean normal load.  The friction has a
-rounding error of 1.1e-16, which causes a relative error of the velocity of 1.1e-16 / (2 (1 -
-force)).  At this force it equals the stated error of 1e-9."""
+"""Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
+of the friction, 1.1e-16, causes the relative error 1.1e-16 / (2 (1 - force)) in the velocity.  At
+this force it is about the stated error of 1e-9."""
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
 """Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
 FLATTEST = 1e-6
-"""Smallest accepted rise of friction between two runs, divided by the relative rise of velocity."""
+"""Smallest accepted rise of friction between two runs, divided by their relative velocity
+increase."""
 HALVINGS = 2
-"""Number of bisections of the last interval of velocities, on a logarithmic scale."""
+"""Number of bisections of the last velocity interval, on a logarithmic scale."""
 
 
 def drive_of(problem: Problem) -> Drive:
@@ -81,9 +82,9 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    Then the threshold of motion equals the static limit.  The oscillation of several contacts is
-    even if that of each contact is, or if for each contact there is another one that exerts the
-    opposite force.
+    In this case the threshold of motion equals the static limit.  Several contacts exert no forward
+    force if each of them exerts none.  The same is true if each contact has a partner that exerts
+    the opposite force.
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
@@ -120,7 +121,7 @@ def runs_away(problem: Problem) -> str:
 
 
 def refuse_nearly_full(problem: Problem) -> None:
-    """Raise InputError if the force is too close to full friction for a velocity to be computed."""
+    """Raise InputError if the force is too close to full friction to compute a velocity."""
     steady, force = not problem.motion.periodic, force_of(problem)
     closest = CLOSEST_STEADY_FORCE if steady else CLOSEST_FORCE
     if not closest <= abs(force) < 1.0 or runs_away(problem):
@@ -184,8 +185,8 @@ class Near(NamedTuple):
 def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
     """Find the velocity at which the friction equals a force, to within a factor of about two.
 
-    The search for the velocity under the force starts from this velocity.  It also determines the
-    time steps.
+    The search for the velocity under the force starts from this velocity.  This velocity also
+    determines the time steps.
 
     Parameters
     ----------

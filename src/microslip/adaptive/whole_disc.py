@@ -24,8 +24,8 @@ def points_of(contact: PolarContact) -> list[np.ndarray]:
 def whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Forward and lateral components, shape (n, points), of a field (n, 2, M, N) on the whole disc.
 
-    For a rotation the other half is the mirror image across the lateral axis; for a translation it
-    is the first half rotated by 180 degrees.
+    For a rotation, the other half is the mirror image across the lateral axis.  For a translation,
+    it is the first half rotated by 180 degrees.
     """
     flat = field.reshape(len(field), 2, -1)
     if contact.whole:

@@ -1,1 +1,1 @@
-"""Prescribed motions of the contact, one in each file, and the problem that they belong to."""
+"""Prescribed motions of the contact, each in its own file, and the class Problem."""

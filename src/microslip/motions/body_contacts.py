@@ -17,11 +17,12 @@ from microslip.foundation.errors import InputError
 EXAMPLE = "phase=0;phase=180"
 UNITS = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
-"""Largest number of contacts of a body."""
+"""Largest number of contacts on a body."""
 LIGHTEST, HEAVIEST = 1e-3, 1e3
-"""Allowed range of the load of a contact in a text.  Other values are probably typing errors."""
+"""Allowed range of a contact's load in a text.  Other values are probably typing errors."""
 LARGEST_SHARE = 1e3
-"""Largest allowed amplitude of a contact in a text.  Larger values are probably typing errors."""
+"""Largest allowed value of a contact's amplitude in a text.  Larger values are probably typing
+errors."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +34,9 @@ class BodyContact:
     load : float
         Normal load divided by the mean load of the contacts, above 0.
     phase : float
-        Phase lead of the oscillation of this contact relative to that of the motion, in degrees.
+        Phase lead of this contact's oscillation relative to the motion, in degrees.
     amplitude : float
-        Amplitude of the oscillation of this contact divided by that of the motion, at least 0.
+        Amplitude of this contact's oscillation divided by the amplitude of the motion, at least 0.
 
     Raises
     ------
@@ -83,8 +84,8 @@ def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
 
 
 def _numbers(number: int, part: str, text: str) -> dict[str, float]:
-    """Parse `part`, the numbers of one contact in `text`.  Error messages contain the `number` of
-    the contact."""
+    """Parse the numbers of one contact from `part`, a section of `text`.  Error messages contain
+    the contact's `number`."""
     try:
         words = spec.numbers_in(part, text, "contacts", EXAMPLE)
         spec.refuse_unknown(text, "contacts", words, asdict(BodyContact()))

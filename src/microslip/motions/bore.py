@@ -31,6 +31,6 @@ class Bore(Motion):
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Lubkin's stick radius of the oscillation alone (Eq 30).
 
-        The same radius is used for other pressures, for which this grading does no harm.
+        The radius is used for other pressures too, because this grading does no harm there.
         """
         return within_rings(float(paper.bore_stick_radius(amplitude)))

@@ -1,8 +1,8 @@
 """Registry of motions by name.
 
 A motion is a class in a file of the folder `motions`: the class `AMotion` in the file "a_motion.py"
-has the name "a-motion" (see motion.py).  A text such as "file:stroke.csv" stands for a period in a
-data file (see from_file.py).  Closed forms of motions are in theory/exact.py.  No other
+has the name "a-motion" (see motion.py).  A text such as "file:stroke.csv" means that the period is
+read from a data file (see from_file.py).  Closed forms of motions are in theory/exact.py.  No other
 file of the package depends on the name of a motion.
 """
 

@@ -67,8 +67,7 @@ class Force(Drive):
 
 @dataclass(frozen=True)
 class Spring(Drive):
-    """A spring whose far end moves at the velocity of the problem, and the body attached to the
-    spring.
+    """A spring attached to a body.  The far end of the spring moves at the velocity of the problem.
 
     Parameters
     ----------

@@ -107,5 +107,5 @@ class Elliptic(Motion):
         return velocity * phase + ahead, aside, np.zeros_like(phase)
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation with the same largest distance."""
+        """Stick radius of a straight oscillation with the amplitude `amplitude * reach`."""
         return stick_focus(amplitude * self.reach, pressure)

@@ -1,9 +1,9 @@
 """Motions from data files such as "file:stroke.csv", with equally spaced samples of one period.
 
 A CSV file has a heading with some of the columns forward, lateral, angle, and load or indentation,
-and one line for each sample.  The end point of the period, which equals its first point, is left
-out.  Without units, displacements are in u_lim, angles in u_lim / a, and loads and indentations are
-divided by their reference values.  A file with units is for predictions in SI units, see
+and one line for each sample.  The end point of the period is left out, because it equals the first
+point.  Without units, displacements are in u_lim, angles in u_lim / a, and loads and indentations
+are divided by their reference values.  A file with units is for predictions in SI units, see
 si/strokes.py.  ",decimal=comma" and ",encoding=cp1252" after the path describe the format.
 
 A column `time` is used to check that the samples are equally spaced.
@@ -23,14 +23,14 @@ EVEN = 1e-2
 
 
 def table_of(file: NamedFile, content: bytes) -> NumberTable:
-    """The table of a file; see `columns_of`.  Raises ValueError."""
+    """Parse the content of a file; raises ValueError.  See `columns_of`."""
     if file.grid != GRID or file.pitch:
         raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
     return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
 
 
 def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
-    """The table in the content of a file, with at least one of COLUMNS.
+    """Parse the content of a file.  The table has at least one of COLUMNS.
 
     Parameters
     ----------
@@ -71,5 +71,5 @@ def _of_content(file: NamedFile, content: bytes) -> Sampled:
 
 
 read_motion = FileReader("motion", _of_content)
-"""Function that returns the motion of a name such as "file:stroke.csv".  The name of the motion
-contains a digest of the content in place of the path."""
+"""Function that returns the motion for a text such as "file:stroke.csv".  In the motion's own name,
+a digest of the file's content replaces the path."""

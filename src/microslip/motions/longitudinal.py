@@ -30,8 +30,8 @@ class Longitudinal(Motion):
         return stick_focus(amplitude, pressure)
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases at which the velocity v~ + x~ cos t changes its sign; -pi/2, pi/2 and 3 pi/2 if it
-        never does."""
+        """Phases at which v~ + x~ cos t changes its sign; -pi/2, pi/2 and 3 pi/2 without a
+        change."""
         back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
         return -back, back, 2.0 * np.pi - back
 

@@ -32,25 +32,26 @@ class Motion:
     """A prescribed motion.
 
     Each motion is a subclass in its own file.  The fields of the class are the numbers that may
-    follow its name in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this text.  The
-    name is derived from the name of the class: ContinuousBore has the name "continuous-bore".
+    follow the motion's name in a text such as "elliptic:forward=0.5,phase=30"; `str` returns this
+    text.  The motion's name is derived from the class name: ContinuousBore has the name
+    "continuous-bore".
 
     Attributes
     ----------
     summary, numbers : str
         Description of the motion in one line, and description of its numbers.
     velocity_label, amplitude_label : str
-        Formulas of the dimensionless groups.
+        Formulas of the dimensionless velocity and amplitude.
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     rotates : bool
-        Whether the contact rotates.  Tractions then depend on the polar angle.
+        Whether the contact rotates.  For rotations the tractions depend on the polar angle.
     half_period_mirror : bool
         Whether the second half of a period is the image of the first half under lateral ->
         -lateral, angle -> -angle.  If False, a march covers a whole period.
     straight : bool
-        Whether the oscillation alone is along a straight line, with its ends at the phases -pi/2
-        and pi/2.
+        Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
+        pi/2.
     propels : bool
         Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative; see `symmetry.reverses_forward`.
@@ -75,8 +76,8 @@ class Motion:
     loads: ClassVar[bool] = False
     closed_form: ClassVar[Callable | None] = None
     """closed_form(velocity, amplitude, pressure) -> mean friction and dissipated energy per period
-    at nu = 0, or None if no closed form is known for these arguments; velocity 0 is the static
-    limit.  The attribute is None for motions without a closed form."""
+    at nu = 0.  Velocity 0 is the static limit.  The function returns None for arguments without a
+    closed form.  The attribute is None for motions without a closed form."""
 
     @property
     def readings(self) -> tuple[Motion, ...]:
@@ -111,7 +112,7 @@ class Motion:
 
     @property
     def name(self) -> str:
-        """Name of the class with the numbers that differ from their defaults."""
+        """Name of the motion, followed by the numbers that differ from their defaults."""
         return spec.text_of(self)
 
     def __str__(self) -> str:
@@ -124,13 +125,12 @@ class Motion:
         raise NotImplementedError
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Radius at which the traction has a kink, towards which rings are graded; None if there is
-        none."""
+        """Radius of a kink in the traction, towards which rings are graded; None without a kink."""
         return None
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases of the turning points, from the start of a march to its end, which is half a
-        period or a period later."""
+        """Phases of the turning points during a march, including its start and its end.  A march
+        covers half a period or a period."""
         return HALF_PERIOD if self.half_period_mirror else WHOLE_PERIOD
 
     def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:

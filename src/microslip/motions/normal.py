@@ -4,10 +4,11 @@
 
 With the amplitude A, the normal load divided by its reference value is 1 + A load sin(K t).  If
 `indentation` is above 0, the indentation depth divided by its reference value is 1 + A indentation
-sin(K t) instead.  Contact is lost while this value is below 0.  In the plane the displacement is v~
-t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim; the angle is the bore angle of
-the amplitude A B times sin(Q t + P).  P is in degrees.  The units u_lim, a and mu F_z are those of
-the state without oscillation.  Friction is divided by mu times the actual mean load."""
+sin(K t) instead.  Contact is lost while the load or the depth would be below 0.  In the plane the
+displacement is v~ t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim; the angle is
+sin(Q t + P) times the largest angle of a bore with the amplitude A B.  P is in degrees.  The units
+u_lim, a and mu F_z are those of the state without oscillation.  Friction is divided by mu times the
+actual mean load."""
 
 from __future__ import annotations
 
@@ -34,8 +35,8 @@ class Normal(Motion):
         Amplitude of the load or of the indentation, divided by the amplitude of the motion, 0 to 1.
         `load` must keep its default of 1 if `indentation` is above 0.
     lateral, forward, angle : float
-        In-plane amplitudes in units of u_lim, u_lim and phi_lk(a/2), divided by the amplitude of
-        the motion, 0 to 1.
+        In-plane amplitudes divided by the amplitude of the motion, 0 to 1.  The units are u_lim for
+        displacements and phi_lk(a/2) for the angle.
     phase : float
         Phase of the oscillation in the plane, in degrees.
     normal_cycles, lateral_cycles, forward_cycles, angle_cycles : int

@@ -28,10 +28,11 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 SMALLEST_OSCILLATION = 1e-12
-"""A difference of oscillations below this fraction of the amplitude counts as rounding error."""
+"""A difference between oscillations counts as a rounding error if it is below this fraction of the
+amplitude."""
 ROUNDING = 1e-9
-"""Largest accepted deviation of the mean load of several contacts from 1.  Loads in texts have 12
-digits."""
+"""Largest accepted difference between 1 and the mean load of several contacts.  Loads in texts have
+12 digits."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,11 @@ class Problem:
         Contacts that carry the body; empty for a single contact.
     backward : bool
         Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
-        velocity v is then minus that of the original motion at -v.
+        velocity v is then minus the friction of the original motion at -v.
     follows : bool
         Whether the body follows the mean forward oscillation of its contacts, as a massless body
-        under a constant force does.  The mean oscillation is then subtracted from that of each
-        contact.
+        under a constant force does.  The mean oscillation is then subtracted from each contact's
+        oscillation.
 
     Raises
     ------
@@ -117,7 +118,7 @@ class Problem:
         words += [f"contacts={contacts_text(self.contacts)}"] if self.contacts else []
         return " ".join(words)
 
-    # Symmetries of the motion that the pressure has as well
+    # Symmetries that both the motion and the pressure have
 
     @property
     def half_period_mirror(self) -> bool:
@@ -126,7 +127,7 @@ class Problem:
 
     @property
     def straight(self) -> bool:
-        """Whether the oscillation alone is along a straight line, see Motion."""
+        """Whether the oscillation alone follows a straight line, see Motion."""
         return self.motion.straight and not self.follows
 
     @property
@@ -203,7 +204,7 @@ class Problem:
     def mean_speed(self) -> float:
         """Mean speed of the oscillation, as the path length per radian of phase, in u_lim.
 
-        For several contacts it is the mean over their loads.
+        For several contacts it is the mean weighted by their loads.
         """
         if self.contacts:
             return sum(part.share * part.extent * part.problem.mean_speed for part in self.parts)
@@ -212,7 +213,7 @@ class Problem:
 
     @property
     def largest_energy(self) -> float:
-        """Work of full friction on the path of a period, divided by mu F_z u_lim.
+        """Work of full friction along the path of one period, divided by mu F_z u_lim.
 
         It is an upper bound on the dissipated energy.
         """
@@ -222,8 +223,8 @@ class Problem:
 
     @property
     def readings(self) -> tuple[Problem, ...]:
-        """Problems with alternative interpretations of the same data, see `readings` of Motion and
-        Pressure."""
+        """Problems with other interpolations of the same data, see Motion.readings and
+        Pressure.readings."""
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
         return (*motions, *pressures)
@@ -278,8 +279,8 @@ class Problem:
     def is_balanced(self) -> bool:
         """Whether the contacts form pairs such that each pair exerts no mean forward force.
 
-        The oscillation of each contact is then the reverse of that of its partner: the oscillation
-        changes its sign after half a period, and phases in a pair differ by half a period.
+        The oscillation changes its sign after half a period, and the phases in a pair differ by
+        half a period.  So the oscillations of both contacts in a pair are opposite.
         """
         there = self.motion.displacement(LOOP + np.pi, 0.0, self.size, self.poisson)
         here = self.motion.displacement(LOOP, 0.0, self.size, self.poisson)
@@ -300,11 +301,11 @@ class Part:
     problem : Problem
         Problem of the single contact, in the units of this contact.
     share : float
-        Fraction of the load of the body that the contact carries when nothing oscillates.
+        Fraction of the body's load that the contact carries without oscillation.
     extent : float
         u_lim of the contact divided by u_lim of the body.
     lead : float
-        Phase lead of the oscillation of the contact, in radians.
+        Phase lead of the contact's oscillation, in radians.
     """
 
     problem: Problem
@@ -355,8 +356,8 @@ def _part(body: Problem, one: BodyContact) -> Part:
 
 
 def contacts_refusal(problem: Problem) -> str:
-    """Return a text with the allowed contacts if these contacts cannot be combined with the motion
-    or the pressure, otherwise ""."""
+    """Return a message if the contacts cannot be combined with the motion or the pressure,
+    otherwise "".  The message describes the allowed contacts."""
     motion = problem.motion
     if not motion.periodic:
         return f"allowed is none: {motion.name} does not oscillate"

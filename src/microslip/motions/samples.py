@@ -67,7 +67,7 @@ class _Samples(Motion):
 
 @dataclass(frozen=True, eq=False)
 class SampledPath(_Samples):
-    """A motion through a sequence of rows, which does not repeat.  The phase is the row number."""
+    """A motion through a sequence of rows, without repetition.  The phase is the row number."""
 
     periodic = False
     summary = "a path through rows"
@@ -108,10 +108,9 @@ class SampledPath(_Samples):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Largest displacement of any point of the contact between consecutive rows, in u_lim,
-        (rows - 1,).
+        """Largest displacement of a contact point from row to row, in u_lim, shape (rows - 1,).
 
-        A change of the indentation counts as the corresponding change of the local u_lim.
+        A change of the indentation counts as a displacement by the change of the local u_lim.
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
         out = np.hypot(forward, lateral) + angle
@@ -186,7 +185,7 @@ class Sampled(_Samples):
 
     @cached_property
     def _loop(self) -> np.ndarray:
-        """Displacements at the phases LOOP, for A = 1, (phases, 3)."""
+        """Displacements at the phases LOOP for A = 1, shape (phases, 3)."""
         return self._plane(LOOP)
 
     @property
@@ -199,8 +198,8 @@ class Sampled(_Samples):
         return (Sampled(self.rows[::2], height, self.by_load, text),)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
-        """Whether half a period later the forward, lateral and angular displacements are multiplied
-        by these signs and the load is equal."""
+        """Whether half a period multiplies the forward, lateral and angular displacements by these
+        signs and leaves the load unchanged."""
         if len(self.rows) % 2:
             return False
         plane = self.rows - self.rows.mean(axis=0)
@@ -224,7 +223,7 @@ class Sampled(_Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Largest root-mean-square number of cycles in a period among the columns."""
+        """Root-mean-square number of cycles in a period; the largest value of all columns."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
@@ -240,9 +239,8 @@ class Sampled(_Samples):
         return velocity * phase + forward, lateral, angle
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation with the same largest distance.  Under an
-        oscillating load: radius of the area that never loses contact, divided by the largest
-        radius."""
+        """Stick radius of a straight oscillation with the same largest distance from the centre.
+        Under an oscillating load, the smallest contact radius divided by the largest."""
         if self.loads:
             least, most = self._extremes(amplitude, pressure)
             return within_rings(float(pressure.radius(least) / pressure.radius(most)))
@@ -275,14 +273,14 @@ class Sampled(_Samples):
 
 
 FEWEST_SAMPLES = 4
-"""Smallest number of rows of a period, also for the motion through every second row."""
+"""Smallest number of rows in a period.  It also applies to the motion through every second row."""
 ROUNDING = 1e-9
 """Largest deviation of samples from a symmetry, divided by the largest sample."""
 
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:
-    """Index of the time that is farthest from equal spacing; None if it is within `most` spacings,
-    and the times increase."""
+    """Index of the time that is farthest from equal spacing.  It is None if the times increase and
+    all deviate by at most `most` spacings."""
     even = np.linspace(time[0], time[-1], len(time))
     distance = np.abs(time - even)
     step = (time[-1] - time[0]) / max(len(time) - 1, 1)
@@ -299,8 +297,8 @@ def _spline(values: np.ndarray) -> CubicSpline:
 
 
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
-    """Return displacements (rows, 3), the load or indentation (rows,) or None, and whether a load
-    is given."""
+    """Return three values: displacements (rows, 3), the load or indentation (rows,) or None, and
+    whether it is a load."""
     arrays = {name: _column(name, one) for name, one in columns.items() if one is not None}
     if not arrays:
         raise InputError("forward", None, "allowed is a displacement for every row")

@@ -2,9 +2,9 @@
 
     transverse-bore:lateral=L,angle=B,phase=P
 
-With the amplitude A, the lateral displacement is A L sin(t), and the angle is the bore angle of the
-amplitude A B times sin(t + P), with P in degrees.  B = 0 gives the transverse motion.  L = 0 gives
-the bore, except that the velocity is divided by omega u_lim.
+With the amplitude A, the lateral displacement is A L sin(t).  The angle is sin(t + P) times the
+largest angle of a bore with the amplitude A B; P is in degrees.  B = 0 gives the transverse motion.
+L = 0 gives the bore, except that the velocity is divided by omega u_lim.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from microslip.theory import hertz, paper
 
 @dataclass(frozen=True)
 class TransverseBore(Motion):
-    """Sliding forward while oscillating sideways and in rotation.
+    """Sliding forward with a lateral oscillation and an oscillating rotation.
 
     Parameters
     ----------
     lateral, angle : float
-        Amplitudes in units of u_lim and phi_lk(a/2), divided by the amplitude of the motion, 0 to
-        1.
+        Amplitudes divided by the amplitude of the motion, 0 to 1.  The unit of `lateral` is u_lim,
+        and the unit of `angle` is phi_lk(a/2).
     phase : float
         Phase of the rotation, in degrees.
 

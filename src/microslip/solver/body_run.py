@@ -14,7 +14,7 @@ from microslip.solver.run import AS_SHIPPED, Run, Settings
 from microslip.solver.simulate import simulate
 
 LEAD_STEPS = 8
-"""Number of steps in the march of a contact to the start of the path of the body."""
+"""Number of time steps before the path of the body begins."""
 LEAD_TOLERANCE = 1e-6
 """Tolerance of each of these steps, as a force divided by mu F_z."""
 
@@ -30,8 +30,8 @@ def simulate_each(
 
     The arguments are those of simulate.simulate.  The forces on a body are the mean forces on its
     contacts, weighted by their loads.  The state of a body consists of the tractions of all
-    contacts side by side at the start of the path of the body.  It is None if a contact has no
-    state.
+    contacts, side by side, at the start of the body's path.  The state is None if one contact has
+    no state.
     """
     if not problem.parts:
         return simulate(problem, model, resolution, tolerance, settings=settings)
@@ -75,10 +75,9 @@ def _tractions_at_start(
     resolution: Resolution,
     result: tuple[Run, Settings],
 ) -> np.ndarray:
-    """Tractions of a contact at the start of the path of the body.
+    """Tractions of a contact at the start of the body's path.
 
-    `result` is the contact's own run, which contains its periodic state, and the settings of the
-    run.
+    `result` contains the contact's own run, with its periodic state, and the settings of this run.
     """
     run, settings = result
     alone = part.problem

@@ -1,8 +1,8 @@
 """Budget of a point: limits on its work and its wall-clock time.
 
 Both limits are checked after every march, so that they also end long searches.  The limit on the
-work gives the same result on every machine.  The time limit does not, so a result that reached it
-is not stored.
+work gives the same result on every machine.  The time limit depends on the machine, so a result
+that reached the time limit is not stored.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Budget:
         self._began = time.monotonic()
 
     def renewed(self) -> Budget:
-        """A new Budget with the same limits and no effort, whose time started with this one."""
+        """A new Budget with the same limits and start time, but without effort."""
         other = Budget(self.most_work, self.time_limit)
         other._began = self._began
         return other
@@ -88,7 +88,7 @@ class _Metered:
         return self._counted(self._contact.march(*path, **settings))
 
     def affordable(self, work: float) -> float:
-        """Number of marches with a given `work` before the budget has to be checked."""
+        """Number of marches, each with `work`, before the budget has to be checked."""
         budget = self._budget
         if budget.time_limit < math.inf:
             return 1

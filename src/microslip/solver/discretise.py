@@ -52,13 +52,14 @@ class Resolution:
 
 
 def focus_strength(drift: float) -> float:
-    """Strength of the grading of rings towards the stick radius.
+    """Strength of the ring grading towards the stick radius.
 
     `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 
     At the stick radius, slip as small as the drift fills a layer of width drift^(2/3).  Ring widths
-    grow quadratically from there, so the ratio of the smallest to the mean width should be the
-    square root of this width.  The ratio is rounded to a power of two, so that points share meshes.
+    grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring width
+    should be the square root of the layer's width.  The ratio is rounded to a power of two, so that
+    points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS
@@ -139,7 +140,7 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
     Parameters
     ----------
     problem : Problem
-        The motion.
+        The problem.
     contact : Contact
         The contact.  If its `grading` is not None, it replaces the grading of the problem.
     steps : int
@@ -186,7 +187,7 @@ def _beside(problem: Problem, part: Part) -> Callable:
 
 
 def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
-    """Mean forward oscillation of the contacts, weighted by their stiffness."""
+    """Mean of the contacts' forward oscillations, weighted by the contacts' stiffness."""
     stiff = np.array([part.share / part.extent for part in problem.parts])
     ahead = np.array([part.oscillation(phase)[0] for part in problem.parts])
     return np.tensordot(stiff / stiff.sum(), ahead, axes=1)

@@ -10,10 +10,10 @@ The state is a one-dimensional array.  It contains the tractions and, for bodies
 the state after half a period does not change x and x'.
 
 During one period unbalanced forces hardly move a heavy body, and the force of a soft spring hardly
-changes.  So the map multiplies the changes of x and x', as if the body were no heavier and the
-spring no softer than the contact.  The fixed point of the map stays the same.  A contact in full
-slip is much more compliant than a sticking contact.  Its stiffness is the rise of its mean force
-with the displacement.
+changes.  So the map scales up the changes of x and x', as for a stiffer spring and a lighter body
+that match the stiffness of the contact.  The fixed point of the map stays the same.  A contact in
+full slip is much more compliant than a sticking contact.  Its stiffness is the rise of the mean
+force with the displacement.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ LOOSEST_START = 1e-4
 """Largest tolerance of the state at a prescribed velocity, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """A run with at least PREPARED_FROM steps starts from a run with COARSENING times fewer steps.
-Runs with fewer steps are cheap and start directly; a tolerance of 1e-3 needs no more."""
+Runs with fewer steps are cheap and start directly; a tolerance of 1e-3 needs no more steps."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
 
 CAUTION = 0.3
 """Largest ratio of the effective stiffness of a soft spring to that of the contact.  With a larger
-ratio the search would overshoot."""
+ratio, the search would overshoot."""
 
 
 class Accuracy(NamedTuple):
@@ -85,8 +85,8 @@ def simulate_driven(
     Parameters
     ----------
     problem : problem.Problem
-        The problem with a drive.  Its velocity is that of the far end of the spring.  Under a
-        prescribed force it is an initial guess.
+        The problem with a drive.  The problem's velocity is that of the spring's far end.  Under a
+        prescribed force the velocity is an initial guess.
     model : str
         Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -139,9 +139,9 @@ class _DrivenSearch:
 
     @property
     def force_of_answer(self) -> float:
-        """Force, divided by mu F_z, that corresponds to an error of 1 in the answer.
+        """Force, divided by mu F_z, that corresponds to an error of 1 in the result.
 
-        For a spring the answer is a force.  For a prescribed force the answer is a velocity, and
+        For a spring the result is a force.  For a prescribed force the result is a velocity, and
         there are two estimates.  The first divides the force by the stiffness and by the length of
         the interval.  The second divides the unbalanced force by the rise of friction with the
         velocity.  The smaller force is used.
@@ -181,7 +181,7 @@ class _DrivenSearch:
     def _starts(
         self, tolerance: float, guess: Run | None
     ) -> Iterator[tuple[np.ndarray, float, float]]:
-        """Initial states, best first, each with the force of the static limit and a friction."""
+        """Initial states, best first, each with the static limit's force and a friction value."""
         if guess is not None and guess.state is not None and guess.converged:
             yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:
@@ -206,12 +206,12 @@ class _DrivenSearch:
         return run
 
     def _at_prescribed_velocity(self, tolerance: float) -> Run:
-        """The Run with the velocity of the problem as a prescribed velocity."""
+        """The Run without a drive, at the prescribed velocity of the problem."""
         share = max(tolerance, LOOSEST_START) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
-        """State with given tractions, whose mean force over a period is about `mean`."""
+        """Build a state from tractions; over a period they have a mean force of about `mean`."""
         if self.drive.force is not None:
             force = self.drive.force * self.problem.mean_load
             if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
@@ -246,7 +246,7 @@ class _DrivenSearch:
 
 
 class DrivenMap(PeriodMap):
-    """The map of the state of a contact and a body over a path; see period_map.PeriodMap.
+    """Map of a state (contact and body) over a path; see period_map.PeriodMap.
 
     Parameters
     ----------
@@ -257,11 +257,11 @@ class DrivenMap(PeriodMap):
     body : driven_body.Body
         The body and its drive.
     drift_rate : period_map.DriftRate or None
-        Drift rate, for motions that can be slow and have a known velocity.
+        Drift rate, for motions that have a known velocity and can be slow.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     slope : float
-        Largest rise of the mean forward force when the body advances by one unit of x per interval.
+        Largest rise of the mean forward force if the body advances by one unit of x per interval.
     """
 
     contact: SystemContact
@@ -300,7 +300,7 @@ class DrivenMap(PeriodMap):
         return np.append(flat, place_and_rate) if self.body.remembers else flat
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Split a state into tractions and (x, x'), which are 0 for a body without memory."""
+        """Split a state into tractions and (x, x'), or (0, 0) for a body without memory."""
         place_and_rate = state[self._points :] if self.body.remembers else np.zeros(2)
         return state[: self._points].reshape(self._shape), place_and_rate
 

@@ -19,7 +19,7 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     """Mean forces over a march, shape (3,).  `forces` are the forces at the phases of the path."""
     if problem.depth is None:
         return path.mean(forces)
-    # the trapezoidal rule integrates only the difference from full slip, whose mean is exact
+    # the mean of full slip is exact, so the trapezoidal rule integrates only the difference
     growing = cast(GrowingContact, contact)  # because the load oscillates
     bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
@@ -29,9 +29,9 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
 def dissipated_energy(contact: Contact, path: Path, periodic: PeriodicState) -> float:
     """Energy that friction dissipates in a period, divided by mu F_z u_lim.
 
-    The elastic energy is the same at both ends of a period, and an oscillating normal load does no
-    net work, since it is a function of the indentation.  So the dissipated energy is the work of
-    the tangential forces on the rigid displacements of the contacts.
+    The elastic energy is the same at both ends of a period.  An oscillating normal load does no net
+    work, because the load is a function of the indentation.  So the dissipated energy is the work
+    of the tangential forces on the rigid displacements of the contacts.
 
     Parameters
     ----------

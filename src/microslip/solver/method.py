@@ -1,8 +1,8 @@
 """A numerical method: integrator, step solver and search for the periodic state.
 
 SHIPPED is the default method of `microslip.solve`.  The package `methods` contains others for
-comparison.  Each of them replaces the integrator, the step solver, the search, or its initial
-state.
+comparison.  Each of them replaces the integrator, the step solver, the search, or the search's
+initial state.
 """
 
 from __future__ import annotations

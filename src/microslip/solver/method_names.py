@@ -1,10 +1,10 @@
 """Names of the methods that can be compared with the shipped one; each method is one file.
 
-The file `some_name.py` in the folder `methods` defines METHOD, a `method.Method`.  Its name is
-`some-name` in `microslip.solve` and in configurations.  Files whose names start with an underscore
-contain shared code.  The name of a method can be followed by parameters, for example
+The file `some_name.py` in the folder `methods` defines METHOD, a `method.Method`.  The method's
+name is `some-name` in `microslip.solve` and in configurations.  Files whose names start with an
+underscore contain shared code.  The name of a method can be followed by parameters, for example
 "admm:penalty=0.1,relaxation=1.5".  A method can require a package that microslip does not depend
-on; studies omit the method if the package is not installed.
+on.  Studies omit the method if that package is not installed.
 
 Listing and checking names does not import the solver.
 """
@@ -41,7 +41,7 @@ def names() -> tuple[str, ...]:
 
 @cache
 def _parsed(name: str) -> ast.Module | str | None:
-    """Syntax tree of a method's file, the error message if parsing fails, or None without a
+    """Syntax tree of a method's file, the error message if parsing fails, or None if there is no
     file."""
     file = METHODS / f"{name.replace('-', '_')}.py"
     try:
@@ -70,7 +70,8 @@ def check(text: str) -> None:
 
 
 def missing(text: str) -> str:
-    """Message that a package required by a method is not installed; empty if the method can run.
+    """Error message if a package required by a method is not installed; empty if the method can
+    run.
 
     Neither the solver nor the package is imported.  Raises InputError as `split` does.
     """
@@ -100,9 +101,10 @@ def method_named(text: str) -> Method:
 
 @cache
 def declared(name: str, field: str) -> Any:
-    """Value of a field of METHOD, read from the file of a method without running it.
+    """Read the value of a METHOD field from a method's file, without running the file.
 
-    Returns None if the field is not set.  `name` has no parameters.  The value must be a literal.
+    Returns None if the field is not set.  `name` must not contain parameters.  The value must be a
+    literal.
     """
     if name == SHIPPED:
         return None

@@ -1,4 +1,5 @@
-"""Map of tractions over a (half) period, and goal and result of the search for its fixed point."""
+"""The map of tractions over a (half) period, and the search for its fixed point: goal and
+result."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from microslip.states.search import Inertia
 
 MOST_MARCHES = 200
-"""Default of the largest number of marches in a search."""
+"""Default limit on the number of marches in a search."""
 
 
 class Goal(NamedTuple):
@@ -62,7 +63,7 @@ class PeriodicState:
     body : np.ndarray or None, shape (steps + 1, 2)
         x and x' of a driven body at the phases of the last (half) period; None without a drive.
     fields : np.ndarray or None
-        contact.March.fields of the last (half) period, used as initial guess of a march from
+        contact.March.fields of the last (half) period, used as the initial guess for a march from
         `start`.
     """
 
@@ -97,8 +98,8 @@ class DriftRate:
     gain : float
         Rise of the force in a (half) period for a contact without slip.
     least : float
-        Mean forward force below which a state sticks and changes slowly, roughly the static limit.
-        NaN means that `static_force` is used.
+        Mean forward force below which a state sticks and changes slowly.  It is about the static
+        limit.  NaN means that `static_force` is used.
     """
 
     static_force: float
@@ -115,8 +116,8 @@ class PeriodMap:
     contact : contact.Contact
         The contact.
     path : path.Path
-        Path.  With `mirror` it covers half a period, from turning point to turning point, otherwise
-        a whole period.
+        Path over half a period, from turning point to turning point.  Without `mirror` the path
+        covers a whole period.
     drift_rate : DriftRate or None
         Data for slow motions, or None if the motion is not slow.
     mirror : bool
@@ -129,18 +130,19 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
 
     def image(self, state: np.ndarray) -> np.ndarray:
-        """Tractions at the start of the next interval, from those at the end of an interval.
+        """Convert the tractions at the end of an interval to those at the start of the next
+        interval.
 
         The map is linear.
         """
         return self.contact.mirrored(state) if self.mirror else state
 
     def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Split a state into its tractions and (x, x') of a driven body, which are 0 here."""
+        """Split a state into tractions and (x, x') of a driven body; here (x, x') is (0, 0)."""
         return state, np.zeros(2)
 
     def state(self, tractions: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """State with given tractions.  `place` is (x, x') of a driven body and is not used here."""
+        """Build a state from tractions.  `place`, (x, x') of a driven body, is not used here."""
         return tractions
 
     def inertia(self) -> Inertia | None:

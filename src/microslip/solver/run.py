@@ -42,8 +42,7 @@ class Settings:
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
-        """Build the contact of a problem with the method's step solver.  Its marches are
-        counted."""
+        """Build a contact with the method's step solver.  The contact counts its marches."""
         contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
@@ -55,7 +54,7 @@ AS_SHIPPED = Settings()
 class Run:
     """Result of one run: forces divided by their full-slip values, and the effort.
 
-    If the normal load oscillates, forces are divided by mu times its mean.
+    If the normal load oscillates, forces are divided by mu times the mean load.
 
     Attributes
     ----------
@@ -66,7 +65,7 @@ class Run:
     solver_residual : float
         Residual of the step solver summed over the last period, as a force divided by mu F_z.
     periods : float
-        Number of full periods marched in search of the periodic state; 0 for a steady motion.
+        Number of full periods marched in the search for the periodic state; 0 for a steady motion.
     effort : Effort
         Effort of all searches.
     converged : bool
@@ -99,7 +98,7 @@ class Run:
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
-    """Reason why the stages are not solved to their tolerance; empty if they are.
+    """Reason why the stages are not solved to their tolerance, otherwise empty.
 
     Parameters
     ----------

@@ -25,19 +25,20 @@ from microslip.solver.period_map import PeriodMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
-"""Number of (half) periods before the first check for rest, and largest number of them."""
+"""Number of (half) periods before the first check for rest, and largest number of (half)
+periods."""
 LOOKS = 1.5, 4.0 / 3.0
-"""Factors by which the number of (half) periods grows from check to check, used alternately.  They
-keep this number a multiple of four."""
+"""Factors by which the number of (half) periods grows from check to check, used alternately.  The
+factors keep this number a multiple of four."""
 STEP_SHARE = 1e-4
 """Ratio of the tolerance of a step (as a force divided by mu F_z) to the tolerance of the
 displacement (in u_lim)."""
 SLOWEST_RATIO = 0.9
-"""Largest ratio of the displacements in two successive doublings of the number of periods at which
-the remaining displacement is extrapolated."""
+"""Let r be the ratio of the displacements in two successive doublings of the number of periods.
+The remaining displacement is extrapolated only if r is at most this value."""
 LONG, DRIFTING = 200, 1.8
-"""After LONG (half) periods, a ratio above DRIFTING means that the contact keeps drifting; a steady
-drift has the ratio 2.  On a coarse mesh the threshold can be below the force."""
+"""After LONG (half) periods, a ratio r above DRIFTING means that the contact keeps drifting; a
+steady drift has r = 2.  On a coarse mesh the force can exceed the threshold."""
 MOST_SHARE = 0.9
 """`most_after` is the number of periods after which the oscillation has caused this fraction of the
 displacement."""
@@ -116,7 +117,7 @@ class _Walk:
         self.residual, self.iterations, self.solves = 0.0, 0, 0
 
     def to_rest(self, tolerance: float) -> ShakedownRun:
-        """March to rest; `tolerance` is that of the remaining displacement."""
+        """March to rest; `tolerance` refers to the remaining displacement."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
         still, pushed = self._march(self._still(), state, step_tolerance)
@@ -163,7 +164,8 @@ class _Walk:
     def _first_part(self) -> tuple[Path, int]:
         """Path from the mean position to the start of an interval of the map.
 
-        Also returns the number of mirror images between the first interval and that start.
+        Also returns the number of intervals by which this start was postponed.  The state is
+        mirrored once for each of them.
         """
         end, images = self.map.path.phase[0], 0
         while end <= 0.0:

@@ -29,26 +29,26 @@ from microslip.solver.static_loop import SLOW_LOOP, loop_limit
 from microslip.solver.steady import steady_state
 
 STEP_SHARE = 1e-2
-"""Largest ratio of the tolerance of a step to that of the periodic state."""
+"""Largest ratio of the step tolerance to the tolerance of the periodic state."""
 SLOW_STEP_SHARE = 3e-4
-"""Smallest ratio of the tolerance of a step to that of the periodic state.  The slower the motion,
-the longer its transients, and the more the errors of the steps accumulate."""
+"""Smallest ratio of the step tolerance to the tolerance of the periodic state.  The slower the
+motion, the longer its transients, and the more the errors of the steps accumulate."""
 TIGHTER = 0.1
-"""Smallest ratio of the tolerance of a step in a second attempt to that in the first attempt."""
+"""Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
 MARCH_SHARE = 0.16
-"""Largest ratio of the tolerance of a step, times the number of steps in half a period, to the
-tolerance of the periodic state.  With two stages per step the residuals add up to a third of the
+"""Largest product of the step tolerance and the number of steps in half a period, divided by the
+tolerance of the periodic state.  With two stages per step, the residuals add up to a third of the
 tolerance."""
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """Forward traction, divided by the friction bound, that is added to the static limit at the start
 of a search: SLOW_EXCESS times drift^(2/3), at most LARGEST_EXCESS.  Friction rises with the same
-power of the drift.  So the start has too much forward traction, from which an accelerated search
-converges faster."""
+power of the drift.  So the search starts with too much forward traction, which makes an accelerated
+search converge faster."""
 
 MARCHES_FROM_COARSER = 50
-"""Largest number of marches in a search that starts from interpolated tractions.  If it needs more,
-a search from the usual start is faster."""
+"""Largest number of marches in a search that starts from interpolated tractions.  If more are
+needed, a search from the usual start is faster."""
 
 
 def simulate(
@@ -123,7 +123,7 @@ def _run(
 
 
 def step_share(force_rate: float, steps: int, tighter: bool) -> float:
-    """Ratio of the tolerance of a step to that of the periodic state.
+    """Ratio of the step tolerance to the tolerance of the periodic state.
 
     `force_rate` is the rise of the force per radian of phase, divided by mu F_z, for a contact
     without slip.
@@ -134,7 +134,7 @@ def step_share(force_rate: float, steps: int, tighter: bool) -> float:
 
 
 def _extrapolated(fine: Run, coarse: Run) -> Run:
-    """Extrapolate two first-order runs, of which the coarse one has half as many steps."""
+    """Extrapolate from two first-order runs; `coarse` has half as many steps as `fine`."""
     return replace(
         fine,
         mu=2.0 * fine.mu - coarse.mu,
@@ -173,7 +173,7 @@ class _Search:
         self.searches: list[PeriodicState] = []
 
     def run(self, guess: Run | None = None) -> Run:
-        """Run the search; `guess`: see simulate."""
+        """Run the search.  For `guess` see `simulate`."""
         start, converged = self._start_from(guess), False
         if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
@@ -191,7 +191,7 @@ class _Search:
         )
 
     def _start_from(self, guess: Run | None) -> np.ndarray | None:
-        """Tractions of a guess at the points of this contact, or None if they are not usable."""
+        """Tractions of a guess at this contact's points, or None if the guess is not usable."""
         if guess is None or guess.state is None or not guess.converged:
             return None
         if guess.state.shape == (2, *self.contact.forward_position.shape):
@@ -206,7 +206,7 @@ class _Search:
         self._find(slipping)
 
     def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
-        """Tractions of the static limit plus forward tractions, or of full slip if no point sticks.
+        """Tractions of the static limit plus forward tractions, or full slip if no point sticks.
 
         The force at the static limit is stored in `drift_rate`.
         """
@@ -231,7 +231,7 @@ class _Search:
         """Tractions of the static limit, computed with reduced accuracy.
 
         The rise of friction above the limit determines the accuracy.  Because of the reduced
-        accuracy, the force of the limit only sets `least`.
+        accuracy, the limit's force only sets `least`.
         """
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.steps, self.method.integrator)

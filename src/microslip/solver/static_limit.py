@@ -1,9 +1,9 @@
 """The static limit: friction of a forward motion that is infinitely slow.
 
-Let +-q_osc be the tractions at the two turning points of the oscillation alone, minus their mean,
-and R the constant part of the traction at a point.  As the forward velocity vanishes, every point
-slips forward a little in each period, when |R + q_osc| reaches the friction bound g.  Such a slow
-drift does not change q_osc, and by the flow rule R solves the problem
+Let +-q_osc be the tractions of the oscillation alone at its two turning points, after subtracting
+their mean.  Let R be the constant part of the traction at a point.  As the forward velocity
+vanishes, every point slips forward a little in each period, when |R + q_osc| reaches the friction
+bound g.  Such a slow drift does not change q_osc, and by the flow rule R solves the problem
 
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point.
 
@@ -105,7 +105,7 @@ def loop_energy(
 ) -> float:
     """Energy that an oscillation on a line dissipates in a period, divided by mu F_z u_lim.
 
-    A point that slips does so in a constant direction.  By Masing's rule it slips twice as far
+    Each slipping point slips in a constant direction.  By Masing's rule, it slips twice as far
     between the turning points as in the first loading.  So the energy is four times the friction
     bound times the slip of the first loading, summed over the points.
 
@@ -117,7 +117,7 @@ def loop_energy(
         Rigid displacement at a phase, as in `static_state`.
     oscillating : np.ndarray or None
         Tractions of the oscillation at the first turning point, see StaticState.  None for a
-        contact that never sticks, which computes them directly.
+        contact that never sticks; the tractions are then computed directly.
     """
     if oscillating is None:
         path = make_path(oscillation, np.pi * np.array([-0.5, 0.5, 1.5]), EULER)

@@ -51,10 +51,10 @@ class LoopLimit(NamedTuple):
     force : float
         Mean forward force, divided by mu F_z.
     solver_residual : float
-        Residual of the steps as a force divided by mu F_z.  It is summed over the last march of the
-        search and the march that computes the tractions.
+        Residual of the step solver, as a force divided by mu F_z.  It is summed over two marches:
+        the last march of the search and the march that computes the tractions.
     solves : int
-        Number of stages in the two marches over which `solver_residual` is summed.
+        Number of stages in these two marches.
     """
 
     periodic: PeriodicState
@@ -138,8 +138,7 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift lies in the discs of all phases, and bounds of the lateral
-        shift."""
+        """Whether a forward shift lies in all phases' discs, and bounds on the lateral shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

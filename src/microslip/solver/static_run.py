@@ -20,20 +20,21 @@ from microslip.solver.static_limit import at_turning_points, loop_energy, static
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""Ratio of the error of the limit to the distance from the periodic state of the oscillation alone.
-Tests found at most 3.  Slipping points are on the bound after every step, so their shift is 0."""
+"""Error of the limit divided by the distance from the periodic state of the oscillation alone.  In
+tests this ratio was at most 3.  Slipping points are on the bound after every step, so their shift
+is 0."""
 LOOP_STEP_SHARE = 1e-4
-"""Ratio of the tolerance of a step to that of the periodic state.  The shift of a point depends on
-the square root of the distance of its traction from the bound."""
+"""Ratio of the step tolerance to the tolerance of the periodic state.  The shift of a point depends
+on the square root of the distance of its traction from the bound."""
 ENOUGH = 4.0
-"""Largest accepted ratio of the distance to the requested one; rounding limits the search."""
+"""Largest accepted ratio of the distance to the requested distance; rounding limits the search."""
 MOST_PASSES = 4
 """Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
 """Largest number of edges of the stick zone.  More edges are treated as scatter."""
 SLIVER = 1e-3
-"""Largest distance between two edges that is treated as scatter, divided by the contact radius.  If
-there is little slip, the shift of the rings on either side of an edge is almost 0."""
+"""Two edges closer than this fraction of the contact radius are treated as scatter.  If there is
+little slip, the shift is almost 0 in the rings on either side of an edge."""
 LARGEST_SHIFT = 1e-2
 """Largest shift of a ring outside the stick radius, divided by the largest friction bound."""
 
@@ -99,12 +100,12 @@ def edges_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Find the edges of the stick zone of a motion on a loop, for which there is no formula.
+    """Find the edges of the stick zone for a motion on a loop by runs, since there is no formula.
 
-    The arguments are those of `simulate_static`, and `progress`, which is called with the
-    Resolution of every run before it starts.  Returns the Runs, the last of which is the result,
-    and the radii of the edges.  There are no radii if the whole contact sticks or slips, or if the
-    contact has no rings.
+    The arguments are those of `simulate_static`.  In addition, `progress` is called with every
+    run's Resolution before the run starts.  Returns the Runs and the radii of the edges; the last
+    Run is the result.  There are no radii if the whole contact sticks or slips, or if the contact
+    has no rings.
     """
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
@@ -126,9 +127,11 @@ def edges_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Radii of the edges of the stick zone of a motion on a line, from its turning points.
+    """Find the edges of the stick zone for a motion on a line, using the tractions at its turning
+    points.
 
-    The arguments are those of `edges_on_a_loop`, and `near`: approximate radii, empty if unknown.
+    The arguments are those of `edges_on_a_loop`.  In addition, `near` contains approximate radii;
+    it is empty if they are unknown.  Returns the radii of the edges.
     """
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
@@ -151,11 +154,11 @@ def _edges(
     *,
     radii: tuple[float, ...] = (),
 ) -> tuple[float, ...]:
-    """Radii of the edges of the stick zone on rings that are graded towards them.
+    """Find the radii of the stick zone's edges, on rings graded towards these edges.
 
     Repeats the run on new rings until the radii stay the same, or at most MOST_PASSES times.
-    `points_that_stick(contact)` returns a mask of the sticking points, or None if it is unknown.
-    `radii` are the edges for the first grading.
+    `points_that_stick(contact)` returns a mask of the sticking points, or None if the mask is
+    unknown.  `radii` are the edges for the first grading.
     """
     for _ in range(MOST_PASSES):
         if progress is not None:
@@ -171,8 +174,8 @@ def _edges(
 def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ...]:
     """Radii between rings that stick and rings that slip; a ring sticks if most of its points do.
 
-    Returns only the outermost radius if there are more than MOST_EDGES, and no radius if `sticks`
-    is None.
+    Returns only the outermost radius if there are more than MOST_EDGES radii, and no radius if
+    `sticks` is None.
     """
     edges = contact.edges
     if sticks is None or edges is None:
@@ -183,7 +186,7 @@ def _stick_radii(contact: Contact, sticks: np.ndarray | None) -> tuple[float, ..
 
 
 def _without_slivers(radii: list[float]) -> list[float]:
-    """Ascending radii without the pairs that are closer than SLIVER."""
+    """Remove pairs closer than SLIVER from ascending radii."""
     while len(radii) > 1:
         closest = int(np.argmin(np.diff(radii)))
         if radii[closest + 1] - radii[closest] > SLIVER:

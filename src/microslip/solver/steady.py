@@ -11,7 +11,7 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 STEADY_STRETCH = 8
-"""Number of steps in a stretch, after which the state is checked."""
+"""Number of steps in a stretch.  The state is checked after each stretch."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200

@@ -1,7 +1,7 @@
-"""Radius of the slip front of slow motions, computed by a coarse run of the static limit.
+"""Radius of the slip front in slow motions, computed by a coarse run of the static limit.
 
-The run is needed for pressures without a closed form.  For rotating indenters the radius is also
-the root of an integral (indenters.torsion_stick_radius); a test compares the two results."""
+The run is needed for pressures without a closed form.  For rotating indenters, the radius is also
+the root of an integral (indenters.torsion_stick_radius); a test compares both results."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load the
 edge of the contact moves across the rings, so more steps are needed."""
 LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
-"""Resolutions of the search for motions on a line.  It needs no march, so that many rings are
+"""Resolutions of the search for motions on a line.  This search needs no march, so many rings are
 cheap.  If the edges are accurate to 5e-4 of the radius, the static limit of a translation is
 accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
@@ -42,7 +42,7 @@ def edge_focus(
     budget: Budget | None = None,
     progress: Callable | None = None,
 ) -> Focus | None:
-    """Grading of the rings of a slow motion towards the stick zone of the static limit.
+    """Grading of the rings for a slow motion, towards the edges of the static limit's stick zone.
 
     The stick zone of a circular motion is smaller than that of a linear motion of the same
     amplitude, since the slip never stops.  The stick zone of a contact with a hole is a ring with
@@ -55,9 +55,9 @@ def edge_focus(
     model : str
         Name in models.registry.MODELS.
     budget : budget.Budget or None
-        Budget of the runs of the search.  None means unlimited.
+        Budget of the search.  None means unlimited.
     progress : callable or None
-        Called with the Resolution of every run of the search before it starts.
+        Called with the Resolution of every run in the search before the run starts.
 
     Returns
     -------
@@ -87,11 +87,11 @@ def edge_focus(
 
 
 class _EdgeSearch:
-    """A search for the edges of the stick zone of a static limit, done once.
+    """Search for the stick zone's edges in a static limit.  The search is done only once.
 
-    `radii` are the radii of these edges divided by the contact radius, or None before the search.
-    The effort of the search is charged to every point that uses its result.  So the work left for a
-    point does not depend on the points before it.
+    `radii` are the edges' radii divided by the contact radius, or None before the search.  The
+    effort of the search is charged to every point that uses the result.  So the work left for a
+    point does not depend on earlier points.
     """
 
     def __init__(self, limit: Problem):
@@ -130,7 +130,7 @@ class _EdgeSearch:
 
 
 class _Recorder(Budget):
-    """A budget that records the effort that each march takes from another budget."""
+    """A budget that charges each march to another budget and records the effort."""
 
     def __init__(self, budget: Budget):
         super().__init__()

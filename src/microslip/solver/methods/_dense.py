@@ -150,12 +150,12 @@ class DenseContact:
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
-    """Make a `Method.dress` from a step solver: dress(contact, **parameters) -> DenseContact."""
+    """Make a function for Method.dress: `dress(contact, **parameters)` returns a DenseContact."""
     return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 
 def safe_length(matrix: np.ndarray) -> float:
-    """Inverse of the largest eigenvalue, a gradient step length that always lowers the energy."""
+    """Inverse of the largest eigenvalue; gradient steps of this length always lower the energy."""
     return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
 
 
@@ -194,7 +194,7 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel
 def descend(points: Points, stage: Stage, length: np.ndarray) -> tuple[int, float]:
-    """Solve a step by projected gradient steps of fixed `length`, shape (K,), for each point."""
+    """Solve a step by projected gradient steps; `length[k]` is the fixed step length at point k."""
     b, q, slip, tolerance = stage
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

@@ -19,18 +19,19 @@ from microslip.states.search import largest_excess
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two successive changes used in an extrapolation.  Rounding can make it 1."""
 FORCING = 1e-3
-"""Ratio of the tolerance of a step to the last change of the state, far from the periodic state."""
+"""Step tolerance divided by the last change of the state, far from the periodic state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""First tolerance of a step, for an initial state far from and near the periodic state."""
+"""First step tolerance, for an initial state far from the periodic state and for one near it."""
 DEPTH = 12
 """Number of differences in the least-squares problem of Anderson acceleration."""
 NOISE = 0.1
-"""Largest ratio of the residual of the steps to the change of the state.  Above it the march is
-repeated with a smaller tolerance of the steps."""
+"""Largest ratio of the summed step residuals to the change of the state.  Above this ratio the
+march is repeated with a smaller step tolerance."""
 QUIET = 0.25
-"""Fraction of NOISE that sets the tolerance of the steps if the initial state is near."""
+"""Fraction of NOISE that sets the step tolerance if the initial state is near the periodic
+state."""
 FORGETFUL = 0.2
-"""Contraction factor per march of the plain map below which acceleration is not needed."""
+"""The plain map needs no acceleration if it contracts by less than this factor per march."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,8 @@ class Marches:
     """Performs the marches of a period_map.PeriodMap one by one and records their effort.
 
     The estimated distance from the fixed point is a force.  It is the largest of three numbers: the
-    residual, the last correction, and the difference between the force and the static limit times
-    residual / gain, see search.largest_excess.
+    residual, the last correction, and residual / gain times the difference between the force and
+    the static limit, see search.largest_excess.
     """
 
     def __init__(self, period_map: PeriodMap):
@@ -93,7 +94,7 @@ class Marches:
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
-        """Estimated distance of an interval's state from the fixed point, given a better state."""
+        """Estimate the distance of an interval's state from the fixed point, by a better state."""
         step = energy_norm(self.contact, proposal - interval.state)
         distance = max(step, interval.residual)
         if self.drift_rate is not None:
@@ -153,7 +154,7 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
         ceiling = NOISE * inner if noisy else loosest
         inner = max(step_tolerance, min(forcing * interval.residual, ceiling))
         if noisy:
-            continue  # the residual of the steps exceeds the change of the state
+            continue  # the step residuals exceed the allowed fraction of the change
         forgets = forgets and interval.residual <= FORGETFUL * last_residual
         last_residual = interval.residual
         proposal = accelerate(state, interval.image)
@@ -172,7 +173,8 @@ def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
 def march(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Search by the plain march, with the distance estimate of the shipped search.
 
-    The remaining changes are extrapolated as a geometric series by the ratio of the last two.
+    The remaining changes are extrapolated as a geometric series, using the ratio of the last two
+    changes.
     """
     marches, state, last, distance = Marches(period_map), start, None, float("inf")
     for _ in range(goal.most_marches):

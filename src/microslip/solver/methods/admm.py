@@ -1,4 +1,4 @@
-"""ADMM on the dense matrix, which alternates a linear solve and a projection.
+"""ADMM on the dense matrix: it alternates between a linear solve and a projection.
 
 The matrix is factorised once.  The parameter `penalty` is in units of the self-influence of each
 point; it changes only the rate of convergence.  The parameter `relaxation` is between 1 (no

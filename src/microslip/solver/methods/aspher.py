@@ -9,13 +9,14 @@ MOST_PERIODS.  Within so few periods only fast forward motions become periodic. 
 from the defaults of the package:
 
 - The preconditioner is off.  It is designed for sticking points.  When the slip changes its
-  direction, it needs about five times as many iterations, and the means are no more accurate.
+  direction, the preconditioned solver needs about five times as many iterations, and the means are
+  no more accurate.
 
-- A step that the package rejects counts as failed, and the march continues from its best tractions.
-  By default the package returns to the tractions before the step, and the means become wrong.
+- A step that the package rejects counts as failed, and the march continues from the best tractions.
+  By default the package returns to the tractions before the step, which makes the means wrong.
 
-An iteration computes two products with the influence operator, one more than our solvers.  The
-effort counts iterations.
+An iteration computes two products with the influence operator; our solvers compute one.  The effort
+counts iterations.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from microslip.theory.hertz import G_STAR
 MOST_PERIODS = 6
 """Largest number of periods marched."""
 ACCEPTED = 1e-2
-"""Stopping criterion of the package for a step: largest change of a traction in a projected step,
+"""Stopping criterion of the package's step solver: largest traction change in a projected step,
 divided by the largest friction bound."""
 
 
@@ -85,7 +86,7 @@ class Solver:
 def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
     """March one half period; `number` counts the half periods from 0.
 
-    Returns the forward forces at its phases, except the first, and the sum of the residuals.
+    Returns the forward forces at all phases except the first, and the sum of the residuals.
     """
     start, end = path.positions[0, :2], path.positions[-1, :2]
     sign = (-1) ** number

@@ -13,7 +13,7 @@ from microslip.solver.methods._searches import accelerated
 
 
 def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
-    """Step length of every point: the length that removes its slip, times the damping factor."""
+    """Step length of every point: `damping` times the length that removes the point's slip."""
     return damping / scale
 
 

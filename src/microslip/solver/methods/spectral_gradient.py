@@ -1,7 +1,7 @@
 """Projected gradient method with Barzilai-Borwein steps on the dense matrix.
 
-The model of squares uses this step solver too.  The length of a step is the inverse curvature along
-the direction of the previous step.
+The squares model also uses this step solver.  The step length is the inverse curvature along the
+previous step.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from microslip.solver.methods._searches import accelerated
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
-"""Number of iterations within which long steps must halve the residual.  If they do not, the steps
-become short."""
+"""Number of iterations within which long steps must halve the residual.  Otherwise the steps become
+short."""
 
 
 def _shortest(matrix: np.ndarray, scale: np.ndarray) -> float:

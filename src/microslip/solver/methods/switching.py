@@ -1,8 +1,9 @@
-"""Fixed-point stick/slip switching, which alternates updates of the points and a linear solve.
+"""Fixed-point stick/slip switching: updates of the points alternate with linear solves.
 
 The traction of a slipping point is on the bound, in the direction of its last slip; sticking points
-do not slip.  After the solve, a point beyond the bound slips, and a point whose slip opposes its
-traction sticks.  Convergence is not guaranteed, and the stick and slip states of points can cycle.
+do not slip.  After the solve, points with a traction above the bound slip, and slipping points
+whose slip opposes the traction stick.  Convergence is not guaranteed, because points can alternate
+between stick and slip.
 """
 
 from __future__ import annotations
