@@ -28,8 +28,8 @@ def shrink(forward: float, lateral: float, bound: float) -> float:
 
 @kernel(inline="always")
 def extended(start: float, stage: float, end: float) -> float:
-    """Value at the end of a step, extrapolated from its start and from a stage at the fraction
-    `end` of the step."""
+    """Value at the end of a step, extrapolated from the start of the step and from a stage at the
+    fraction `end` of the step."""
     return stage if end == 1.0 else start + (stage - start) / end
 
 
@@ -48,7 +48,7 @@ def coulomb_residual(
         Friction bound, area of a point, and diagonal of the influence operator; they are equal for
         all n.
     """
-    rows = np.zeros(q.shape[2])  # separate sums for each ring, which the compiler can vectorise
+    rows = np.zeros(q.shape[2])  # one sum for each ring, so that the compiler can vectorise
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward = q[0, j, i] + slip[0, j, i] / scale[i]

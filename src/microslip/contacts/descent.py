@@ -1,8 +1,9 @@
-"""Spectral projected gradient for a Coulomb step of contacts without a cheap resolvent (squares).
+"""Spectral projected gradient method for the Coulomb steps of contacts without a cheap resolvent
+(squares).
 
 Gradient steps have Barzilai-Borwein lengths without a line search, because rounding errors of the
 energy are much larger than those of the tractions.  If the residual does not decrease for a number
-of iterations, shorter steps that always lower the energy are used until it decreases.
+of iterations, shorter steps that always lower the energy are used until the residual decreases.
 
 For a driven body, the secant method finds the displacement d at which its forces balance.  The
 forward force never decreases as d increases, and its slope is at most the stiffness of the contact.
@@ -37,12 +38,11 @@ SHORT_STEP_BELOW = 0.3
 """Ratio of the two Barzilai-Borwein lengths below which the shorter one is used; usual values are
 0.1 to 0.5 (Zhou, Gao and Dai 2006)."""
 MOST_DISPLACEMENTS = 60
-"""Largest number of trial displacements of a driven body in a step."""
+"""Largest number of trial displacements of a driven body in each step."""
 FLATTEST = 1e-3
 """Smallest slope of a secant divided by the largest possible slope."""
 INNER = 0.3
-"""Allowed residual of a step at a trial displacement, divided by the tolerance of the driven
-step."""
+"""Allowed residual at a trial displacement, divided by the tolerance of the driven step."""
 
 
 class Descent(NamedTuple):
@@ -173,7 +173,7 @@ def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
 def _projected_step(
     system: System, step: Step, fields: Fields, length: float, trial: np.ndarray
 ) -> float:
-    """Fill trial with P(q + length slip); returns the residual, see coulomb.coulomb_residual."""
+    """Fill `trial` with P(q + length slip).  Returns the residual, see coulomb.coulomb_residual."""
     q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
     scale, bound, weight, columns = system.scale, step.bound, system.weight, len(sums)
     sums[:] = 0.0

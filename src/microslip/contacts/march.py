@@ -40,7 +40,8 @@ from microslip.foundation.compiled import kernel
 
 
 class Loading(NamedTuple):
-    """Motion and friction bounds that are imposed on the contacts along a path, and the integrator.
+    """Motion and friction bounds imposed on the contacts along a path, and coefficients of the
+    integrator.
 
     Attributes
     ----------
@@ -153,7 +154,7 @@ def march(
             if len(guess) > 0:
                 if at == 1:
                     copy(y, guess[1])
-                else:  # add the change from stage to stage of the other march
+                else:  # add the other march's change between stages
                     add(y, 1.0, guess[at])
                     add(y, -1.0, guess[at - 1])
             elif k > 1:

@@ -23,7 +23,7 @@ _KERNELS: dict[type, Callable] = {}
 def operator(of: type) -> Callable:
     """Decorator that registers kernel(operators, number, field, image) for the NamedTuple `of`.
 
-    The kernel fills image with an operator applied to field.
+    The kernel fills `image` with an operator applied to `field`.
     """
 
     def register(function: Callable) -> Callable:
@@ -34,7 +34,10 @@ def operator(of: type) -> Callable:
 
 
 def multiply(operators: object, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """Fill image (2, points) with an operator applied to field (2, points), in compiled code."""
+    """Fill `image` with an operator applied to `field`, in compiled code.
+
+    Both have the shape (2, points).
+    """
     raise NotImplementedError("multiply is for compiled code")
 
 
@@ -51,8 +54,8 @@ class Matrices(NamedTuple):
     Attributes
     ----------
     blocks : np.ndarray, shape (operators, rows, chunks, columns, LANES)
-        blocks[number, row, h, k] is a part of column k of a matrix, from its row `start(h, width)`
-        on.
+        blocks[number, row, h, k] is the part of column k of a matrix that begins at its row
+        `start(h, width)`.
     """
 
     blocks: np.ndarray

@@ -1,6 +1,6 @@
 """Douglas-Rachford splitting of a Coulomb step, for contacts with a resolvent (A + s)^-1.
 
-With one field y as its state, P the projection on the discs |q| <= g and s the penalty,
+The state is one field y.  With the projection P on the discs |q| <= g and the penalty s,
 
     q = P(y),    t = 2 q - y,    v = (A + s)^-1 (b + s t),    y <- y + RELAXATION (v - q),
 
@@ -41,8 +41,8 @@ FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 """Search for the displacement at which the forces balance: first and largest trial in u_lim (each
 trial is four times the previous one), and number of bisections."""
 BALANCED_RINGS = 12
-"""Number of rings for which the best penalty equals the self-influence of a ring if half of the
-points stick; calibrated by benchmarks/splitting.py."""
+"""With this number of rings the best penalty equals a ring's self-influence, if half of the points
+stick.  Calibrated by benchmarks/splitting.py."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
 """Possible penalties of a step divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
 

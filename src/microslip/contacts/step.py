@@ -1,8 +1,8 @@
-"""The Coulomb step, and dispatch to the solver of the contact in compiled code.
+"""The Coulomb step, and its dispatch to the contact's solver in compiled code.
 
 The unknowns of a step are tractions q with |q| <= g, whose slip b - A q is in the direction of q
-and occurs only where |q| = g.  A driven body (drive.py) adds an unknown, its displacement d, which
-is added to b, and an equation, stiffness d + forward force = load."""
+and occurs only where |q| = g.  A driven body (drive.py) adds one unknown, its displacement d, and
+one equation, stiffness d + forward force = load.  The displacement d is added to b."""
 
 from __future__ import annotations
 

@@ -81,7 +81,8 @@ def move_forward(factor: float, out: np.ndarray) -> None:
 
 @kernel(inline="always")
 def sum_forces(system: System, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill out (3,) with the forward force, the lateral force and the torque due to tractions."""
+    """Fill `out`, shape (3,), with the forward force, the lateral force and the torque due to
+    tractions."""
     positions, resultants = system.positions, system.resultants
     ahead, aside, torque = 0.0, 0.0, 0.0
     for i in range(q.shape[1]):
@@ -103,7 +104,7 @@ def forward_force(system: System, q: np.ndarray) -> float:
 
 @kernel(inline="always")
 def mirrored(system: System, state: np.ndarray, out: np.ndarray) -> None:
-    """Fill out with the mirror image of tractions, lateral -> -lateral."""
+    """Fill `out` with the mirror image of tractions, lateral -> -lateral."""
     for i in range(out.shape[1]):
         out[0, i] = state[0, system.mirror[i]]
         out[1, i] = -state[1, system.mirror[i]]

@@ -1,10 +1,8 @@
-"""Closed forms by motion, each with the limit in which it applies, its range of validity and its
-names.
+"""Closed forms for each motion, with their limits, ranges of validity and names.
 
-This catalogue is used by datasets, by values outside the tabulated range, by the study of the
-paper's claims and by figures. The forms apply to Hertz's pressure; for other pressures see
-datasets.pressure_limits. The solver uses exact.py instead, so editing a name here does not change
-stored results.
+The catalogue serves datasets, figures, values outside the tabulated range, and the study of the
+paper's claims. The forms apply to Hertz pressure; for other pressures see datasets.pressure_limits.
+The solver uses exact.py instead, so editing a name here does not change stored results.
 """
 
 from __future__ import annotations
@@ -16,9 +14,9 @@ from microslip.theory import drift, masing, paper
 from microslip.theory.exact import STATIC_LIMITS
 
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
-"""Limits in which a form applies."""
+"""Limits in which a closed form applies."""
 STATIC = "mu_static"
-"""Name of the exact limit for velocity to 0; it is the same for every motion."""
+"""Name of the exact limit as the velocity tends to 0. All motions use this name."""
 
 
 @dataclass(frozen=True)
@@ -30,20 +28,21 @@ class ClosedForm:
     motion, name : str
         Name of the motion, and of the variable in a dataset.
     function : callable
-        Function that returns a dimensionless array for dimensionless arrays of the ``arguments``.
+        Function of the ``arguments``. Arguments and result are dimensionless arrays.
     arguments : tuple of str
         "velocity", "amplitude" or both.
     limit : str
         Limit in which the form applies: ANYWHERE, LARGE or SLOW.
     equation, label : str
-        Equation of the paper ("" if the paper does not contain it), and the name in a legend.
+        Equation in the paper ("" if the paper does not contain the form), and name in a legend.
     long_name, description : str
         Long name and description in a dataset. An empty description is omitted.
     exact : bool
         True if the form is exact in its limit, False if it is an estimate.
     any_poisson, any_pressure : bool
-        True if the form applies to every Poisson's ratio (otherwise only to 0), or to every
-        pressure (otherwise only to Hertz's pressure).
+        any_poisson: True if the form applies to every Poisson's ratio; otherwise it applies to 0
+        only. any_pressure: True if it applies to every pressure; otherwise it applies to Hertz
+        pressure only.
     """
 
     motion: str
@@ -66,7 +65,7 @@ _EXACT = "static friction, exact limit of mu_macro for velocity to 0"
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
-"""Forms by motion and name, in the order of datasets."""
+"""Closed forms by motion and name, in the order in which datasets list them."""
 for _form in (
     ClosedForm(
         *("transverse", "mu_large_amplitude", paper.large_amplitude_transverse, _BOTH, LARGE),
@@ -146,4 +145,4 @@ DRIFT_FORMS = {
     )
     for motion, function in (("transverse", drift.transverse_drift), ("bore", drift.bore_drift))
 }
-"""Forms of the mean velocity under a constant force, by motion."""
+"""Closed forms for the mean velocity under a constant force, by motion."""

@@ -2,8 +2,8 @@
 
 The level n is the number of cells; angles and steps are proportional to it.  So the error has a
 single leading term C / n^2, which follows from the three levels n/4, n/2 and n.  LEVELS are two
-interleaved series of doublings.  So the next level costs little more, and the second next level
-reuses the coarser levels.
+interleaved series of doublings.  So each level costs little more than the previous one, and the
+level after the next reuses the coarser levels.
 
 The first level depends on the tolerance and on the motion.  Mesh and path also adapt to the
 problem: rings are graded towards the slip front (discretise.focus_strength), and the number of time
@@ -58,7 +58,7 @@ class Ladder:
         Number of rings, or of squares across the contact, divided by the level; 0 if it is not
         refined.
     imposed : bool
-        Whether the user imposes a resolution.  If so, it is that of the level `start`.
+        Whether the user imposes a resolution.  If so, the level `start` has this resolution.
     """
 
     start: int
@@ -70,7 +70,7 @@ class Ladder:
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)  # an even number
-        # an imposed number of steps below FEWEST and half of it must stay different
+        # levels must stay different if the imposed number of steps is below FEWEST
         fewest = 1 if self.imposed and self.steps else FEWEST
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
@@ -121,7 +121,8 @@ LOOP = TRANSLATION._replace(start=16)
 """Slow motions without half-period symmetry, whose two halves have different slip fronts."""
 ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
-"""Rotations with a lateral motion, whose slip fronts differ between the halves of a period."""
+"""Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
+period."""
 LOAD = Kind(start=24, steps=4)
 """Oscillating normal loads, under which the edge of the contact moves across the rings."""
 SQUARES = ROTATION._replace(start=LOAD.start)
@@ -219,9 +220,10 @@ def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
 def with_mass(
     ladder: Ladder, problem: Problem, contact: Contact, mass: float, tolerance: float
 ) -> tuple[Ladder, str]:
-    """Shorten the steps of a ladder until they resolve a mass that oscillates against the contact.
+    """Shorten the steps of a ladder until they resolve the oscillation of a mass against the
+    contact.
 
-    The ratio of the natural frequency to that of the vibration is sqrt(stiffness / mass), with the
+    The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the
     stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
     the natural oscillation, runs can agree with each other although they are wrong.  Steps of a
     radian are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the

@@ -32,8 +32,8 @@ READING_SAFETY = 2.5
 """Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
 None of them resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate by resolution, divided by the tolerance, in case three levels agree by
-chance.  Calibrated by benchmarks/error_estimates.py."""
+"""Smallest error estimate for the resolution, divided by the tolerance, because three levels can
+agree by chance.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Largest sum of the other errors, divided by the tolerance, at which finer runs are worthwhile."""
 
@@ -177,7 +177,7 @@ class _Levels:
         self.other_runs: dict[tuple[int, int], Run] = {}
 
     def at(self, level: int) -> Run:
-        """The run at a level, whose initial guess is the run at half the level."""
+        """The run at a level.  Its initial guess is the run at half the level."""
         if level not in self.runs:
             guess = self.runs.get(level // 2)
             self.runs[level] = self.run(self.ladder.resolution(level), guess)
@@ -192,8 +192,7 @@ class _Levels:
         return [self.other_runs[number, level] for number in range(len(self.readings))]
 
     def estimate(self, level: int, goal: float) -> Refined:
-        """Estimate with `level` as the finest level; `goal` is the largest accepted error by
-        resolution."""
+        """Estimate with `level` as the finest level. goal: largest accepted resolution error."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
         floor = SMALLEST_SHARE * min(goal, LOOSEST)
@@ -232,9 +231,9 @@ class _Levels:
         three: Sequence[Run],
         others: Sequence[Run],
     ) -> tuple[float, dict[str, float], float]:
-        """Value of a quantity, its errors by resolution and model, and its observed order.
+        """Value of a quantity, resolution and model errors, and observed order of convergence.
 
-        `floor` is the smallest error by resolution.
+        floor: smallest resolution error.
         """
         values = [float(read(one)) for one in three]
         limit = Extrapolation(*map(float, extrapolate(values)))
@@ -250,5 +249,6 @@ class _Levels:
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Sum of errors times weights, without the terms of weight 0, whose error can be infinite."""
+    """Sum of errors times weights.  Terms with weight 0 are omitted, because their error can be
+    infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

@@ -1,1 +1,1 @@
-"""Discretised contacts under Coulomb's law, which share one interface (contact.py)."""
+"""Discretised contacts under Coulomb's law. All of them have the interface of contact.py."""

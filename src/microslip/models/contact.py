@@ -14,7 +14,8 @@ FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces of a march."""
 
 MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Signs of forward and lateral tractions under the mirror lateral -> -lateral, shape (2, 1, 1)."""
+"""Signs of forward and lateral tractions under the reflection lateral -> -lateral, shape (2, 1,
+1)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,8 +150,7 @@ class DirectContact(Contact, Protocol):
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
         """Return the tractions of the periodic state at the start of the path.
 
-        mirror: True if the path is half a period and the other half of the period is its mirror
-        image.
+        mirror: True if the path is half a period and its mirror image is the other half.
         """
 
 

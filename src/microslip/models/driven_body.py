@@ -18,8 +18,8 @@ class Body:
     Attributes
     ----------
     stiffness, damping, mass : float
-        Stiffness k divided by mu F_z / u_lim, and damping c and mass m in the same units with the
-        phase as time. All are 0 for a massless body driven by a constant force.
+        Stiffness k, damping c and mass m in units of mu F_z and u_lim, with the phase as time. All
+        are 0 for a massless body driven by a constant force.
     load : float
         Constant force divided by mu F_z.
     """
@@ -35,8 +35,8 @@ class Body:
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray) -> Drive:
-        """Return the Drive for a path, given x and x' at the start of the path, shape (2,)."""
-        share = 1.0 / (1.0 + path.carry[-1].sum())  # a stiffly accurate method carries the rest
+        """Return the Drive for a path. start: x and x' at the start of the path, shape (2,)."""
+        share = 1.0 / (1.0 + path.carry[-1].sum())  # gamma: the last row of a_ij sums to 1
         lengths = share * np.diff(path.phase)
         return Drive(
             float(self.stiffness),

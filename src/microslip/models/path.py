@@ -41,7 +41,7 @@ class Integrator:
     times : tuple of float
         Stage times c divided by the length of the step.
     carried : tuple of tuple of float
-        Carried slips a_ij / gamma, (stages, stages), zero on and above the diagonal.
+        Factors a_ij / gamma of carried slips, (stages, stages), zero on and above the diagonal.
     end : float
         Time of the last stage divided by the length of the step.  If it is below 1 (methods with a
         single stage), the state at the end of the step is extrapolated, and its tractions can
@@ -103,10 +103,10 @@ def turning_point_grading(drift: float, stroke: float) -> float:
 def turning_point_width(drift: float, stroke: float) -> float:
     """Half-width, in phase, of the zone of equal steps at a turning point.
 
-    Outside the zone, steps are proportional to the distance from the turning point.  The width is
-    infinite for short strokes, to which the grading alone applies.  The slip reverses within the
-    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian
-    or below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
+    Outside the zone, steps are proportional to the distance from the turning point.  For short
+    strokes the width is infinite, and only the grading applies.  The slip reverses within the phase
+    max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian or
+    below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
     zone gradually.  At the stroke LONG_STROKE the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
@@ -126,7 +126,7 @@ class Path:
     stages : np.ndarray, shape (steps, stages, 3)
         Displacement at every stage: forward, lateral, angle.
     carry : np.ndarray, shape (stages, stages)
-        Carried slips, see Integrator.
+        Factors of carried slips, see Integrator.
     end : float
         Time of the last stage divided by the length of the step, see Integrator.
     depth : np.ndarray or None, shape (1 + steps * stages,)
@@ -226,7 +226,7 @@ def make_path(
     depths = None
     if depth is not None:
         if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # to the last bit, because the next march starts there
+            times[:, -1] = phase[1:]  # exact to the last bit, because the next march starts there
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, np.array(integrator.carried), integrator.end, depths)
 
@@ -246,7 +246,7 @@ def phases_between(
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:
-        away = 1.0 - np.abs(t) / (np.pi / 2)  # from the nearer end, 0 to 1
+        away = 1.0 - np.abs(t) / (np.pi / 2)  # distance from the nearer end, 0 to 1
         away = width * np.sinh(away * np.arcsinh(np.pi / 2 / width))
         t = np.sign(t) * (np.pi / 2 - away)
     parts = [np.array(turns[:1])]

@@ -3,9 +3,9 @@
 | model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
 |-----------|--------------------|--------------------|------------------------------------|
 | rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29 (steady: exact) |
-| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn     |
-| dahl      | approximate        | approximate        | not applicable: it cannot turn     |
-| mdr       | approximate        | approximate        | not applicable: it cannot turn     |
+| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot rotate   |
+| dahl      | approximate        | approximate        | not applicable: it cannot rotate   |
+| mdr       | approximate        | approximate        | not applicable: it cannot rotate   |
 | radial    | exact (rings)      | not applicable     | not applicable                     |
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
@@ -156,7 +156,7 @@ def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float |
     from microslip.models.squares import half
     from microslip.models.squares.contact import CartesianContact
 
-    symmetry = ""  # of the tractions, if the pressure has it as well
+    symmetry = ""  # symmetry of the tractions, if the pressure has the same one
     if problem.motion.half_disc:
         symmetry = half.MIRROR if problem.motion.rotates else half.TURN
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)

@@ -31,8 +31,8 @@ class SideBySide(SystemContact):
     contacts : sequence of SystemContact
         The contacts, each in its own units.
     shares, extents : sequence of float
-        Fraction of the load of the body that each contact carries (the sum is 1), and u_lim of each
-        contact divided by u_lim of the body.
+        Fraction of the body's load on each contact (the sum is 1), and u_lim of each contact
+        divided by the body's u_lim.
     """
 
     def __init__(

@@ -24,15 +24,15 @@ class Layout(NamedTuple):
     """Conversion between states (2, rows, columns) and the fields (2, points) of compiled code.
 
     In a state, the contacts of a body are concatenated along the columns. In a field, the points of
-    one contact follow those of the other.
+    each contact follow those of the previous one.
 
     Attributes
     ----------
     contacts, rows, columns : int
         Number of contacts, and number of rows and columns of each contact.
     width : int
-        Number of columns of each contact in a field. The additional points have area 0 and friction
-        bound 0.
+        Number of columns of each contact in a field. Points in additional columns have area 0 and
+        friction bound 0.
     """
 
     contacts: int
@@ -124,8 +124,8 @@ class SystemContact(Contact):
         return out
 
     def solver(self, weight: np.ndarray) -> Any:
-        """Create the solver of a Coulomb step for points with the areas `weight`; it uses
-        resolvents of rings."""
+        """Create the solver of a Coulomb step for points with the areas `weight`. The solver uses
+        the resolvents of rings."""
         penalty = best_penalty(self.compliance, self.layout.columns)
         return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
 
@@ -144,12 +144,13 @@ class SystemContact(Contact):
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def affordable(self, work: float) -> float:
-        """Number of marches, each of the cost `work`, until the budget must be checked; infinite in
+        """Number of marches of the cost `work` before the budget must be checked. It is infinite in
         this base class."""
         return np.inf
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
-        """Subtract marches of compiled code from the budget; does nothing in this base class."""
+        """Subtract the cost of compiled marches from the budget. Does nothing in this base
+        class."""
         return
 
     def displacement(self, state: np.ndarray) -> np.ndarray:

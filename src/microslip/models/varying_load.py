@@ -1,4 +1,4 @@
-"""Load on each part of the contact of an axisymmetric indenter, as a function of the depth.
+"""Load on each part of an axisymmetric indenter's contact, as a function of the depth.
 
 The depth is the indentation divided by its value in the reference state, in which the contact
 radius is a and the load is F_z.  All other quantities are in working units (see

@@ -30,7 +30,7 @@ SMALLEST_CONTACT = 1e-100
 """Smallest contact radius, which keeps divisions by the contact radius finite."""
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
-"""Number of Newton steps after the initial value from a table."""
+"""Number of Newton steps after the initial guess from a table."""
 _REFINEMENTS = 3
 """Number of grids in the search for the largest bound.  Each grid is 128 times finer than the
 previous one."""
@@ -78,7 +78,7 @@ class Indenter(RoundPressure):
         first = np.arccosh(np.maximum(np.minimum(self.flat, contact) / radii, 1.0))
         length = np.arccosh(np.maximum(contact / radii, 1.0)) - first
         # nodes are clustered at both ends: the slope starts like a square root at a flat end, and
-        # rises at the edge alone if the indenter is nearly flat
+        # rises only near the edge if the indenter is nearly flat
         eta = first + length * np.sin(0.5 * np.pi * _NODES) ** 2
         step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
         return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
@@ -110,7 +110,7 @@ class Indenter(RoundPressure):
         return 1.0 - np.where(depth > 0.0, self.load(c, c), 0.0)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load divided by the mean load is `share`, from a table and Newton's
+        """Depth at which the load is `share` times the mean load, from a table and Newton's
         method."""
         share = np.asarray(share, float)
         largest = 1.0

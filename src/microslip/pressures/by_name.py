@@ -15,7 +15,7 @@ _REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",), from_fil
 PRESSURES = _REGISTRY.classes
 """Name -> subclass of Pressure."""
 BROKEN = _REGISTRY.broken
-"""Name of a file that cannot be used -> path of the file and error."""
+"""Name -> path and error, for files that cannot be used."""
 find = _REGISTRY.find
 pressure_named = _REGISTRY.parse
 """Function that returns the pressure for a text such as "power:exponent=1" or

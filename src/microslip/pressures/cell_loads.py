@@ -13,7 +13,7 @@ SMALLEST_LOAD = 1e-13
 
 
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
-    """Compute the loads of cells, (cells, cells), with the sum 1.
+    """Compute the loads of the cells, shape (cells, cells). Their sum is 1.
 
     load: load of the rectangle from the centre to each corner of a cell, odd in both coordinates,
     (cells + 1, cells + 1).
@@ -22,14 +22,15 @@ def of_corner_loads(load: np.ndarray) -> np.ndarray:
 
 
 def of_loads(loads: np.ndarray) -> np.ndarray:
-    """Scale the loads of cells to the sum 1, and replace rounding errors near 0 by 0."""
+    """Scale the loads of the cells so that their sum is 1, and replace rounding errors near 0 by
+    0."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
 
 def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
-    """Compute the loads of cells, (cells, cells), under a pressure that depends on the radius
-    alone. Their sum is 1.
+    """Compute the cell loads of a pressure that depends on the radius alone, shape (cells, cells).
+    Their sum is 1.
 
     The load of each of RINGS thin rings is spread evenly along its middle circle.
 

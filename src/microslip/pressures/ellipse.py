@@ -1,4 +1,4 @@
-"""Hertz's pressure over an ellipse."""
+"""Hertz pressure over an ellipse."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Ellipse(Pressure):
 
     @cached_property
     def torque(self) -> float:
-        """Mean distance from the centre under the pressure.
+        """Mean distance from the centre, weighted with the pressure.
 
         It is 3 pi/16 on the unit circle.  The ellipse is that circle with one axis scaled by the
         ratio, which scales the distance along a ray at the angle t by hypot(cos t, ratio sin t).
@@ -87,7 +87,7 @@ class Ellipse(Pressure):
 
 
 def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
-    """Compute the load of Hertz's pressure on each square, (cells, cells).
+    """Compute the load of Hertz pressure on each square, (cells, cells).
 
     axes: forward and lateral semi-axis.
     """

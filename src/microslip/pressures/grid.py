@@ -12,13 +12,14 @@ from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Possible meanings of the values on a grid: "cells" for means over cells around the points, which
-are one step wide, and "samples" for values at the points, interpolated bilinearly.  The pressure is
-0 outside the grid."""
+"""Possible meanings of the values on a grid: "cells" are means over cells one step wide around the
+points, and "samples" are values at the points, interpolated bilinearly.  The pressure is 0 outside
+the grid."""
 FINE = 256
-"""Number of squares along a side from which u_lim and the torque are computed."""
+"""Number of squares along a side in the computation of u_lim and the torque."""
 FINEST = 1024
-"""Largest number of these squares, used for grids of more than FINE points."""
+"""Largest number of squares along a side.  Grids with more than FINE points along a side use more
+than FINE squares."""
 REGULAR = 1e-3
 """Largest allowed distance of a coordinate from the regular grid, divided by the step of the
 grid."""
@@ -27,7 +28,7 @@ grid."""
 def read_grids(
     forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
 ) -> dict[str, Grid]:
-    """Create the Grid of values on a regular grid, and alternative grids from the same numbers.
+    """Create a Grid from values at regular points, and alternative grids from the same values.
 
     The unit of length a is half the longer side of the smallest rectangle that contains all
     pressure.  Rotations are about the centre of this rectangle.
@@ -44,8 +45,8 @@ def read_grids(
     Returns
     -------
     dict of str to Grid
-        Label -> grid: "" for the grid itself, then the same values with the other meaning of
-        READINGS, then the grid at half its resolution.
+        Label -> grid.  The first label is "", for the grid itself.  The others are the same values
+        with the other meaning in READINGS, and the grid at half the resolution.
 
     Raises
     ------
@@ -82,8 +83,7 @@ def _refuse(forward: np.ndarray, lateral: np.ndarray, values: np.ndarray) -> Non
 
 
 def _even(label: str, axis: np.ndarray) -> np.ndarray:
-    """Return evenly spaced coordinates (n,) that replace those of an axis, within the tolerance
-    REGULAR.
+    """Replace the coordinates of an axis (n,) by evenly spaced ones, within the tolerance REGULAR.
 
     Raises InputError for uneven coordinates; the message shows the pair whose distance deviates
     most.
@@ -103,8 +103,8 @@ def _even(label: str, axis: np.ndarray) -> np.ndarray:
 
 
 def _in_steps(points: Sequence[np.ndarray]) -> tuple[list[np.ndarray], float]:
-    """Return coordinates that start at 0, in units of the longer step, so that areas neither
-    overflow nor underflow, and this step.
+    """Return coordinates that start at 0, in units of the longer step, and the length of this step.
+    In these units areas neither overflow nor underflow.
 
     Raises InputError if one step is more than 1e12 times the other.
     """
@@ -153,7 +153,7 @@ class _Axis:
         return len(self.points) - (self.reading == "samples")
 
     def edges(self, parts: int) -> np.ndarray:
-        """Return coordinates that divide each step into this number of parts."""
+        """Return coordinates that divide each step into `parts` equal parts."""
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
     def coarsened(self) -> tuple[_Axis, np.ndarray]:
@@ -174,7 +174,8 @@ class _Axis:
 class Grid:
     """Values (n, m) on a grid over the smallest rectangle that contains all pressure.
 
-    step, peak: length 1 in the unit of the coordinates, and value 1 in the unit of the pressure.
+    step: unit of length of the axes, in the unit of the coordinates; peak: unit of the values, in
+    the unit of the pressure.
     """
 
     forward: _Axis
@@ -194,7 +195,7 @@ class Grid:
 
     @property
     def middles(self) -> list[float]:
-        """Forward and lateral coordinate of the centre of the rectangle."""
+        """Forward and lateral coordinates of the centre of the rectangle."""
         return [0.5 * (side.low + side.high) for side in (self.forward, self.lateral)]
 
     @property
@@ -215,7 +216,7 @@ class Grid:
         return np.count_nonzero(self.values) * cell / self.half**2
 
     def reduced_modulus(self) -> float:
-        """G* in working units, which is the largest displacement under full slip for G* = 1."""
+        """G* in working units.  It equals the largest displacement under full slip for G* = 1."""
         fine = min(max(FINE, *self.values.shape), FINEST)
         return _largest_displacement(self.cell_loads(fine))
 

@@ -55,8 +55,8 @@ def grid(
 def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the coordinates and values of the grid formed by the points.
 
-    table: forward, lateral and pressure of each point, (points, 3); places: line of each point.
-    Raises ValueError if a point is missing or occurs twice.
+    table: forward, lateral and pressure of each point, (points, 3); places: line number of each
+    point.  Raises ValueError if a point is missing or occurs twice.
     """
     if len(table) == 0:
         raise ValueError("no points; allowed: a line with three numbers for each point of a grid")

@@ -1,5 +1,5 @@
-"""Read a grid of pressures from a matrix of numbers without coordinates, as programs of pressure
-sensors and pressure films write it."""
+"""Read a grid of pressures from a matrix of numbers without coordinates.  Programs for pressure
+sensors and pressure films write such files."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from microslip.foundation.number_table import NUMBER, number
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_pitch
 
 OUTSIDE = "B"
-"""Cell outside the sensor, in files of Tekscan.  Its pressure is 0."""
+"""Cell outside the sensor, in Tekscan files.  Its pressure is 0."""
 END = ["@@"]
-"""Cells of the last line, in files of Tekscan."""
+"""Cells of the last line, in Tekscan files."""
 LEAST_COORDINATES = 4
 """Smallest number of evenly spaced values that count as coordinates."""
 EVEN = 0.05
-"""Largest difference of the steps of coordinates, divided by the first step.  It is the rounding of
-coordinates with two digits."""
+"""Largest difference between the steps of evenly spaced coordinates, divided by the first step.  It
+allows for coordinates rounded to two digits."""
 ALLOWED = (
     "allowed: a header without numbers in columns, then one row of the matrix in each line up to "
     "the end of the file, with decimal=comma after the path for decimal commas"
@@ -92,7 +92,7 @@ def grid(
 
 
 def _cells(line: str, decimal: str) -> list[str]:
-    """Cells of a line, without empty last cells."""
+    """Cells of a line, except empty cells at its end."""
     separators = [";", "\t"] + [","] * (decimal == ".")
     separator = next((one for one in separators if one in line), None)
     return csv_text.words(line, separator) if separator else line.split()
@@ -104,7 +104,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _are_coordinates(numbers: np.ndarray) -> bool:
-    """Whether numbers are evenly spaced and not equal."""
+    """Whether numbers are evenly spaced and differ from each other."""
     steps = np.diff(numbers)
     even = len(numbers) >= LEAST_COORDINATES and np.ptp(steps) <= EVEN * abs(steps[0])
     return bool(even and steps[0] != 0.0)

@@ -1,4 +1,4 @@
-"""Read a grid of pressures from a netCDF file with a variable `pressure` of `forward` and
+"""Read a grid of pressures from a netCDF file.  Its variable `pressure` depends on `forward` and
 `lateral`."""
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ def _refuse_oversized(path: Path) -> None:
                     f"{MOST_POINTS}"
                 )
         for name, variable in file.variables.items():
-            chunk = variable.chunking()  # None in files of netCDF 3
-            size = getattr(variable.dtype, "itemsize", 1)  # strings of any length have no size
+            chunk = variable.chunking()  # None in netCDF 3 files
+            size = getattr(variable.dtype, "itemsize", 1)  # strings of any length have no itemsize
             if isinstance(chunk, list) and math.prod(chunk) * size > LARGEST_CHUNK:
                 raise ValueError(
                     f"{name} is stored in chunks of {' x '.join(map(str, chunk))}; allowed: chunks "

@@ -18,12 +18,12 @@ ALLOWED_PITCH = "allowed: a length such as 0.5 mm, or forward x lateral as in 0.
 
 
 Units = tuple[float | None, float | None]
-"""Unit of the coordinates, m, and unit of the pressure, Pa; None for dimensionless values."""
+"""Unit of the coordinates in m, and unit of the pressure in Pa; None for dimensionless values."""
 NO_UNITS: Units = None, None
 
 
 def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
-    """Unit of the lateral coordinate divided by that of the forward coordinate, and the Units.
+    """Return the lateral unit of length divided by the forward unit of length, and the Units.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
     Raises
     ------
     ValueError
-        If a unit is unknown or of another kind, or if only one coordinate has a unit.
+        If a unit is unknown or is not a length or a pressure, or if only one coordinate has a unit.
     """
     texts = [(text or "").strip() for text in units]
     if bool(texts[0]) != bool(texts[1]):
@@ -51,7 +51,8 @@ def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
 
 
 def read_pitch(text: str) -> tuple[float, float, Units]:
-    """Forward and lateral distance between the cells of a matrix in one unit, and the Units.
+    """Return the forward and lateral distance between matrix cells, in the same unit, and the
+    Units.
 
     text: a length such as "0.5 mm" for both distances, or "0.5 mm x 0.6 mm".
 

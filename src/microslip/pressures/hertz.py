@@ -1,4 +1,4 @@
-"""Hertz's pressure on a circle: a sphere on a flat, which is the contact of the paper."""
+"""Hertz pressure on a circle: a sphere on a flat, which is the contact of the paper."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Hertz(Pressure):
         return np.sqrt(np.maximum(depth, 0.0))
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load divided by the mean load is `share`."""
+        """Depth at which the load is `share` times the mean load."""
         return np.cbrt(share) ** 2
 
     def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:

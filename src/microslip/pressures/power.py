@@ -53,7 +53,7 @@ class Power(Indenter):
         return np.maximum(depth, 0.0) ** (1.0 / self.exponent)
 
     def of_load(self, share: np.ndarray) -> np.ndarray:
-        """Depth at which the load divided by the mean load is `share`."""
+        """Depth at which the load is `share` times the mean load."""
         return np.maximum(share, 0.0) ** (self.exponent / (self.exponent + 1.0))
 
     @cached_property

@@ -56,8 +56,8 @@ class Pressure:
         Whether the contact is an elliptic Hertz contact.  Its stick zones are ellipses of the same
         shape (Vermeulen and Johnson), so `loading` is that of a sphere.
     readings : tuple of Pressure
-        Alternative pressures that agree with the values of a grid.  The differences of friction
-        between these pressures are the error due to the grid.
+        Alternative pressures that agree with the values of a grid.  The differences in friction
+        between these pressures give the error due to the grid.
     """
 
     mirrored: ClassVar[bool] = True
@@ -71,7 +71,8 @@ class Pressure:
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
-    mean lever arm of a traction with the shape of the bound; shape (n,) each, from (n + 1,)."""
+    mean lever arm of a traction with the shape of the bound.  The shape of psi is (n + 1,), that of
+    each result (n,)."""
     bound: ClassVar[Any] = None
     """bound(r): friction bound mu p at radii r, any shape; for an indenter also bound(r, c)."""
 
@@ -81,7 +82,7 @@ class Pressure:
     radius: ClassVar[Any] = None
     """radius(depth): inverse of `depth`; 0 if there is no contact."""
     of_load: ClassVar[Any] = None
-    """of_load(share): depth at which the load divided by the mean load is `share`."""
+    """of_load(share): depth at which the load is `share` times the mean load."""
     load: ClassVar[Any] = None
     """load(r, c): load within the radius r of a contact of radius c; arrays broadcast."""
 
@@ -145,7 +146,7 @@ class Pressure:
 
     @property
     def name(self) -> str:
-        """Name of the class with the numbers that differ from their defaults."""
+        """Name of the class, followed by the numbers that differ from their defaults."""
         return spec.text_of(self)
 
     def __str__(self) -> str:
@@ -180,14 +181,13 @@ class Pressure:
 
     @property
     def stiffness(self) -> float:
-        """Force for a uniform displacement u_lim without slip, divided by mu F_z, which is 2 G* a.
-
-        It is an upper bound for a contact that does not fill the circle of radius a.
+        """Force for a uniform displacement u_lim without slip, divided by mu F_z.  It is 2 G* a,
+        which is an upper bound for a contact that does not fill the circle of radius a.
         """
         return 2.0 * self.G_star
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load of an indenter at depths >= 0, which can have any shape."""
+        """Load of an indenter at depths >= 0.  The array of depths can have any shape."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
@@ -195,7 +195,8 @@ class Pressure:
         """Stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
 
         The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger),
-        and 0.0 at full slip.  The result is None if the pressure is not that of an indenter.
+        and 0.0 at full slip.  The result is None unless the pressure is that of an axisymmetric
+        indenter.
         """
         if self.depth is None:
             return None
@@ -206,10 +207,12 @@ class Pressure:
 
 @dataclass(frozen=True)
 class RoundPressure(Pressure):
-    """Base class of pressures that depend on the radius alone, computed from integrals over rings.
+    """Base class of pressures that depend on the radius alone.  They are computed from integrals
+    over rings.
 
-    A subclass defines `ring_loads` and `ring_moments`: integrals of the friction bound, and of the
-    bound times the radius, over the rings between r = sin(psi); shape (n,) from (n + 1,).
+    A subclass defines `ring_loads` and `ring_moments`.  They integrate the friction bound, and the
+    bound times the radius, over the rings between r = sin(psi).  The shape of psi is (n + 1,), that
+    of the result (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:
@@ -231,7 +234,7 @@ class RoundPressure(Pressure):
 
 
 def _numbers(name: str, values: Any) -> np.ndarray:
-    """Convert an argument to an array of floats; raises InputError that names the argument."""
+    """Convert an argument to an array of floats.  Raises an InputError that names the argument."""
     try:
         return np.ascontiguousarray(values, float)
     except (TypeError, ValueError):
@@ -270,7 +273,7 @@ class Measured(Pressure):
         reading: str = "cells",
         units: Units = NO_UNITS,
     ) -> Measured:
-        """Create a pressure with this name and these Units; the other arguments are those of
+        """Create a pressure with this name and these Units.  The other arguments are those of
         `grid.read_grids`."""
         grids = read_grids(forward, lateral, values, reading)
         grid = grids.pop("")
@@ -306,13 +309,13 @@ class Measured(Pressure):
 
     @property
     def size_m(self) -> float | None:
-        """Half the longer side of the contact, m; None if the coordinates have no unit."""
+        """Half the longer side of the contact, in m; None if the coordinates have no unit."""
         metre = self.units[0]
         return None if metre is None else self.grid.half * self.grid.step * metre
 
     @property
     def load_N(self) -> float | None:
-        """Integral of the pressure over the contact, N; None without units."""
+        """Integral of the pressure over the contact, in N; None without units."""
         metre, pascal = self.units
         if metre is None or pascal is None:
             return None

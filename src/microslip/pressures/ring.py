@@ -93,7 +93,7 @@ class Ring(RoundPressure):
 
     @cached_property
     def G_star(self) -> float:
-        """G* in working units, which is the largest displacement under full slip for G* = 1.
+        """G* in working units.  It equals the largest displacement under full slip for G* = 1.
 
         A circle of radius s under unit load per area causes the displacement 4 s/(r + s) K(m)/pi at
         the radius r, with 1 - m = ((r - s)/(r + s))^2.

@@ -7,11 +7,11 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 
 DEPTH = 12
-"""Number of differences in memory.  Among 5, 8 and 12, it needs the fewest marches for bores and
-loops."""
+"""Number of stored differences.  Of 5, 8 and 12, the value 12 needs the fewest marches for bores
+and loops."""
 DEPENDENT = 1e-8
-"""A difference is dropped if the norm of its part orthogonal to newer differences is below this
-fraction of its norm.  The value is about the square root of the rounding error."""
+"""A difference is dropped if its part orthogonal to newer differences is below this fraction of the
+whole, in norm.  The value is about the square root of the rounding error."""
 
 
 @kernel

@@ -8,7 +8,7 @@ the state changes so slowly that a small residual is no evidence of convergence.
 The state of a driven body includes two more numbers, its position x and rate x'
 (contacts/drive.py).  In one period, unbalanced forces hardly change the state of a heavy body or of
 a body on a soft spring.  Therefore the map extrapolates the changes of x and x' by the factors of
-`Inertia`, which does not change its fixed point.
+`Inertia`.  The fixed point remains the same.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from microslip.foundation.compiled import kernel
 from microslip.states.anderson import DEPTH, accelerated, remember
 
 FORCING = 1e-3
-"""Ratio of the tolerance of the steps of a march to the last change of the state."""
+"""Tolerance of the steps in a march, divided by the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """Largest tolerance of a step, for an initial state far from and near the periodic state."""
 NOISE = 1e-2
-"""Largest ratio of the residual of a march to the force gained by the drift in this march.  An
+"""Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
 error of the state decays only as fast as the state drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
-force gained by the drift.  Such a state drifts without slip, so its change does not measure the
+force that the drift adds.  Such a state drifts without slip, so its change does not measure the
 distance to the periodic state.  The search then goes halfway back to the last state that was not
 stuck, at most MOST_RETURNS times in a row."""
 FORGETFUL = 0.2
-"""Contraction factor of the plain map below which it is not accelerated."""
+"""The plain map is not accelerated if its contraction factor is below this value."""
 
 
 class Goal(NamedTuple):
@@ -75,7 +75,7 @@ class Goal(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """Data to extrapolate the change of a driven body in a period, and to compute its norm.
+    """Data for extrapolating a driven body's change in a period, and for the norm of this change.
 
     Attributes
     ----------
@@ -114,10 +114,10 @@ class Memory(NamedTuple):
     above : np.ndarray, field
         Last state that was not stuck; initially the first state.
     counts : np.ndarray of int, shape (5,)
-        Number of marches, of iterations and of pairs; 1 while the plain map contracts fast,
-        otherwise 0; and number of successive times that the search went back.
+        Numbers of marches, iterations and pairs; 1 while the plain map contracts fast, otherwise 0;
+        and number of times in a row that the search went back.
     numbers : np.ndarray, shape (2,)
-        Tolerance of the steps of the next march, and residual of the last march.
+        Tolerance of the steps in the next march, and residual of the last march.
     best : tuple of np.ndarray
         State, forces and body of the best march, and four numbers: distance, residual, residual of
         the steps, and 1 if the state converged.
@@ -163,7 +163,7 @@ def state_norm(
     body_change: np.ndarray,
     scratch: np.ndarray,
 ) -> float:
-    """Upper bound on the force due to a change of tractions and of the body.
+    """Upper bound on the force due to a change in the tractions and in the body's motion.
 
     body_change: changes of x and x'.
     """
@@ -182,7 +182,8 @@ def state_norm(
 
 @kernel
 def largest_excess(force: float, static_force: float, full: float) -> float:
-    """Largest possible difference between a mean force and the static limit, which can be NaN."""
+    """Largest possible difference between a mean force and the static limit.  `static_force` can be
+    NaN."""
     if np.isnan(static_force):  # the limit can be any force from 0 to full slip
         return max(abs(force), abs(full - force))
     return abs(force - static_force)

@@ -1,1 +1,1 @@
-"""Closed forms and bounds of friction. This package uses no solver, files or plots."""
+"""Closed forms and bounds for friction. This package does not use the solver, files or plots."""

@@ -1,7 +1,7 @@
 """The paper's formulas for any axisymmetric pressure, evaluated by adaptive quadrature.
 
 All quantities are dimensionless, as in the module `paper`, which contains the closed forms for
-Hertz's pressure.
+Hertz pressure.
 """
 
 from collections.abc import Callable
@@ -49,7 +49,8 @@ def bore_of(
     Returns
     -------
     forward, torque : np.ndarray
-        Forward friction and torque under this pressure, as in paper.bore_forward and bore_torque.
+        Forward friction and torque under this pressure, normalised as in paper.bore_forward and
+        paper.bore_torque.
 
     Raises
     ------
@@ -70,7 +71,7 @@ def _bore_mean(
         def ring(r: float) -> float:
             return kernel(r / v) * pressure(r) * r**power
 
-        # The kernel's slope is logarithmic on the ring through the centre of rotation.
+        # The slope of the kernel is logarithmic on the ring through the centre of rotation.
         split = min(v, 1.0)
         return (_integral(ring, 0.0, split) + _integral(ring, split, 1.0)) / total
 

@@ -1,6 +1,6 @@
 """Upper bounds on the reduction of friction by vibration.
 
-Over a period the work of the contact forces is dissipated, because the elastic energy is periodic.
+Over a period all work of the contact forces is dissipated, because the elastic energy is periodic.
 Every point slips forward by velocity times period, and the length of its slip path is at least this
 distance.  This gives a lower bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu
 it follows that:
@@ -9,7 +9,7 @@ it follows that:
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
 - bore (forward v phi t, angle phi sin t): the work of the torque replaces the work of the lateral
   force. Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
-  1/5 is the second moment of Hertz's pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
+  1/5 is the second moment of Hertz pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
   v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
@@ -21,9 +21,9 @@ v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with v >=
 The bounds hold for any nu and any stiffness.  The arguments are the paper's dimensionless groups.
 
 Friction never decreases as the forward velocity increases.  Coulomb's law at a given pressure is
-monotone and the half-space is elastic.  So for periodic states of the same oscillation at the
-velocities v1 and v2 (mu1 - mu2)(v1 - v2) >= 0.  If the oscillation reverses its forward motion half
-a period later under the same load (motions/symmetry.py), friction is odd in the velocity, so it is
+monotone and the half-space is elastic.  So (mu1 - mu2)(v1 - v2) >= 0 for periodic states of the
+same oscillation at the velocities v1 and v2.  If the oscillation reverses its forward motion half a
+period later under the same load (motions/symmetry.py), friction is odd in the velocity, so it is
 never negative for v > 0.  Other motions can propel the contact (Motion.propels).
 """
 

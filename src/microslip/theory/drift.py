@@ -1,7 +1,7 @@
 """Mean velocity of a contact under a constant force at large amplitude, in closed form.
 
-At each instant a rigid contact without mass moves with the velocity at which friction balances the
-force. So its velocity is proportional to the velocity of the vibration.
+At each instant a massless rigid contact moves at the velocity at which friction balances the force.
+So its velocity is proportional to the velocity of the vibration.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from microslip.theory.hertz import checked
 from microslip.theory.paper import bore_forward
 
 _FASTEST = 1e6
-"""Largest velocity of a steady bore. Its friction 1 - 0.1/v^2 differs from full friction by only
-1e-13, so rounding of the force (1e-16) already changes the velocity by a fraction of 1e-3."""
+"""Largest velocity of a steady bore. Its friction 1 - 0.1/v^2 is within 1e-13 of full friction. So
+a rounding error of 1e-16 in the force changes the velocity by a fraction of 1e-3."""
 
 
 def transverse_drift(
@@ -52,8 +52,8 @@ def bore_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.n
 
     It is (2/pi) E^-1(P), where E is the friction of Eq 21 as a function of velocity. The velocity
     is in units of Omega phi0 a, which is proportional to the amplitude, so the result does not
-    depend on the amplitude. Arguments and errors are those of `transverse_drift`; forces between 1
-    - 1e-13 and 1 raise InputError.
+    depend on the amplitude. The arguments and exceptions are those of `transverse_drift`; forces
+    between 1 - 1e-13 and 1 raise InputError.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()
@@ -76,13 +76,13 @@ def antiphase_drift(force: np.ndarray | float, amplitude: np.ndarray | float) ->
     While one sphere slides at its friction bound, the other sphere sticks under 2 P - 1 of its
     bound, and the body moves with the sticking sphere. When the oscillation turns, the two spheres
     change roles and the force of each changes by 2 - 2 P. By Masing's rule each contact deforms by
-    2 (1 - P^(2/3)), twice the displacement of a first loading to 1 - P, one contact forward and the
-    other backward. Meanwhile the body does not move. The body travels during the rest of the
-    stroke. The body moves if P > (1 - A)^(3/2), the static limit of one sphere. A body on rigid
+    2 (1 - P^(2/3)), which is twice the displacement of a first loading to 1 - P. One contact
+    deforms forward and the other backward, so the body does not move. It moves during the rest of
+    the stroke. So it drifts if P > (1 - A)^(3/2), the static limit of one sphere. A body on rigid
     spheres has the velocity (2/pi) A under any force.
 
-    Arguments, result and errors are those of `transverse_drift`. P = 0 gives the limit of a small
-    force.
+    The arguments, the result and the exceptions are those of `transverse_drift`. P = 0 gives the
+    limit of a small force.
     """
     force, amplitude = checked("force", force), checked("amplitude", amplitude)
     travel = np.maximum(amplitude - 1.0 + force ** (2.0 / 3.0), 0.0)

@@ -1,4 +1,4 @@
-"""Closed forms of motions under Hertz's pressure, which replace simulations.
+"""Closed forms that replace simulations of some motions under Hertz pressure.
 
 Stored results depend on this file and on its functions. The names of these and other formulas are
 in datasets/catalogue.py. Stored results do not depend on that file.
@@ -13,14 +13,14 @@ from microslip.theory import bounds, paper
 
 
 class StaticLimit(NamedTuple):
-    """Exact limit of friction for velocity to 0.
+    """Exact limit of friction as the velocity tends to 0.
 
     Attributes
     ----------
     function : callable
         Friction as a function of an array of amplitudes, dimensionless.
     any_poisson : bool
-        True if the limit applies to every Poisson's ratio, otherwise only to 0.
+        True if the limit applies to every Poisson's ratio; otherwise it applies to 0 only.
     """
 
     function: Callable
@@ -31,7 +31,7 @@ STATIC_LIMITS = {
     "transverse": StaticLimit(paper.static_limit_transverse),
     "bore": StaticLimit(paper.static_limit_bore, any_poisson=True),
     "longitudinal": StaticLimit(paper.static_limit_longitudinal),
-    # the limit of the zigzag is that of the sine, since it depends on the turning points only
+    # zigzag and sine have the same limit, because it depends on the turning points only
     "zigzag": StaticLimit(paper.static_limit_transverse),
 }
 

@@ -48,7 +48,7 @@ def checked(
 
 
 def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
-    """Friction bound of Hertz's pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
+    """Friction bound under Hertz pressure, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
     r: distance from the centre, any shape. Raises ValueError unless r >= 0. The result is
     dimensionless and 0 outside the contact.
@@ -58,7 +58,7 @@ def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
 
 
 def load_inside(r: np.ndarray | float) -> np.ndarray | float:
-    """Fraction of the normal load within radius r under Hertz's pressure, 1 - (1 - r^2)^(3/2).
+    """Fraction of the normal load within radius r under Hertz pressure, 1 - (1 - r^2)^(3/2).
 
     Raises ValueError unless r >= 0; the argument can have any shape. The result is dimensionless
     and 1 for r >= 1.
@@ -198,19 +198,19 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
     stick radius is 0 if all points slip. The fraction is between 0 and 1, equals 1 outside the
-    stick radius, and is independent of Poisson's ratio. It is the superposition of punches of all
-    radii s from c to 1, each rotated by -d phi_lk(s), in closed form (Lubkin 1951).
+    stick radius, and is independent of Poisson's ratio. It is the closed form of a superposition of
+    punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin 1951).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c
     c = np.where(sticks, c, 0.5)
     rho = np.where(sticks, r, 0.0) / c
     # The sum is 1 - Lambda0 (Heuman), with incomplete integrals of modulus c at the angle
-    # arcsin(rho). This one of two complementary angles is exact at r = 0.
+    # arcsin(rho). Of the two complementary angles, this one is exact at r = 0.
     cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
     first = rho * scipy.special.elliprf(cos2, delta2, 1.0)
     rest = rho**3 / 3 * scipy.special.elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
-    # c^2 K(k) tends to 0 with c, but c^2 underflows before K(k) does.
+    # c^2 K(k) tends to 0 with c. It is set to 0 before c^2 underflows.
     k_term = np.where(c > 1e-150, c * c * scipy.special.ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
     share = 2 / np.pi * (scipy.special.ellipe((1 - c) * (1 + c)) * first - k_term * rest)
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
@@ -230,8 +230,8 @@ def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape. The torque is
     in mu*F_z*a. It is 0 at stick radius 1 and TORQUE_FULL_SLIP at 0, independent of Poisson's
-    ratio. It is the integral of lubkin_traction, and the sum of the torques of punches (16/3) G s^3
-    (-d phi_lk(s)) from s = c to 1 (Lubkin 1951).
+    ratio. It is the integral of lubkin_traction, and also the sum of the torques (16/3) G s^3 (-d
+    phi_lk(s)) of punches from s = c to 1 (Lubkin 1951).
     """
     c = checked("stick_radius", stick_radius, high=1.0)[..., None]
     # With dD/ds = -E(k)/s the integrand is s^2 E(k). After s = t^2 its only singularity, s^4 ln s

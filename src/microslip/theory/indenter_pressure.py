@@ -1,4 +1,4 @@
-"""Interface of the pressure under an axisymmetric indenter, as used by closed forms."""
+"""Interface through which closed forms use the pressure under an axisymmetric indenter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class IndenterPressure(Protocol):
-    """Attributes of a pressure.Pressure that closed forms of axisymmetric indenters use.
+    """The part of pressure.Pressure that closed forms for axisymmetric indenters use.
 
     Attributes
     ----------
@@ -44,4 +44,4 @@ class IndenterPressure(Protocol):
     def loading(self) -> Callable: ...
 
     def total(self, depth: np.ndarray) -> np.ndarray:
-        """Load at an indentation depth >= 0, with the shape of the depth."""
+        """Load at an indentation depth >= 0. The result has the shape of `depth`."""

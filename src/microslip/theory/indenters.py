@@ -1,8 +1,8 @@
 """Static limits and torsion of any axisymmetric indenter, by quadrature to about 1e-8.
 
-The limits apply at Poisson's ratio 0, and the limit of the bore at any ratio. For a sphere they
-agree with the closed forms of `paper`, which are faster. Quantities are dimensionless as in
-`paper`.
+The limit for transverse oscillation applies at Poisson's ratio 0, the limit for bore at any ratio.
+For a sphere they agree with the closed forms of `paper`, which are faster. Quantities are
+dimensionless as in `paper`.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
 
 
 def _kink(pressure: IndenterPressure) -> float:
-    """Radius of the flat end of an indenter, where its pressure has a kink; 0 if there is no flat
+    """Radius of an indenter's flat end, where the pressure has a kink; 0 if there is no flat
     end."""
     return float(pressure.radius(1e-300))
 
@@ -208,8 +208,8 @@ def _kink(pressure: IndenterPressure) -> float:
 def _over_the_circle(
     function: Callable[[np.ndarray], np.ndarray], radius: float, kink: float
 ) -> float:
-    """Integrate a function of the radius over a circle, at whose edge it behaves like a square
-    root."""
+    """Integrate a function of the radius over a circle. The function behaves like a square root at
+    the edge."""
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):
         r = end - (end - start) * _NODES**4

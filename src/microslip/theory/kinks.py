@@ -1,4 +1,4 @@
-"""Kinks in the friction of a motion, where an interpolation of friction needs a border.
+"""Kinks of friction as a function of velocity and amplitude. An interpolation needs a border there.
 
 At two places friction is continuous, but its slope or curvature is not: at the amplitude above
 which no point sticks during slow sliding, and at the velocity above which no point ever sticks. A
@@ -15,9 +15,10 @@ import numpy as np
 from microslip.foundation import spec
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate along two directions. Their numbers default to 1."""
+"""Name of the motions that oscillate in two directions. Parameters missing from a name are 1."""
 LOAD = "normal"
-"""Name of the motions whose normal load or indentation oscillates. Their load defaults to 1."""
+"""Name of the motions whose normal load or indentation oscillates. A load missing from a name is
+1."""
 
 
 class Kinks(NamedTuple):
@@ -26,10 +27,10 @@ class Kinks(NamedTuple):
     Attributes
     ----------
     amplitudes : tuple of float
-        Amplitudes of the kinks at velocities below the velocity of the kink.
+        Amplitudes at which friction has a kink if the velocity is below the kink velocity.
     velocity : tuple of float
-        Velocity of the kink: empty if there is no kink, (v,) if it is v at all amplitudes, and (n0,
-        n1, c0, c1, c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
+        Kink velocity: empty if there is none, (v,) if it is v at all amplitudes, and (n0, n1, c0,
+        c1, c2) if it is (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) at the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()
@@ -39,37 +40,39 @@ class Kinks(NamedTuple):
 KINKS = {
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
-    # Contact is lost at the amplitude 1. At smaller amplitudes friction is full above a velocity,
-    # because the load never grows faster than the springs at the growing edge are stretched. The
-    # velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up to 2 % larger.
+    # Contact is lost at the amplitude 1. At smaller amplitudes friction is full above a certain
+    # velocity, because the load never grows faster than the springs at the growing edge are
+    # stretched. The velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up
+    # to 2 % larger.
     "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
-"""Kinks by motion under Hertz's pressure."""
+"""Kinks by motion under Hertz pressure."""
 UNDER_ANY = {
-    # The whole contact slides sideways at the amplitude 1. Above the velocity a part of the contact
-    # no longer sticks at the turning points. The curve is fitted to jumps in the second differences
-    # of friction under Hertz's pressure: 0.030, 0.113, 0.30, 0.56 and 0.69 at the amplitudes 0.2,
-    # 0.5, 1, 2 and 3. It passes a little above them, because this deforms the neighbouring cells
-    # less. Under other pressures it saves a tenth to a quarter of the points.
+    # The whole contact slides sideways at the amplitude 1. Above the kink velocity a part of the
+    # contact no longer sticks at the turning points. The curve is fitted to jumps in the second
+    # differences of friction under Hertz pressure: 0.030, 0.113, 0.30, 0.56 and 0.69 at the
+    # amplitudes 0.2, 0.5, 1, 2 and 3. It passes a little above them, because this deforms the
+    # neighbouring cells less. Under other pressures it saves a tenth to a quarter of the points.
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
     # Friction is full at velocities above A, because the contact never moves backward. Above the
     # amplitude 1 the whole contact also slides backward.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
-    # Springs that are pressed deeper have the same velocity. Contact is lost at the amplitude 1.
+    # All springs in contact are pressed in at the same velocity. Contact is lost at the amplitude
+    # 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
 """Kinks by motion under any pressure, in the units of that pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """Kinks of a motion under a pressure, which are given by name. Most motions have no kinks."""
+    """Kinks for a motion and a pressure, both given by name. Most motions have no kinks."""
     of_hertz = KINKS if pressure == "hertz" else {}
     kinks = UNDER_ANY | of_hertz
     return kinks[motion] if motion in kinks else _of_family(motion)
 
 
 def _of_family(motion: str) -> Kinks:
-    """Kinks of loops, and of an oscillating load together with another component.
+    """Kinks of loops, and of motions that combine an oscillating load with another component.
 
     The velocity of a loop is the largest velocity of its forward oscillation: at larger velocities
     the loop never moves backward. Friction has no kink there, but it changes on this scale of
@@ -88,8 +91,8 @@ def _of_family(motion: str) -> Kinks:
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
-    """Velocity of the kink at amplitudes >= 0, with the same shape. `kinks.velocity` must not be
-    empty."""
+    """Kink velocity at each amplitude >= 0. The result has the shape of `amplitude`.
+    `kinks.velocity` must not be empty."""
     first, *rest = kinks.velocity
     amplitude = np.asarray(amplitude, float)
     if not rest:

@@ -14,7 +14,7 @@ import numpy as np
 from microslip.theory.hertz import checked, mindlin_force
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
-# Clustered at both ends, where the curves have half powers.
+# Nodes are clustered at both ends, where the curves have half-integer powers.
 _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
 _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
 _HALVINGS = 60
@@ -34,8 +34,8 @@ def longitudinal(
     amplitude : array_like
         Amplitude in u_lim, >= 0. It is broadcast with the velocity.
     curve : callable
-        Force divided by mu F_z as a function of the displacement from rest. Defaults to the curve
-        of a sphere.
+        Force divided by mu F_z as a function of the displacement from rest. The default is the
+        curve of a sphere.
 
     Returns
     -------
@@ -131,7 +131,8 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Change of the force since a turn: the curve of first loading at twice the scale."""
+    """Change of the force since a turn, which is the curve of the first loading at twice the
+    scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 

@@ -8,10 +8,10 @@ contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because at every tau the stretch is at most the yield stretch. So the yield stretch exceeds the
-stretch by phi(t) - min phi with phi(t) = d(t) - v t, at any x. The mean over the springs is an
-integral over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working
-units of an indenter's pressure.Pressure.
+because at every tau the stretch is at most the yield stretch. With phi(t) = d(t) - v t, the stretch
+is phi(t) - min phi below the yield stretch, at any x. The mean over the springs is an integral over
+T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of an
+indenter's pressure.Pressure.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> fl
     loss = np.pi - motion.touch
     if by_load:
         return float(loss + amplitude * np.sin(loss)) / np.pi
-    # the load has the power 3/2 where contact is lost, so the nodes are clustered twice
+    # near loss of contact the load has the power 3/2, so the nodes are clustered twice
     t = np.pi - loss * _NODES**2
     return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
@@ -77,7 +77,7 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
         later = rises[i + 1 :]
         start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
         # springs that are always in contact, or come into contact while phi falls, have the same
-        # lack as those that come into contact at the next minimum of phi
+        # phi - min phi as springs that come into contact at the next minimum of phi
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
         for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
             width = other - one
@@ -111,7 +111,7 @@ class _Motion:
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t: np.ndarray) -> np.ndarray:
-        """Return a function with the sign of phi', which is finite where contact begins."""
+        """Return values that have the sign of phi' and are finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the load grows with the present stiffness of the contact
             radius = self.pressure.radius(self.pressure.of_load(height))
@@ -119,7 +119,7 @@ class _Motion:
         return self.amplitude * np.sin(t) - self.velocity
 
     def rises(self) -> list[tuple[float, float]]:
-        """Intervals (low, high) of the time of the growing contact in which phi rises."""
+        """Time intervals (low, high) in which the contact grows and phi rises."""
         t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _SAMPLES)) ** 2
         up = self._climbs(t) > 0.0
         up[-1] = False
@@ -132,8 +132,8 @@ class _Motion:
     def kinks(
         self, low: float, high: float, later: Sequence[tuple[float, float]]
     ) -> Iterator[float]:
-        """Contact radii at which phi equals one of its later minima, which are at the times
-        `later`."""
+        """Contact radii at which phi equals one of its later minima. The intervals `later` begin at
+        these minima."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 level = self.phi(np.array([other]))
@@ -147,7 +147,7 @@ class _Motion:
     def lack(
         self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
     ) -> np.ndarray:
-        """Integral over time of phi - min phi from the times `start`, shape (n,).
+        """Integrals of phi - min phi over time, from the times `start`; shape (n,).
 
         phi rises from `start` to `high`, and again in the intervals `later`.
         """

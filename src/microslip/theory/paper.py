@@ -60,7 +60,7 @@ def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
 
 
 def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
-    """Fraction of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
+    """Fraction of the Hertz load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
     Raises ValueError unless 0 <= stick_radius <= 1; the argument can have any shape.
     """
@@ -93,8 +93,8 @@ def steady_bore_traction(
 ) -> tuple:
     """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
-    The traction has the size hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral); it is 0 at the centre of rotation. One sign in the paper's pair
+    The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
+    (-forward, velocity + lateral). It is 0 at the centre of rotation. One sign in the paper's pair
     is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position relative to the
     contact centre. Raises ValueError unless velocity >= 0; the arguments are broadcast.
     """
@@ -142,7 +142,7 @@ def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, 
 
 
 def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Forward friction of the steady continuous bore under Hertz's pressure (Eq 21).
+    """Forward friction of the steady continuous bore under Hertz pressure (Eq 21).
 
     It is (3 pi/8)(v - v^3/4) for v <= 1, and the hypergeometric function 2F1(-1/2, 1/2; 5/2;
     1/v^2), which tends to 1, for v > 1. Raises ValueError unless velocity >= 0; the argument can
@@ -160,7 +160,7 @@ def _fast_forward(inverse: np.ndarray) -> np.ndarray:
 
 
 def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Torque of the steady continuous bore under Hertz's pressure, divided by its value at rest (Eq
+    """Torque of the steady continuous bore under Hertz pressure, divided by its value at rest (Eq
     22).
 
     It is 1 - v^2 + (3/8) v^4 for v <= 1, and 16/(15 pi v) 2F1(1/2, 1/2; 7/2; 1/v^2) for v > 1.
@@ -175,7 +175,7 @@ def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
 
 # Oscillating bore
 def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
-    """Forward friction under oscillating bore of large amplitude, steady at each instant (Eq 29).
+    """Quasi-steady forward friction under oscillating bore of large amplitude (Eq 29).
 
     It is the mean of bore_forward(velocity/cos(tau)) over tau. Raises ValueError unless velocity >=
     0; the argument can have any shape.
@@ -199,7 +199,7 @@ def _slow_mean(velocity: np.ndarray) -> np.ndarray:
     sine = np.sqrt((1 - v) * (1 + v))
     rotating = 3 * np.pi / 8 * ((v - v**3 / 8) * np.log((1 + sine) / v) - v * sine / 8)
     # The rest is the integral of v f(s) / sqrt(1 - v^2 s^2) over s = cos(tau)/v from 0 to 1. Here f
-    # has half powers at s = 1, and the root is singular near it. The substitution
+    # has half-integer powers at s = 1, and the root is singular near s = 1. The substitution
     # 1 - s = (1/v - 1) sinh(h)^2 removes both.
     h_end = np.arcsinh(np.sqrt(v / (1 - v)))
     sinh = np.sinh(h_end[..., None] * _NODES)
@@ -247,7 +247,8 @@ def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
 
 
 # The exact limits for v -> 0 are integrals over the stick zone of the oscillation. The integrand is
-# the largest constant forward traction whose sum with the oscillating traction is within the bound.
+# the largest constant forward traction that can be added to the oscillating traction without
+# exceeding the bound.
 def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
 
@@ -276,9 +277,9 @@ def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillating bore, v -> 0.
 
     It is the integral over the stick zone of (2/pi) g arccos(tau/g), the largest forward traction
-    averaged over the angle. It is exact for every Poisson's ratio, because the stick radius and the
-    torsional traction tau at a given phi~ do not depend on it. Raises ValueError unless amplitude
-    >= 0; the argument can have any shape.
+    averaged over the angle. It is exact for every Poisson's ratio, because neither the stick radius
+    nor the torsional traction tau at a given phi~ depends on Poisson's ratio. Raises ValueError
+    unless amplitude >= 0; the argument can have any shape.
     """
     c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
@@ -295,10 +296,10 @@ def _stick_zone_rule(
 
     The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
     r dr is minus the product of the roots times d(eta). The substitution resolves the edge layer of
-    a small amplitude. The nodes of eta follow a squared sine, because the integrands have half
-    powers at both ends.
+    a small amplitude. The nodes of eta follow a squared sine, because the integrands have
+    half-integer powers at both ends.
     """
-    # Smaller amplitudes change friction by less than rounding.
+    # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)
     end = np.arcsinh(c / complement)[..., None]
     eta = end * np.sin(np.pi / 2 * _NODES) ** 2

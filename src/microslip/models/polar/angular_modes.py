@@ -2,9 +2,9 @@
 modes.
 
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
-0 the forward tractions of a mode cause only forward displacements, and its lateral tractions only
-lateral displacements, with the same matrix of rings.  At nu > 0 the complex waves e^{i m theta} of
-forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
+0 the forward tractions of a mode cause only forward displacements, and the lateral tractions only
+lateral displacements.  Both have the same ring matrix.  At nu > 0 the complex waves e^{i m theta}
+of forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Rings
 
 SHARED_MODES = (9, 17, 33)
-"""Numbers of modes for which kernels are averaged.  Runs at 4, 6 and 8 angles share the same
+"""Possible numbers of modes with averaged kernels.  Runs at 4, 6 and 8 angles share the same
 averages."""
 
 
@@ -46,7 +46,7 @@ class Modes(NamedTuple):
         Matrices.blocks of each wave at nu = 0, or of each pair of neighbouring waves at nu > 0.  A
         pair forms one row of twice the width.
     points, waves : np.ndarray of int, shape (sectors contacts, ...)
-        Indices of the rows of a field, and of `amplitudes`, that belong to a sector of a contact.
+        Indices of the rows that belong to a sector of a contact, in a field and in `amplitudes`.
     amplitudes, images : np.ndarray, shape (sectors, contacts waves width)
         Scratch arrays.
     """
@@ -97,7 +97,7 @@ def modes_of(
 @operator(Modes)
 @kernel
 def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """Fill image with an operator applied to field, see operators.operator."""
+    """Fill `image` with an operator applied to `field`, see operators.operator."""
     sectors, waves, _ = modes.to_modes.shape
     contacts, amplitudes, images = len(modes.points) // sectors, modes.amplitudes, modes.images
     width = amplitudes.shape[1] // (contacts * waves)
@@ -147,7 +147,7 @@ def combine(
 
 @kernel
 def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
-    """Set image[0, row] = matrix[row] field[0, row]; like operators.multiply_rows for one
+    """Set image[0, row] = matrix[row] field[0, row].  This is operators.multiply_rows for one
     component."""
     _, rows, chunks, columns, _ = operators.blocks.shape
     width = field.shape[1] // rows
@@ -165,8 +165,8 @@ def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: n
 
 
 WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
-"""Symmetry by which the tractions on half of the disc determine those on the other half; the whole
-disc has no such symmetry."""
+"""Symmetry by which the tractions on half of the disc determine those on the other half.  WHOLE
+means that there is no such symmetry."""
 
 
 def _single_waves(
@@ -189,7 +189,7 @@ def _single_waves(
 
 
 def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
-    """Pairs of waves at nu > 0: first those that are coupled, then those that are not.
+    """Pairs of waves at nu > 0: first the coupled pairs, then the pairs without coupling.
 
     A wave is (m, part): part 0 is e^{i m theta}, and part 1 is i e^{i m theta}.  The shortest waves
     of a whole disc or of a rotation are not coupled, because their cosine is 0 at all points.
@@ -233,7 +233,7 @@ def _coupled_matrices(
 
 
 def _modes_to_average(angles: int) -> int:
-    """Number of modes for which kernels are averaged, at least angles + 1; see SHARED_MODES."""
+    """Number of modes with averaged kernels, at least angles + 1; see SHARED_MODES."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 

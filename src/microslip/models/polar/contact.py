@@ -3,14 +3,14 @@
 Points are on rings at the angles theta_j = (j + 1/2) pi / M from the lateral axis.  Only one half
 of the disc is resolved; the other half follows from symmetry:
 
-- for rotations, a mirror across the lateral axis (forward traction even, lateral traction odd);
+- for rotations, a reflection across the lateral axis (forward traction even, lateral traction odd);
 - for translations, the point symmetry traction(-z) = traction(z), so that all modes are even.
 
 A motion that combines a rotation and a translation has neither symmetry, so the whole disc is
 resolved.
 
 Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
-with one matrix of rings for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
+with one ring matrix for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 FEWEST_PROLONGED = 16
-"""Smallest number of rings for which tractions of a coarser contact are a better initial guess than
+"""Smallest number of rings at which tractions from a coarser mesh are a better initial guess than
 the static limit."""
 
 
@@ -40,7 +40,7 @@ class PolarContact(SystemContact):
     cells, angles : int
         Number of rings, and number of points of each ring on half the disc, which must be even.
     rotates : bool
-        Whether the motion is a rotation, with mirror symmetry; otherwise it is a translation.
+        Whether the motion is a rotation, which has mirror symmetry; otherwise it is a translation.
     poisson : float
         Poisson's ratio.
     focus : mesh.Focus, float or None
@@ -85,7 +85,7 @@ class PolarContact(SystemContact):
             rings, angles, symmetry, poisson, pressure.G_star, self.layout.width
         )
         self.resultants = np.ones(3)
-        if not whole:  # the other half of the disc cancels this resultant
+        if not whole:  # the other half of the disc cancels this force
             self.resultants[contact.LATERAL if rotates else contact.TORQUE] = 0.0
         self._made_of = cells, focus, pressure
 
@@ -136,7 +136,7 @@ class PolarContact(SystemContact):
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
         share = state / rings.bound
-        # continue the angles beyond the lateral axis, where forward tractions are even
+        # extend the angles beyond the lateral axis, across which forward tractions are even
         beyond = share[:, [0, -1]] * contact.MIRROR
         share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
         angles = (np.arange(-1, count + 1) + 0.5) / count

@@ -5,7 +5,7 @@ and Mindlin).  For slip in two directions it is an approximation, because the sp
 interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit
 length, where h(x) is the depth for the contact radius x divided by the reference depth.  So the
 spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a
-sphere.  At d times the reference depth it begins to slide at (d - h) u_lim if this is above 0.
+sphere.  At d times the reference depth, it begins to slide at (d - h) u_lim if d > h.
 """
 
 from __future__ import annotations

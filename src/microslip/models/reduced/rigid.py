@@ -15,13 +15,13 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
-"""Grading of the steps towards the turning points.  There the direction of slip reverses within a
-phase of about v/y."""
+"""Grading of the steps towards the turning points.  At a turning point the direction of slip
+reverses within a phase of about v/y."""
 
 
 class RigidContact(contact.Contact):
-    """Points on rings and at angles on half the disc, or a single point for a translation (see
-    models.contact)."""
+    """Rigid contact with points on rings and at angles on half the disc, or with a single point for
+    a translation (see models.contact)."""
 
     compiled = False
     sticks = False

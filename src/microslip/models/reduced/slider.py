@@ -1,8 +1,8 @@
 """The elastic single slider: one friction element behind an isotropic spring (Benad et al. 2019).
 
-The element slides once the displacement exceeds u_lim, as the whole contact does, so the
-dimensionless groups are the same.  The model has no partial slip.  It is accurate and cheap well
-above the static limit; near this limit its friction is that of Eq 7.
+Like the whole contact, the element slides once the displacement exceeds u_lim, so the dimensionless
+groups are the same.  The model has no partial slip.  It is accurate and cheap well above the static
+limit; near this limit its friction is that of Eq 7.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Contact of rings.  It is exact for translations at nu = 0, where tractions depend on the radius
-alone."""
+"""Contact of rings.  It is exact for translations at nu = 0, because the tractions then depend on
+the radius alone."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class RadialContact(SystemContact):
     Parameters
     ----------
     influence : np.ndarray, shape (cells, cells)
-        Matrix from mean tractions of rings to mean displacements of rings.  It is symmetric after
-        multiplication of its rows by `weight`.
+        Matrix that maps mean ring tractions to mean ring displacements.  It becomes symmetric if
+        its rows are multiplied by `weight`.
     bound, weight : np.ndarray, shape (cells,)
         Friction bound and area of each ring.
     stiffness : float or None
@@ -125,14 +125,14 @@ class RadialContact(SystemContact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Effective radii (cells + 1,): the radius of a contact that is as stiff as the first k
-        rings without slip.
+        """Effective radii (cells + 1,): the radius of a contact that has the stiffness of the first
+        k rings without slip.
 
         An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
-        contact when the contact radius is halfway between the effective radii without and with this
-        ring.  A growing contact then has the correct stiffness on average.  If the ring joined when
-        the contact reached its inner edge, it would stick too early, which is an error of first
-        order.
+        contact when the contact radius reaches the mean of the effective radii without and with
+        this ring.  A growing contact then has the correct stiffness on average.  If the ring joined
+        when the contact reached its inner edge, it would stick too early, which is an error of
+        first order.
         """
         part = np.linalg.solve(np.linalg.cholesky(self._weighted), self.weight)
         # w^T B^-1 w of the first k rings, B: weighted influence
@@ -157,8 +157,8 @@ class RadialContact(SystemContact):
         Rings join or leave the contact only at the last stage of a step, because the integrator
         would carry a jump at an earlier stage over to the later stages.  A ring that joins at the
         last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
-        should be strained for half of the step.  The contact radius is therefore evaluated earlier
-        by the difference."""
+        should be strained for half of the step.  The contact radius is therefore evaluated at an
+        earlier time, to make up for the difference."""
         assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
         ends = self._checked_growth.pressure.radius(path.depth[::stages])

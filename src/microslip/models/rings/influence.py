@@ -29,8 +29,8 @@ from microslip.theory.hertz import G_STAR
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
-"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral, and the
-exponent that clusters the inner points where the rings are closest, since the kernels have a
+"""Numbers of Gauss points for the outer (averaging) and the inner (singular) ring integral.  The
+exponent clusters the inner points where the rings are closest, because the kernels have a
 logarithmic singularity there."""
 APART_POINTS = 5
 """Number of Gauss points on each of two rings whose distance is at least the width of a ring."""
@@ -46,8 +46,8 @@ class Averaging(NamedTuple):
     coupled : bool
         Whether the modes m and 2 - m are coupled (nu > 0).
     outer, inner : tuple of np.ndarray
-        Rules for the narrower ring, and for the other ring starting at the point of closest
-        approach.
+        Rules for the narrower ring, and for the other ring.  The latter starts at the point of
+        closest approach.
     apart : tuple of np.ndarray
         Rule for both rings if their distance is at least the width of a ring.
     """
@@ -83,7 +83,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
     for p in range(len(x_out)):
         at = a0 + (a1 - a0) * x_out[p]
         weight_out = (a1 - a0) * w_out[p] * _weight(at) / norm_i
-        # the inner ring is divided at the point of nearest approach
+        # the inner ring is divided at the point of closest approach
         cut = min(max(at, b0), b1)
         for end in (b0, b1):
             length = end - cut
@@ -105,7 +105,7 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
 
 @kernel
 def _weight(psi: float) -> float:
-    """Shape of Hertz's friction bound times r dr/dpsi, at r = sin psi."""
+    """Shape of the Hertz friction bound times r dr/dpsi, at r = sin psi."""
     c = np.cos(psi)
     return np.sin(psi) * c * c
 
@@ -142,7 +142,7 @@ def ring_influence(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Influence matrices of angular modes on rings of a half-space.
 
-    Tractions on a ring have the shape of Hertz's friction bound.  Averages are Galerkin averages,
+    Tractions on a ring have the shape of the Hertz friction bound.  Averages are Galerkin averages,
     so the matrices near[m] are symmetric after weighting with the ring areas.
 
     Parameters

@@ -2,7 +2,7 @@
 
 Edges are r = sin(psi) with equidistant psi, unless the mesh is graded towards a focus.  This
 refines the mesh at the edge of the contact, where smooth pressures fall like a square root.
-Contacts with a hole are refined at its edge in the same way."""
+Contacts with a hole are refined at the edge of the hole in the same way."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ class Rings:
     bound : np.ndarray, shape (n,)
         Mean friction bound of each ring; area @ bound is 1.
     radius : np.ndarray, shape (n,)
-        Mean lever arm of a traction with the shape of the friction bound.  With it the torque at
-        full slip is exact.
+        Mean lever arm of a traction with the shape of the friction bound.  It makes the torque at
+        full slip exact.
     """
 
     psi: np.ndarray
@@ -114,7 +114,7 @@ def _as_focus(focus: Focus | float) -> Focus:
 
 
 def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
-    """Edges (count + 1,) as angles psi, graded towards `places`; each of the places is an edge.
+    """Edges (count + 1,) as angles psi, graded towards `places`.  Each place is an edge.
 
     Between two places, the rings in the middle are the widest.
     """
@@ -142,7 +142,7 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Number of rings before each of the ends, in proportion to psi, with at least a few rings on
+    """Number of rings before each end, in proportion to psi.  There are at least a few rings on
     both sides of each place."""
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]

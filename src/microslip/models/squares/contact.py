@@ -2,8 +2,7 @@
 
 This model is the general reference for the other models, and the discretisation of the paper.
 Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
-have in common.  Only one of the cells that are related by these symmetries is resolved (see
-`_images`)."""
+have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`)."""
 
 from __future__ import annotations
 
@@ -27,8 +26,8 @@ class CartesianContact(SystemContact):
     """Contact of squares over the circumscribed square (see models.contact.Contact).
 
     States have the shape (2, cells, cells), with the forward coordinate along axis 1 and the
-    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell that
-    is cut by the edge of the contact carries the load of the part inside the contact.
+    lateral one along axis 2.  With symmetry, axis 1 or both axes have half the length.  A cell cut
+    by the edge of the contact carries only the load inside the contact.
 
     Parameters
     ----------
@@ -89,7 +88,7 @@ class CartesianContact(SystemContact):
         self.mirror = mirror
         self.operators = convolved(convolution, rows, columns)
         self.resultants = np.ones(3)
-        if self.images > 1:  # the images of the squares cancel this resultant
+        if self.images > 1:  # the images of the squares cancel this force
             self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
     def solver(self, weight: np.ndarray) -> Descent:
@@ -102,8 +101,8 @@ def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
     """Number of squares of the whole contact for each resolved square: 1, 2 or 4.
 
     Displacements of a translation are symmetric under a half turn, and those of a rotation under a
-    mirror across the lateral axis.  For translations at nu = 0, forward and lateral displacements
-    are independent, and each is even along both axes.
+    reflection across the lateral axis.  For translations at nu = 0, forward and lateral
+    displacements are independent, and each is even along both axes.
     """
     if len(loads) % 2 or not symmetry:
         return 1

@@ -1,10 +1,10 @@
 """Surface displacement of square cells under tractions, by a compiled FFT convolution.
 
 Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
-of a transform is in digit-reversed order, as are the transformed influence coefficients and the
-input of the inverse transform, so that no array is ever sorted.  Butterflies run over whole rows,
-which the compiler turns into vector instructions.  The transforms skip rows that are zero or not
-needed.
+of a transform is in digit-reversed order.  The transformed influence coefficients and the input of
+the inverse transform have the same order, so that no array is ever sorted.  Butterflies run over
+whole rows, which the compiler turns into vector instructions.  The transforms skip rows that are
+zero or not needed.
 
 For symmetric fields the transform of a part is sufficient: a quarter for fields that are even along
 both axes (quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
@@ -29,7 +29,7 @@ class Convolution(NamedTuple):
     """Tables of the compiled convolution.
 
     P is the padded number of cells along a side of the resolved part.  H is the number of lateral
-    frequencies, which is P, or less if half of the squares are resolved.
+    frequencies.  It is P, or less if half of the squares are resolved.
 
     Attributes
     ----------
@@ -38,11 +38,11 @@ class Convolution(NamedTuple):
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
     kernel : np.ndarray, shape (P, H)
-        Transform of the influence coefficients, which is real; for a quarter of the squares see
+        Transform of the influence coefficients, which is real; for a quarter of the squares, see
         quarter.folded_filter.
     cross : np.ndarray, shape (2, P, H)
         Transform of the influence coefficients for the conjugate traction, used only if `coupled`;
-        for half of the squares see half.halved_filter.
+        for half of the squares, see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
@@ -84,8 +84,8 @@ def square_convolution(
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     images : int
-        See Convolution.  With 4, fields at nu = 0 are even along both axes, and squares with
-        positive coordinates are resolved.  With 2, fields have a symmetry of half.py, and squares
+        See Convolution.  4: fields at nu = 0 are even along both axes, and only squares with
+        positive coordinates are resolved. 2: fields have a symmetry of half.py, and only squares
         with a positive forward coordinate are resolved.
     symmetry : str
         Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
@@ -134,7 +134,7 @@ def square_convolution(
 def influence(
     cells: int, padded: int, poisson: float, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Influence coefficients of the traction and of its complex conjugate, (P, P) each.
+    """Compute the influence coefficients of the traction and of its complex conjugate, (P, P) each.
 
     The kernels of rings/influence.py are integrated over a square in closed form, and evaluated at
     the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
@@ -176,7 +176,7 @@ def _power(number: int, prime: int) -> int:
 def _radices(padded: int) -> np.ndarray:
     twos = _power(padded, 2)
     radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
-    return np.array(radices, dtype=np.int64)  # integers even if there are none, for a single cell
+    return np.array(radices, dtype=np.int64)  # an integer array even if empty, for a single cell
 
 
 def _order(radices: list[int]) -> np.ndarray:
@@ -194,8 +194,8 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill out with A q; q and out are forward and lateral parts of the resolved squares, (2, rows,
-    columns); scratch: from `workspace`."""
+    """Fill `out` with A q.  Both contain forward and lateral parts of the resolved squares, (2,
+    rows, columns). scratch: arrays from `workspace`."""
     (first, second), radices, roots = scratch, operator.radices, operator.roots
     columns, width = q.shape[1], second.shape[2]
     _spread(operator, q, first)
@@ -242,7 +242,8 @@ class Convolved(NamedTuple):
 
 
 def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
-    """Create the operator of one contact on fields of rows and columns, with scratch arrays."""
+    """Create the operator of one contact on fields of shape (2, rows, columns), with scratch
+    arrays."""
     scratch = np.empty((2, 2, rows, columns))
     return Convolved(convolution, np.ones(1), *workspace(convolution), scratch[0], scratch[1])
 
@@ -252,7 +253,7 @@ def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
 def apply_convolution(
     convolved: Convolved, number: int, field: np.ndarray, image: np.ndarray
 ) -> None:
-    """Fill image with A applied to field, see operators.operator."""
+    """Fill `image` with A applied to `field`, see operators.operator."""
     scratch = (convolved.first, convolved.second)
     traction, displacement = convolved.traction, convolved.displacement
     points = traction[0].size
@@ -286,7 +287,7 @@ def _spread(operator: Convolution, q: np.ndarray, first: np.ndarray) -> None:
 
 @kernel
 def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: np.ndarray) -> None:
-    """Transpose, for the transform along the other axis."""
+    """Transpose the array for the transform along the other axis."""
     if operator.images == 4:
         quarter.fold(operator.folding, columns, first, second)
     elif operator.images == 2:
@@ -304,8 +305,8 @@ def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: n
 
 @kernel
 def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
-    """Multiply the transform by the transform of the influence coefficients; first: scratch
-    array."""
+    """Multiply the transform in `second` by the transform of the influence coefficients. first:
+    scratch array."""
     if operator.images == 4:
         quarter.apply_filter(operator.folding, operator.kernel, second)
     elif not operator.coupled:
@@ -354,8 +355,8 @@ def _gather(operator: Convolution, first: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def _multiply_coupled(operator: Convolution, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill out with kernel times transform, plus cross times transform of the conjugate
-    traction."""
+    """Fill `out` with `kernel` times the transform of the traction, plus `cross` times the
+    transform of its conjugate."""
     padded = values.shape[1]
     for i in range(padded):
         far = operator.opposite[i]

@@ -80,8 +80,8 @@ def _turn(frequencies: np.ndarray, cells: int, padded: int) -> np.ndarray:
 
 @kernel
 def turned(q: np.ndarray, out: np.ndarray) -> None:
-    """Copy rows of q (2, m, n) to columns of out (2, P, H), lateral part first, and zeros below
-    them."""
+    """Copy the rows of `q`, (2, m, n), to columns of `out`, (2, P, H), with the lateral part first
+    and zeros below."""
     m, n = q.shape[1], q.shape[2]
     for part in range(2):
         for row in range(n):
@@ -103,10 +103,10 @@ def turned_back(values: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def completed(halving: Halving, m: int, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill 2 m rows of out with all cells along the forward axis, at the H lateral frequencies.
+    """Fill 2 m rows of `out` with all cells along the forward axis, at the H lateral frequencies.
 
-    values: lateral transform of m rows of cells, in columns; both arrays are (2, P, H), and the
-    other rows of out become 0.
+    values: lateral transform of m rows of cells, stored in columns.  Both arrays have the shape (2,
+    P, H).  The other rows of `out` become 0.
     """
     for column in range(len(halving.rows)):
         near, far = halving.rows[column], halving.images[column]

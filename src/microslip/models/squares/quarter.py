@@ -1,10 +1,10 @@
-"""Convolution of fields that are even along both axes, computed from a quarter of their cells.
+"""Convolution of fields that are even along both axes, computed from a quarter of the cells.
 
 The Fourier transform of an even field of 2 m cells is a cosine transform (type II) of the m cells
-of one half.  These are padded to the length L, half the padded length of the whole field.  A
-Fourier transform of length L gives the cosine transform, if cells with even numbers come first and
-the others follow in reverse order (Makhoul 1980).  With its values Z at the frequencies k and L -
-k, and t = pi k / (2 L),
+of one half.  These m cells are padded to the length L, which is half the padded length of the whole
+field.  A Fourier transform of length L gives the cosine transform, if cells with even numbers come
+first and the others follow in reverse order (Makhoul 1980).  With the values Z of this Fourier
+transform at the frequencies k and L - k, and t = pi k / (2 L),
 
     2 C_k = exp(-i t) Z_k + exp(i t) Z_{L-k},      Z_k = exp(i t) (C_k - i C_{L-k}),      Z_0 = C_0.
 
@@ -30,7 +30,7 @@ class Folding(NamedTuple):
     place : np.ndarray, shape (L,)
         Row of each cell in the input of the transform.
     opposite : np.ndarray, shape (L,)
-        Row of the frequency L - k for the row of k; the same row for k = 0.
+        Row of the frequency L - k, for the row of each frequency k; the same row for k = 0.
     turn : np.ndarray, shape (2, L)
         cos and sin of pi k / (2 L) for each row.
     """
@@ -52,7 +52,8 @@ def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
 
 
 def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
-    """Coefficients (L, L) for `apply_filter`, from the cosine transform of influence coefficients.
+    """Compute the coefficients (L, L) for `apply_filter` from the cosine transform of influence
+    coefficients.
 
     The first of two opposite rows contains half their sum, and the second half their difference.
     transform: cosine transform (L, L), with the rows along the second axis and without the factor 2
@@ -67,7 +68,8 @@ def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
 
 @kernel
 def spread(folding: Folding, q: np.ndarray, out: np.ndarray) -> None:
-    """Copy cells of q (2, m, m) to their rows of out (2, L, L), and zeros to the other rows."""
+    """Copy the cells of `q`, (2, m, m), to their rows in `out`, (2, L, L), and zeros to the other
+    rows."""
     m, padded = q.shape[1], out.shape[1]
     for part in range(2):
         for row in range(m):
@@ -80,7 +82,7 @@ def spread(folding: Folding, q: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def gather(folding: Folding, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill cells of out (2, m, m) from their rows of `values` (2, L, L)."""
+    """Fill the cells of `out`, (2, m, m), from their rows in `values`, (2, L, L)."""
     for part in range(2):
         for row in range(out.shape[1]):
             for column in range(out.shape[2]):
@@ -89,10 +91,11 @@ def gather(folding: Folding, values: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def fold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill out with twice the cosine transform, transposed, from the Fourier transform in the first
-    m columns of `values`.
+    """Fill `out` with twice the cosine transform, transposed.  The first m columns of `values`
+    contain the Fourier transform.
 
-    Rows of out are in the order of the input of the next transform; both arrays are (2, L, L).
+    The rows of `out` have the order that the next transform needs.  Both arrays have the shape (2,
+    L, L).
     """
     padded = values.shape[1]
     for row in range(padded):
@@ -111,7 +114,8 @@ def fold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def unfold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill out with the Fourier transform, transposed back, from the cosine transform of m rows."""
+    """Fill `out` with the Fourier transform, transposed back, from the cosine transform of m
+    rows."""
     padded = values.shape[1]
     for column in range(m):
         cell = folding.place[column]

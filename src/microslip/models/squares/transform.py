@@ -40,7 +40,7 @@ def forward(
 def backward(
     re: np.ndarray, im: np.ndarray, columns: int, radices: np.ndarray, roots: np.ndarray
 ) -> None:
-    """Apply the inverse of `forward`, times the number of rows."""
+    """Apply the inverse of `forward`, multiplied by the number of rows."""
     part, padded = 1, re.shape[0]
     for radix in radices[::-1]:
         length = part * radix
