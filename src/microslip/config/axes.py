@@ -1,4 +1,4 @@
-"""Coordinates of the axes of sweeps.
+"""Coordinates of sweep axes.
 
 The module imports nothing slow, since every parse of the workflow imports it.
 """
@@ -13,10 +13,10 @@ from microslip.foundation.canonical import number
 DRIVES = ("mass", "damping", "stiffness", "force")
 """Parameters of a drive, in the order of the dimensions of datasets."""
 MOST_POINTS = 1_000_000
-"""Largest number of points of a sweep.  With more points, each start of the workflow takes a
+"""Largest number of points in a sweep.  With more points, each start of the workflow would take a
 minute."""
 MOST_MAP_POINTS = 10_000
-"""Largest number of points of the map of a study.  Every model computes all of them."""
+"""Largest number of points in a study's map.  Every model computes all points."""
 
 
 def refuse_crowd(points: int, most: int, key: str = "") -> None:
@@ -56,5 +56,5 @@ def _spaced(spacing: str, start: float, stop: float, count: int) -> list[float]:
         values = (start + (stop - start) * i / (count - 1) for i in range(count))
     else:
         values = (start * math.exp(math.log(stop / start) * i / (count - 1)) for i in range(count))
-    # Six digits are readable and do not depend on the machine.
+    # Coordinates with six digits are readable and do not depend on the machine.
     return [float(f"{value:.6g}") for value in values]

@@ -1,4 +1,4 @@
-"""Certified maps, which the key `adaptive` of a sweep requests."""
+"""Certified maps.  A sweep requests one with the key `adaptive`."""
 
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
 """Models of the half-space.  The drift threshold has closed forms for these models."""
 SHARE_OF_POINTS = 0.3
-"""Default tolerance of the points of a map, as a fraction of the error of the map."""
+"""Default tolerance of the points, divided by the largest error of the map."""
 
 
 def _demand(condition: bool, circumstance: str, allowed: str) -> None:
@@ -20,7 +20,7 @@ def _demand(condition: bool, circumstance: str, allowed: str) -> None:
 
 
 def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
-    """The certified map of a sweep.  Raises Refusal if the sweep cannot have one."""
+    """Create the certified map of a sweep.  Raises Refusal if the sweep cannot have one."""
     many = len(sweep.amplitude or ()) > 1
     if sweep.drives:
         names = [name for name, _, _ in sweep.drives]
@@ -44,7 +44,7 @@ def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
 
 
 def refuse_unsolvable(map_: CertifiedMap) -> None:
-    """Raise Refusal for a map of drift if the threshold has no closed form."""
+    """Raise Refusal for a drift map if the threshold has no closed form."""
     from microslip.config.extended import solver_names
     from microslip.theory import drift_threshold
 

@@ -1,4 +1,4 @@
-"""Reading of a YAML file into the checked records of a configuration.
+"""Read a YAML file and convert it to the checked records of a configuration.
 
 `settings` contains the types, ranges and defaults of all keys.  This module checks combinations of
 keys and expands axes.
@@ -35,7 +35,7 @@ from microslip.foundation.errors import InputError
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
 MOST_PANELS, MOST_LINES = 12, 8
-"""Largest number of sweeps on a figure of maps, and on a figure of lines.  A sweep counts once for
+"""Largest number of sweeps in a figure of maps, and in a figure of lines.  A sweep counts once for
 each Poisson's ratio."""
 
 
@@ -108,7 +108,7 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
 def with_defaults_and_paths(
     mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
 ) -> dict:
-    """Fill in the defaults and the paths of files of a parsed configuration.
+    """Fill in the defaults and the file paths of a parsed configuration.
 
     A job can use the result in any working directory.
 
@@ -166,8 +166,8 @@ def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
     """Add the path and the digest of the file to the name of a motion or a pressure, if it has a
     file.
 
-    If the file is missing, raises InputError if `strict` is set; otherwise returns the unchanged
-    name.
+    A name without a file is returned unchanged.  If the file is missing, raises InputError if
+    `strict` is set; otherwise returns the name unchanged.
     """
     if not named_files.speaks_of_file(name):
         return name
@@ -184,8 +184,8 @@ def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
 
 @contextmanager
 def _errors_at(where: str) -> Iterator[None]:
-    """Context manager that converts errors to ConfigError, with a message of one line that begins
-    with `where`."""
+    """Context manager that converts errors to ConfigError.  The message is one line and begins with
+    `where`."""
     try:
         yield
     except ConfigError:
@@ -193,7 +193,7 @@ def _errors_at(where: str) -> Iterator[None]:
     except Refusal as error:
         key = f".{error.key}" if error.key else ""
         raise ConfigError(_one_line(f"{where}{key}: {error}")) from None
-    except InputError as error:  # arguments of the solver and keys have the same names
+    except InputError as error:  # solver arguments and keys have the same names
         line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
         raise ConfigError(_one_line(line)) from None
     except ValueError as error:  # from readers of files
@@ -221,8 +221,8 @@ def from_mapping(
     Raises
     ------
     ConfigError
-        If the configuration is invalid.  The message is one line with source, key, value and what
-        is allowed.
+        If the configuration is invalid.  The message is one line with the source, the key, the
+        value and the allowed values.
     """
     settings = _settings(mapping, source)
     entries: dict[str, SteadySweep] = {}
@@ -332,7 +332,7 @@ def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
 
 
 def _refuse_mixtures(sweeps: list[Sweep]) -> None:
-    """Raise Refusal for a group of sweeps that does not fit on one figure."""
+    """Raise Refusal for a group of sweeps that does not fit in one figure."""
     for group in dict.fromkeys(sweep.group for sweep in sweeps):
         together = [sweep for sweep in sweeps if sweep.group == group]
         first, last = together[0], together[-1]

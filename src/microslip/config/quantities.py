@@ -21,7 +21,7 @@ class Quantity:
         Label of an axis.
     unit : str
         Definition as a ratio, in plain text.  It is "" if the symbol is the ratio.
-        report.figures.formulas converts it to other notations.
+        report.figures.formulas converts the definition to other notations.
     symbol, latex : str
         Symbol in plain text and in LaTeX.
     description : str

@@ -7,20 +7,20 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
-"""Motions of the paper, by the names of their sweeps, which are also the names of their datasets.
-Motions are named as on the command line."""
+"""Name of a sweep -> motion of the paper, as on the command line.  The dataset has the same name as
+the sweep."""
 HISTORIES_OF_SWEEP = {
     "transverse": ("transverse",),
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
-"""Single runs that the dataset of a sweep contains, for figures."""
+"""Name of a sweep -> single runs in its dataset, which figures show."""
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
 RESERVED += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
-"""Names of datasets and of folders of batches.  Other sweeps must not have these names."""
+"""Names of datasets and batch folders.  Other sweeps must not have these names."""
 MODELS_OF_MOTION = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
@@ -28,18 +28,18 @@ MODELS_OF_MOTION = {
     "longitudinal": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
 }
-"""Models that apply to each motion.  They are copied from models.registry, which is slow to
-import."""
+"""Models that apply to each motion.  The table is copied from models.registry, because that module
+is slow to import."""
 LOOSEST_POINTS = 1e-2
-"""Largest tolerance of the points of a certified map.  The refinement would mistake larger errors
+"""Largest tolerance of the points in a certified map.  The refinement would mistake larger errors
 for curvature, and halve cells without need."""
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 """Largest amplitude with static friction in the maps of the paper, for each motion."""
 
 
 class ConfigError(ValueError):
-    """Error for an invalid configuration.  The message is one line with file, key, value and what
-    is allowed."""
+    """Error for an invalid configuration.  The message is one line with the file, the key, the
+    value and the allowed values."""
 
 
 class Refusal(ValueError):
@@ -78,14 +78,14 @@ class Sweep:
 
     @property
     def spans_a_map(self) -> bool:
-        """True if there are at least two amplitudes and two positive velocities, which a map can
-        show."""
+        """True if the sweep can be drawn as a map, because it has at least two amplitudes and two
+        positive velocities."""
         positive = [velocity for velocity in self.velocity if velocity > 0]
         return len(self.amplitude or ()) > 1 and len(positive) > 1
 
     @property
     def drawn_over(self) -> str:
-        """Quantity on the abscissa in the figure of a group."""
+        """Quantity on the horizontal axis in a group's figure."""
         if self.spans_a_map:
             return "velocity and amplitude"
         return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
@@ -122,7 +122,7 @@ class CertifiedMap:
 
     @property
     def force(self) -> float | None:
-        """The largest force of a map of drift; None for a map of friction."""
+        """The largest force of a drift map; None for a friction map."""
         drives = {name: values for name, values, _ in self.sweep.drives}
         return drives["force"][-1] if "force" in drives else None
 

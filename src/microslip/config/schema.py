@@ -1,4 +1,4 @@
-"""The JSON schema of a configuration, and one-line messages for invalid ones."""
+"""The JSON schema of a configuration, and one-line messages for invalid configurations."""
 
 import difflib
 import json
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 UNKNOWN = ("extra_forbidden", "invalid_key")
-"""Types of pydantic's errors for unknown keys."""
+"""Types of pydantic errors for unknown keys."""
 
 
 @cache
@@ -25,8 +25,7 @@ def schema() -> dict:
     from microslip.config.settings import Root
 
     class Generator(GenerateJsonSchema):
-        """Generator of a JSON schema without titles of fields, and with a schema for the names of
-        keys."""
+        """JSON schema generator that omits field titles and adds a schema for the names of keys."""
 
         def field_title_should_be_set(self, schema: Any) -> bool:
             return False
@@ -51,7 +50,7 @@ def options(rule: dict) -> list[dict]:
 
 
 def error_line(errors: Iterable["ErrorDetails"]) -> str:
-    """Message for one of the errors of pydantic, with key, value and what is allowed.
+    """Message for one of the pydantic errors, with the key, the value and the allowed values.
 
     Unknown keys come first: a mistyped key is reported as unknown and not as missing.
     """
@@ -104,7 +103,7 @@ def _line(error: "ErrorDetails") -> str:
 
 
 def _keys(location: tuple[int | str, ...]) -> list[int | str]:
-    """Keys and indices of a location of pydantic, without the tags of unions and "[key]"."""
+    """Keys and indices in a pydantic location, without union tags and "[key]"."""
     return [key for key in location if key not in ("(list)", "(spacing)", "(number)", "[key]")]
 
 
@@ -135,7 +134,7 @@ def _as_number(text: str) -> str:
         # YAML reads +.5 as text, and 010 as 8.
         plain = re.fullmatch(r"-?(0|[1-9][0-9]*)?(\.[0-9]*)?", text)
         return f"write the number without quotes: {text if plain else f'{value:.17g}'}"
-    # YAML 1.1 reads a number only with a point before the e and a sign after it.
+    # YAML 1.1 reads a number with an e only if a point precedes the e and a sign follows it.
     mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
     return f"write {mantissa}e{int(exponent):+d}"
 

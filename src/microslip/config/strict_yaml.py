@@ -1,4 +1,4 @@
-"""A loader of YAML that refuses repeated keys and misleading numbers.
+"""A YAML loader that refuses repeated keys and misleading numbers.
 
 YAML itself keeps the last of two equal keys, and reads 010 as 8, 1:30 as 90 and 1.0e-400 as 0,
 without a warning.  The module imports nothing slow, since every parse of the workflow imports it.
@@ -10,8 +10,8 @@ from typing import IO
 import yaml
 
 MOST_VALUES = 100_000
-"""Largest number of keys and values of a file after expansion of aliases.  Checking so many takes
-a few seconds."""
+"""Largest number of keys and values in a file after expansion of aliases.  Checking this number
+takes a few seconds."""
 
 UNFINISHED = 0
 """Placeholder for the size of a node whose children are being counted."""
@@ -29,7 +29,8 @@ class StrictLoader(yaml.SafeLoader):
         self._checked: list[yaml.Node] = []
 
     def get_single_node(self) -> yaml.Node | None:
-        """Parse the document.  Too many values are refused before any of them is constructed."""
+        """Parse the document.  A document with too many values is refused before any value is
+        constructed."""
         node = super().get_single_node()
         if node is not None and _expanded_size(node, {}) > MOST_VALUES:
             raise yaml.constructor.ConstructorError(
@@ -56,12 +57,12 @@ class StrictLoader(yaml.SafeLoader):
             previous.append(key)
 
     def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        """Construct an integer.  A number that YAML reads to another base is refused."""
+        """Construct an integer.  A number that YAML reads in another base is refused."""
         self._refuse_other_bases(node)
         return super().construct_yaml_int(node)
 
     def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
-        """Construct a number.  A number that YAML reads to another base, or that underflows, is
+        """Construct a number.  A number that YAML reads in another base, or that underflows, is
         refused."""
         self._refuse_other_bases(node)
         value = super().construct_yaml_float(node)
@@ -70,7 +71,7 @@ class StrictLoader(yaml.SafeLoader):
         return value
 
     def _refuse_other_bases(self, node: yaml.ScalarNode) -> None:
-        """Raise ConstructorError for a number that YAML 1.1 reads to another base: 010 as 8, 1:30
+        """Raise ConstructorError for a number that YAML 1.1 reads in another base: 010 as 8, 1:30
         as 90."""
         text = self.construct_scalar(node).lstrip("+-")
         if ":" in text:
@@ -94,8 +95,8 @@ class StrictLoader(yaml.SafeLoader):
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
     """Number of nodes of a tree after expansion of aliases.
 
-    sizes: receives the sizes of the nodes, by id.  Raises ConstructorError for a node that
-    contains itself.
+    sizes: dict to which the sizes of the nodes are added, by id.  Raises ConstructorError for a
+    node that contains itself.
     """
     if sizes.get(id(node)) == UNFINISHED:
         raise yaml.constructor.ConstructorError(

@@ -192,7 +192,7 @@ class _Levels:
         return [self.other_runs[number, level] for number in range(len(self.readings))]
 
     def estimate(self, level: int, goal: float) -> Refined:
-        """Estimate with `level` as the finest level. goal: largest accepted resolution error."""
+        """Estimate with `level` as the finest level; goal: largest accepted resolution error."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
         floor = SMALLEST_SHARE * min(goal, LOOSEST)

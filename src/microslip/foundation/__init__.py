@@ -1,2 +1,2 @@
-"""Basic functions for all packages: errors, names with numbers, compiled functions, source
+"""Basic functions for all packages: errors, names with parameters, compiled functions, source
 digests."""

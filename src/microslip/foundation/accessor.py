@@ -1,8 +1,8 @@
 """The accessors `microslip` and `friction` of xarray datasets.
 
 `import microslip` registers them, so that maps opened by `xarray.open_dataset(...)` have them.
-Importing xarray takes a third of a second.  A process that uses no dataset saves this time, since
-the accessors are registered only when xarray is imported.
+Importing xarray takes a third of a second.  The accessors are registered only when xarray is
+imported, so that processes without datasets save this time.
 """
 
 import sys

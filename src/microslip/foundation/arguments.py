@@ -9,7 +9,7 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values.  Larger ones are typing errors, or exceed the memory or the range of
+"""Largest allowed values.  Larger values are typing errors, or exceed the memory or the range of
 floats."""
 SMALLEST_TOLERANCE = 1e-6
 """Smallest allowed absolute tolerance of mu_macro."""
@@ -21,7 +21,7 @@ u_lim, with a rounding error of 1e-7 u_lim.  It is equivalent to a constant forc
 
 
 def is_real(value: object) -> TypeGuard[float]:
-    """True for real numbers, except booleans and NumPy's time spans."""
+    """True for real numbers, except booleans and NumPy time spans."""
     if isinstance(value, int | float):
         return not isinstance(value, bool)
     import numpy as np  # late, since configurations do not need NumPy
@@ -35,7 +35,7 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
-    """A finite number from low to high, as a float.  Raises InputError for anything else."""
+    """Return a finite number from low to high as a float.  Raises InputError for anything else."""
     if not is_real(value):
         raise InputError(name, value, "allowed is a number")
     try:
@@ -49,7 +49,7 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
 
 
 def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
-    """An integer from low to most, as an int.  Raises InputError for anything else."""
+    """Return an integer from low to most as an int.  Raises InputError for anything else."""
     if not is_whole(value) or not low <= value <= most:
         kind = "an even whole number" if even else "a whole number"
         raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")

@@ -1,4 +1,4 @@
-"""Canonical texts of values, and their hashes, which are equal for equal values.
+"""Canonical texts of values, and hashes of these texts. Equal values have equal texts and hashes.
 
 The module imports only the standard library, since every start of the workflow imports it.
 """
@@ -11,8 +11,8 @@ import math
 def number(value: float) -> str:
     """Canonical decimal string of a finite number, such as 1 (for 1.0), 0.001 or 1e-8.
 
-    It is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
-    Raises ValueError for other values.
+    The number is rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same
+    coordinate. Raises ValueError unless the value is a finite number.
     """
     if isinstance(value, bool | str) or not math.isfinite(value):
         raise ValueError(f"{value!r} is not a finite number")
@@ -37,6 +37,5 @@ def sha256(text: str) -> str:
 
 
 def fingerprint(*parts: object) -> str:
-    """First 32 digits of the SHA-256 of some values.  parts: values that can be converted to
-    JSON."""
+    """First 32 digits of the SHA-256 of `parts`, which are values that can be converted to JSON."""
     return sha256(canonical_json(parts))[:32]

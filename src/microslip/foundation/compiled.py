@@ -1,4 +1,4 @@
-"""Compilation of functions by Numba, with all options of Numba that the package sets.
+"""Compilation of functions with Numba.  This module sets all Numba options of the package.
 
 kernel_cache.py chooses the folder of the compiled code.  Results do not depend on this folder.
 """
@@ -18,16 +18,17 @@ from microslip.foundation.kernel_cache import BySources, folder
 
 numba.config.SLP_VECTORIZE = 1
 """Combine neighbouring scalar operations into vector instructions, which Numba does not do by
-default.  Products of matrices then take half the time."""
+default.  Matrix products then take half the time."""
 
 BLAS = "scipy.linalg.cython_blas"
 
 
 def _look_for_blas() -> None:
-    """Import the module of Numba that searches for BLAS, without importing all of scipy.linalg.
+    """Import Numba's module that searches for BLAS, without importing all of scipy.linalg.
 
-    Numba searches for BLAS when it loads any kernel, and imports scipy.linalg for this.  That
-    takes a fifth of the CPU time of `microslip point`.  So BLAS is imported without its package.
+    Numba searches for BLAS when it loads any kernel, and imports scipy.linalg for this.  This
+    import takes a fifth of the CPU time of `microslip point`.  So BLAS is imported without its
+    package.
     """
     if "scipy.linalg" in sys.modules:
         return
@@ -44,18 +45,17 @@ def _look_for_blas() -> None:
 _look_for_blas()
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""Options of Numba.  Code is compiled once and stored on disk, sums are not reordered, and
-division by zero works as in NumPy."""
+"""Numba options.  Code is compiled once and stored on disk, sums are not reordered, and division by
+zero works as in NumPy."""
 
 
 @contextlib.contextmanager
 def _cache_folder() -> Iterator[None]:
-    """Context manager in which Numba stores the code of new functions in the folder of
-    kernel_cache.py."""
+    """Context manager in which Numba stores new compiled code in the folder of kernel_cache.py."""
     config = numba.config
     before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
-    # A version of Numba without locators uses only the folder.  Copies of the package then share
-    # no code.
+    # A Numba version without locators uses only the folder.  Copies of the package then do not
+    # share compiled code.
     locator = f"{BySources.__module__}.{BySources.__qualname__}"
     config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(folder()), locator
     try:

@@ -18,7 +18,7 @@ PURE = ("", "1", "-")
 ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 DECIMALS = (".", ",")
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
-"""Pattern of the texts that spreadsheets write to a cell without a value, such as #N/A and
+"""Pattern of the texts that spreadsheets write in a cell without a value, such as #N/A and
 #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
 """Pattern of a number with points between thousands, or of a number with three decimals."""
@@ -34,7 +34,7 @@ def check_format(decimal: str, encoding: str) -> None:
         raise InputError("decimal", decimal, "allowed is '.' or ','")
     try:
         codecs.lookup(encoding)
-        "".encode(encoding)  # no encoding from bytes to bytes
+        "".encode(encoding)  # refuses encodings from bytes to bytes
     except (LookupError, TypeError, ValueError):
         allowed = "allowed is the name of an encoding, such as utf-8 or cp1252"
         raise InputError("encoding", encoding, allowed) from None
@@ -70,8 +70,8 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
 
 
 def words(line: str, separator: str) -> list[str]:
-    """Cells of the heading line, without surrounding spaces and quotes, and without empty last
-    cells."""
+    """Cells of the heading line, without surrounding spaces and quotes.  Empty cells at the end are
+    omitted."""
     cells = [word.strip().strip("\"'").strip() for word in line.split(separator)]
     while len(cells) > 1 and not cells[-1]:
         cells.pop()
@@ -79,8 +79,8 @@ def words(line: str, separator: str) -> list[str]:
 
 
 def cells(where: int, line: str, separator: str, count: int) -> list[str]:
-    """Cells of a line.  Raises ValueError unless there are `count` cells, except empty ones at the
-    end."""
+    """Cells of a line.  Additional empty cells at the end are omitted.  Raises ValueError unless
+    `count` cells remain."""
     try:
         rows = csv.reader([line], delimiter=separator, strict=True, skipinitialspace=True)
         cells = [cell.strip() for cell in next(rows)]
@@ -98,7 +98,7 @@ def cells(where: int, line: str, separator: str, count: int) -> list[str]:
 
 
 def with_point(where: int, name: str, cell: str, decimal: str) -> str:
-    """The text of a cell, with decimal points in its numbers.
+    """Text of a cell, with decimal points in all numbers.
 
     Raises ValueError if the decimal mark of a number differs from the declared one.
     """
@@ -115,10 +115,10 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
 
 
 class Thousands:
-    """Search for columns in which points may separate thousands.
+    """Detector of columns in which points may separate thousands.
 
     In a file with decimal commas, 900 and 1.100 may mean 900 and 1100.  If commas separate the
-    cells, the decimal mark is a point and nothing is refused.
+    cells, the decimal mark is a point, so no column is refused.
     """
 
     def __init__(self, separator: str, columns: Sequence[str]):

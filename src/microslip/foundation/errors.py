@@ -6,7 +6,7 @@ from __future__ import annotations
 import errno
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Operating system errors whose message is enough to find the remedy."""
+"""Operating system errors whose message suffices to find the remedy."""
 
 LONGEST = 400
 """Largest number of characters of a value in a message.  The middle of a longer value is
@@ -37,7 +37,7 @@ class InputError(ValueError):
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
-        """A copy with another argument, and with another value unless `value` is None."""
+        """Return a copy with another argument, and with another value unless `value` is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
 
 

@@ -1,11 +1,11 @@
-"""Optional packages, which the extras of pyproject.toml install."""
+"""Optional packages, which are installed by the extras in pyproject.toml."""
 
 from __future__ import annotations
 
 from importlib.util import find_spec
 
 EXTRAS = {"matplotlib": "plot", "snakemake": "workflow"}
-"""Extra of pyproject.toml that installs each package."""
+"""Package -> extra in pyproject.toml that installs it."""
 
 
 def missing(package: str) -> str:

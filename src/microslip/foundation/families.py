@@ -1,4 +1,4 @@
-"""Families of classes with a separate file for each class, and the text forms of their objects.
+"""Families of classes.  Each class has its own file, and each object has a text form.
 
 Each class is a frozen dataclass whose fields are numbers with defaults.  The text of an object is
 the name of its class, followed by the numbers that differ from their defaults, as in
@@ -29,17 +29,17 @@ def modules_in(
 ) -> Iterator[tuple[str, ModuleType]]:
     """Name and module of each file in a folder.  The files become modules of the package.
 
-    A file that cannot be imported is skipped, so that only commands that name it fail.  A file
-    that has the same name as a file in another folder is also skipped, since the name is ambiguous.
+    A file that cannot be imported is skipped, so that only commands with its name fail.  A file
+    with the same name as a file in another folder is also skipped, because the name is ambiguous.
 
     Parameters
     ----------
     folder : str or path
-        Folder of the package or of the user.
+        Folder of the package, or a user's folder.
     package : module
         The package whose modules the files become.
     broken : dict of str to str
-        Receives the path and the error of each skipped file, by its name.
+        Dict to which the path and the error of each skipped file are added, by file name.
     """
     if str(folder) not in package.__path__:
         package.__path__.append(str(folder))
@@ -49,7 +49,7 @@ def modules_in(
         path = Path(os.path.abspath(folder), f"{file.name}.py")
         try:
             module = import_module(f"{package.__name__}.{file.name}")
-        except (Exception, SystemExit) as error:  # the code of a user may raise anything
+        except (Exception, SystemExit) as error:  # a user's code may raise anything
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
         if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
@@ -61,7 +61,8 @@ def modules_in(
 
 
 def described(error: BaseException, path: str | os.PathLike) -> str:
-    """One line with the type of an error, its line in the file at `path`, and its message."""
+    """One line with the type of an error, the line number in the file at `path`, and the
+    message."""
     lines = [
         frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)
     ]
@@ -73,7 +74,7 @@ def described(error: BaseException, path: str | os.PathLike) -> str:
 
 
 class Registry(Generic[T]):
-    """Classes by name, from the folders of a package and of the user.
+    """Classes by name, from the folders of a package and from users' folders.
 
     Parameters
     ----------
@@ -115,7 +116,7 @@ class Registry(Generic[T]):
     def find(self, folder: str | os.PathLike) -> None:
         """Register the classes in a folder.
 
-        For a file that cannot be used, an InputError is raised only when its name is requested.
+        A file that cannot be used raises an InputError only when its name is requested.
         """
         modules = dict(modules_in(folder, self.package, self.broken))
         for file, module in modules.items():
@@ -150,8 +151,8 @@ class Registry(Generic[T]):
         Raises
         ------
         InputError
-            If the name is unknown, if its file cannot be used, or if the class does not have or
-            accept the numbers.
+            If the name is unknown, if its file cannot be used, or if the class lacks a parameter or
+            refuses its value.
         """
         if named_files.speaks_of_file(text):
             return self.from_file(text)
@@ -170,14 +171,15 @@ class Registry(Generic[T]):
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
         try:
             return _shared_object(cls, tuple(sorted(numbers.items())))
-        except InputError as error:  # its text lacks numbers with default values
+        except InputError as error:  # its text omits default values
             raise InputError(self.argument, text, error.allowed) from None
-        except Exception as error:  # in a file of the user
+        except Exception as error:  # in a user's file
             path = str(import_module(cls.__module__).__file__)
             raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
 
 
 @lru_cache(maxsize=128)
 def _shared_object(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
-    """The object for these numbers.  Equal numbers share one object and its cached properties."""
+    """Return the object for these numbers.  Equal numbers share one object, including its cached
+    properties."""
     return cls(**dict(numbers))

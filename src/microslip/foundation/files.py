@@ -11,15 +11,16 @@ from pathlib import Path
 from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
 LEAST_ROOM = 65536
-"""Number of free bytes on the disk that a calculation needs to start."""
+"""Free disk space in bytes that a calculation needs to start."""
 ABANDONED = 3600.0
-"""Age in seconds above which a partial file counts as abandoned by a killed process."""
+"""Age in seconds above which a partial file is considered abandoned by a killed process."""
 
 
 def refuse_no_folder(folder: object) -> None:
     """Raise CacheError if the name of a folder is empty, is not a text, or begins with ~.
 
-    A shell replaces ~ by the home folder.  Here, it would become a folder of that name.
+    A shell replaces ~ by the home folder.  Without a shell, a folder with the name ~ would be
+    created.
     """
     path = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
     name = path if isinstance(path, str) else ""
@@ -31,9 +32,9 @@ def refuse_no_folder(folder: object) -> None:
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
-    """Raise CacheError if a file has the name of a folder to be made, or vice versa.
+    """Raise CacheError if a file exists in place of a folder to be made, or vice versa.
 
-    folders, files: paths that a run will make.  The folders that contain them are checked, too.
+    folders, files: paths that a run will make.  Their parent folders are checked as well.
     """
     try:
         for folder in map(Path, folders):
@@ -72,24 +73,24 @@ def writing_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     except OSError as error:
         raise CacheError(advice("write", path, _cause(error, beside))) from error
     except RuntimeError as error:
-        # The error of netCDF if HDF5 cannot write.
+        # netCDF raises this error if HDF5 cannot write.
         if not str(error).startswith("NetCDF: "):
             raise
         raise CacheError(advice("write", path, _cause(error, beside))) from error
     finally:
-        # It exists only after an error or an interrupt.
+        # The temporary file exists only after an error or an interrupt.
         with suppress(OSError):
             beside.unlink()
 
 
 def _unique_beside(path: Path) -> Path:
-    """A temporary name in the same folder, which no other thread, process or container uses."""
+    """A temporary path in the same folder.  No other thread, process or container uses it."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:16]}.part")
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """The error from writing a small file to the same folder.  If there is none, the original
-    error.
+    """Return the error from writing a small file to the same folder, or the original error if this
+    succeeds.
 
     On a full disk HDF5 reports "Permission denied" or "HDF error".
     """

@@ -1,8 +1,8 @@
-"""Folders for the code that compiled.py compiles.
+"""Folders for code compiled by compiled.py.
 
-Numba checks stored code by the date and size of the file of the function.  It ignores edits of
-other files that the function uses.  So the name of the folder contains a digest of all compiled
-functions and of the modules that they import.  Each edit leads to another folder.
+Numba checks stored code by the date and size of the function's own file.  It ignores edits of other
+files that the function uses.  So the name of the folder contains a digest of all compiled functions
+and of the modules that they import.  Each edit leads to another folder.
 """
 
 from __future__ import annotations
@@ -19,12 +19,11 @@ from platformdirs import user_cache_path
 from microslip.foundation import source_digest
 
 FOLDER_NAME = "compiled-"
-"""Prefix of the names of these folders."""
+"""Prefix of the folder names."""
 
 
 class BySources:
-    """Cache locator of Numba.  It gives the folder and the stamp of the compiled code of a
-    function.
+    """Numba cache locator.  It returns the folder and the stamp for a function's compiled code.
 
     The name of the folder depends on the sources.  So a copy of the package with the same sources
     uses the same compiled code, even if the dates of its files differ.
@@ -35,7 +34,7 @@ class BySources:
 
     @classmethod
     def from_function(cls, function: Callable, file: str) -> BySources:
-        """The locator of a function."""
+        """Create the locator for a function."""
         return cls(function)
 
     def ensure_cache_path(self) -> None:
@@ -43,7 +42,7 @@ class BySources:
         Path(self.get_cache_path()).mkdir(parents=True, exist_ok=True)
 
     def get_cache_path(self) -> str:
-        """Folder of the compiled code of the function's module."""
+        """Folder for the compiled code of the function's module."""
         return str(folder() / self.function.__module__)
 
     def get_source_stamp(self) -> str:
@@ -57,18 +56,17 @@ class BySources:
 
 
 def places() -> list[Path]:
-    """Possible parents of the folders of compiled code, in the order in which they are tried."""
+    """Possible parent folders, in the order in which they are tried."""
     chosen = [Path(place) for place in [os.environ.get("NUMBA_CACHE_DIR")] if place]
     return [*chosen, source_digest.PACKAGE / "__pycache__", user_cache_path("microslip")]
 
 
 @cache
 def folder() -> Path:
-    """Folder for compiled kernels of the running sources.  It is made if it does not
-    exist.
+    """Folder for the compiled kernels of the running sources.  It is made if it does not exist.
 
-    The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the cache folder
-    of the user, or a temporary folder.  A temporary folder is reported once on standard error.
+    The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the user's cache
+    folder, or a temporary folder.  A temporary folder is reported once on standard error.
     """
     name = FOLDER_NAME + source_digest.LOADED.kernels_digest[:16]
     for place in places():

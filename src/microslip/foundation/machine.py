@@ -14,7 +14,7 @@ CPU_LIST = Path("/proc/cpuinfo")
 
 @functools.cache
 def cpu_model() -> str:
-    """Model name of the processor, such as "AMD EPYC 7B13", or else its architecture."""
+    """Model name of the processor, such as "AMD EPYC 7B13". If it is unknown, the architecture."""
     named = _from_linux() or _from_macos() or platform.processor() or platform.machine()
     return " ".join(named.split()) or "unknown"
 
@@ -44,7 +44,7 @@ def _threads() -> int:
     for name in (
         "OPENBLAS_NUM_THREADS",
         "OMP_NUM_THREADS",
-    ):  # the first variable that is set counts
+    ):  # the first variable that is set determines the number
         value = os.environ.get(name, "")
         if value.isdigit() and int(value) > 0:
             return int(value)

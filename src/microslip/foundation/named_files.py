@@ -1,4 +1,4 @@
-"""Names of files, such as "file:pad.csv,grid=samples", and reading of these files.
+"""File names such as "file:pad.csv,grid=samples", and functions that read these files.
 
 A result depends on the content of a file and not on its path.  So the digest of the content
 replaces the path in the name of a pressure or a motion:
@@ -53,7 +53,7 @@ _PLACES: dict[str, Path] = {}
 
 @dataclass(frozen=True)
 class NamedFile:
-    """The path, the digest and the options in the name of a file.
+    """The parsed name of a file: path, digest and options.
 
     Attributes
     ----------
@@ -79,7 +79,8 @@ class NamedFile:
 
     @property
     def name(self) -> str:
-        """The name in results.  It has no path and is equal for equal content."""
+        """The name in results.  It contains no path, so that files with equal content have equal
+        names."""
         return self._text(f"sha256={self.digest}")
 
     @property
@@ -191,7 +192,8 @@ def read(
 
 
 def remember(names: Iterable[str]) -> None:
-    """Store the paths of files from names with path and digest.  Other names are ignored."""
+    """Store the file paths from names that contain a path and a digest.  Other names are
+    ignored."""
     for file in map(parse, filter(speaks_of_file, names)):
         if file.digest and file.path:
             _PLACES[file.digest] = Path(file.path)
@@ -206,7 +208,7 @@ def with_path(name: str) -> str:
 
 
 def base_name(name: str) -> str:
-    """Base name of the file of a name, for messages; "" if this process has not stored the path."""
+    """Base name of a file, for messages; "" if this process has not stored the path."""
     if not speaks_of_file(name):
         return ""
     file = parse(name)
@@ -246,7 +248,7 @@ def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
     OSError
         If the file cannot be read.
     ValueError
-        If the file is larger than `most`, or is a device without an end.
+        If the file is larger than `most`, or is a device that never ends.
     """
     with open(path, "rb") as file:
         content = file.read(most + 1)

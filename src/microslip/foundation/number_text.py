@@ -12,13 +12,13 @@ ERROR_DIGITS = 2
 EXACT_DIGITS = 4
 """Number of significant digits of a number without an error."""
 EXACT = 1e-9
-"""Relative error below which a number is printed without its error, since all printed digits are
-right."""
+"""Relative error below which a number is printed without its error, because all printed digits are
+correct."""
 ROUNDING = 1e-12
 """Error below which a zero is printed without its error.  It is the rounding error of numbers near
 1."""
 FIXED = -4, 7
-"""Decimal exponents between which numbers are printed without an exponent."""
+"""Range of decimal exponents in which numbers are printed without an exponent."""
 _ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
 _WIDE = Context(prec=800)
 """Decimal context with enough digits for calculations with any two floats."""
@@ -28,7 +28,7 @@ SEPARATOR = " +- "
 
 
 def error_text(error: float) -> str:
-    """An error with two significant digits, rounded up.  Infinity, NaN and 0 are unchanged.
+    """Format an error with two significant digits, rounded up.  Infinity, NaN and 0 are unchanged.
 
     The shortest decimal representation of the float is rounded.  So 0.01 stays 0.01, although its
     float is slightly larger.
@@ -42,7 +42,7 @@ def error_text(error: float) -> str:
 def number_text(
     value: float, error: float = 0.0, unit: str = "", *, digits: int = EXACT_DIGITS
 ) -> str:
-    """Text of a number with its error estimate and its unit.
+    """Format a number with its error estimate and its unit.
 
     Parameters
     ----------
@@ -57,11 +57,11 @@ def number_text(
     Returns
     -------
     str
-        A text such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits,
-        and the number is rounded to the last decimal of the error.  If the error is too small to
-        be printed, zeros at the end of the number are kept.  For a number without an error they
-        are removed.  A number that is 0 within its error, or within the rounding error of numbers
-        near 1, is printed as 0.  Its printed error then includes the number itself.
+        A text such as "0.2263 +- 0.0072 N".  The error is rounded up to two significant digits, and
+        the number is rounded to the last decimal of the error.  If the error is too small to be
+        printed, trailing zeros of the number are kept.  For a number without an error, trailing
+        zeros are removed.  A number that is 0 within its error, or within the rounding error of
+        numbers near 1, is printed as 0.  Its printed error then includes the number itself.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)
@@ -92,10 +92,10 @@ def _text(value: float, error: float, digits: int) -> str:
 
 
 def _plain(value: float, digits: int, zeros: bool = False) -> str:
-    """Text of a number with a given number of significant digits.  It has an exponent only if the
-    number is very large or very small.
+    """Format a number with `digits` significant digits.  Only very large and very small numbers
+    have an exponent.
 
-    zeros: True to keep zeros at the end.
+    zeros: True to keep trailing zeros.
     """
     if value == 0.0:
         return "0"
@@ -107,8 +107,8 @@ def _plain(value: float, digits: int, zeros: bool = False) -> str:
 
 
 def _short(number: Decimal) -> str:
-    """Text with all digits of a decimal.  It has an exponent only if the number is very large or
-    very small."""
+    """Format a decimal with all its digits.  Only very large and very small numbers have an
+    exponent."""
     low, high = FIXED
     return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
 
@@ -118,7 +118,7 @@ def _rounded_up(error: float) -> Decimal:
 
 
 def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
-    """Text of both ends of an interval, rounded outwards to two significant digits of the width.
+    """Format an interval.  Both ends are rounded outwards to two significant digits of the width.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
 
 
 def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
-    """The end of an interval, rounded to a multiple of a power of 10.  Infinity and NaN become
+    """Round the end of an interval to a multiple of a power of 10.  Infinity and NaN become
     texts."""
     if not math.isfinite(end):
         return f"{end:g}"

@@ -1,10 +1,10 @@
 """Digests of the code that computes results and makes products.
 
-The name of a result contains the digest of the physics, which is every package of microslip except
-those in `OUTER`.  In the folders of motions, pressures and methods, a file counts only if the
-physics imports it or the request names it.  So a new file there changes no other result.  The
-stamp of a dataset, page or figure contains the digest of the modules that make it, and of all
-modules that these import.  Comments, docstrings and layout do not count.
+The name of a result contains the digest of the physics.  The physics is every package of microslip
+except those in `OUTER`.  In the folders of motions, pressures and methods, a file counts only if
+the physics imports it or the request names it.  So a new file in these folders does not change
+other results.  The stamp of a dataset, page or figure contains the digest of the modules that make
+it, including all modules imported by them.  Comments, docstrings and layout do not count.
 
 All modules are read once, when the package is imported, so that a digest belongs to the running
 code.
@@ -27,7 +27,7 @@ from microslip.foundation.files import write_atomically
 
 PACKAGE = Path(__file__).parents[1]
 OUTER = {"app", "bundle", "config", "datasets", "report", "si", "studies", "sweeps"}
-"""Folders of the package whose files do not influence results, except the files in ANSWERING."""
+"""Folders of the package that do not influence results, except through the files in ANSWERING."""
 ANSWERING = {"sweeps/evaluate.py", "sweeps/period_codec.py"}
 """Files in OUTER that convert solver output to results."""
 NAMING = {
@@ -38,16 +38,17 @@ NAMING = {
 }
 """Files that name and write results, but do not influence the values in them."""
 ENDINGS = {"py", "html", "css", "js"}
-"""Endings of the names of files that count: modules and parts of pages."""
+"""File name extensions of modules and of parts of pages.  Files with other extensions do not
+count."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
-"""Folders with a file for each name, and the key of a request that contains the name."""
+"""Folder with one file for each name -> key of a request that contains the name."""
 
 
 class Sources:
-    """The modules of a package, and the templates and scripts of its pages, as they were when the
-    object was constructed.
+    """The modules of a package, and the templates and scripts of its pages, at the time of
+    construction.
 
-    contents: dict of the bytes of each file, by its path inside the package.
+    contents: dict from the path of each file inside the package to its bytes.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
@@ -62,7 +63,7 @@ class Sources:
     ) -> frozenset[str]:
         """Paths of modules and of all modules that they import, directly or indirectly.
 
-        inside: function of a path that returns False for imported modules to omit.
+        inside: function that returns False for the path of an imported module to be omitted.
         """
         closure, queue = set(), [*names]
         while queue:
@@ -92,16 +93,16 @@ class Sources:
 
     @cached_property
     def kernels_digest(self) -> str:
-        """Digest of the modules with compiled functions, and of all modules that they import.
+        """Digest of the modules with compiled functions, including all modules imported by them.
 
-        The layout counts, since Numba identifies the code of a function by its line number.
+        The layout counts, because Numba identifies a function's code by its line number.
         """
         compiled = {n for n, c in self.contents.items() if b"microslip.foundation.compiled" in c}
         content = [(n, _sha256(self.contents[n])) for n in sorted(self.closure(compiled))]
         return _sha256(json.dumps(content).encode())
 
     def edited(self) -> str | None:
-        """A file of the physics whose code on disk has changed since it was read; None if there is
+        """Path of a physics file whose code on disk has changed since it was read; None if there is
         none."""
         for name in filter(is_physics, self._dates):
             path, then = self.package / name, self.contents[name]
@@ -144,8 +145,7 @@ class Sources:
         return {}
 
     def _write_parsed(self) -> None:
-        """Store the results of parsing.  Without permission to write, the next process parses
-        again."""
+        """Store the parse results.  Without permission to write, the next process parses again."""
         if not self._is_written:
             self._is_written = True
             with contextlib.suppress(CacheError):
@@ -176,8 +176,7 @@ def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _in_a_users_folder(name: str) -> Path | None:
-    """Path of the file of a motion or a pressure in a folder of the user; None if it does not
-    exist."""
+    """Path of a motion or pressure file in a user's folder; None if it does not exist."""
     folder, _, file = name.rpartition("/")
     package = sys.modules.get(f"{PACKAGE.name}.{folder.replace('/', '.')}")
     places = (Path(place, file) for place in getattr(package, "__path__", ()))
@@ -189,7 +188,7 @@ def _sha256(content: bytes) -> str:
 
 
 _READER = _sha256(Path(__file__).read_bytes())
-"""Digest of this file.  Results of parsing by another version of it are ignored."""
+"""Digest of this file.  Parse results from another version of this file are ignored."""
 
 
 def _parse(content: bytes) -> tuple[str, list[str]]:
@@ -227,7 +226,8 @@ def _text(node: object) -> str:
 
 
 def _is_docstring(node: object) -> bool:
-    """True for a statement that is a string, which may also follow a constant or a field."""
+    """True for a statement that is a string.  It can document a module, a function, a constant or a
+    field."""
     return (
         isinstance(node, ast.Expr)
         and isinstance(node.value, ast.Constant)
@@ -251,11 +251,11 @@ def _of_request(*names: str | None) -> str:
 
 
 def of_solver() -> str:
-    """Digest of the physics, without motions, pressures and methods that only requests name."""
+    """Digest of the physics, except motions, pressures and methods that only requests name."""
     return of_request({"motion": "none"})
 
 
 def of_modules(*names: str) -> str:
-    """Digest of files and folders of the package, and of all modules that they import."""
+    """Digest of files and folders of the package, including all modules imported by them."""
     files = [f for f in LOADED.contents for n in names if f == n or f.startswith(f"{n}/")]
     return LOADED.digest(LOADED.closure(files))

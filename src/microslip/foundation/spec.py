@@ -1,4 +1,4 @@
-"""Names with numbers: "elliptic:forward=0.5,phase=90" is the name elliptic and two numbers."""
+"""Names with parameters: "elliptic:forward=0.5,phase=90" is the name elliptic with two numbers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def read(argument: str, text: str, whole: bool = False) -> float | int:
-    """The number in a text, which must be in Python's notation.
+    """Read a number in Python notation from a text.
 
     Spaces around the number and a typographic minus are accepted.  Underscores, digits of other
     scripts and decimal commas are not accepted.
@@ -30,7 +30,7 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     argument
         Name of the argument, for messages.
     text
-        The number, possibly infinite or NaN.
+        Text of the number, which can be infinite or NaN.
     whole
         True to accept only integers, and to return an int.
 
@@ -49,7 +49,7 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 
 def _float(argument: str, text: str, plain: str) -> float:
-    """The float with the digits `plain`.  Raises InputError if it is out of range."""
+    """Convert the text `plain` to a float.  Raises InputError if it is out of range."""
     number, digits = float(plain), plain.lower().partition("e")[0]
     if number == 0.0 and re.search("[1-9]", digits):
         problem = "nearer 0 than floating-point numbers can be"
@@ -61,7 +61,7 @@ def _float(argument: str, text: str, plain: str) -> float:
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
-    """The name, and a dict of the numbers, in a text such as "elliptic:phase=90".
+    """Split a text such as "elliptic:phase=90" into the name and a dict of numbers.
 
     Raises InputError about the argument `what` if `names` does not contain the name, or if the
     numbers are invalid.
@@ -78,8 +78,8 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
 def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float]:
     """Numbers by name in a part of a text, such as "forward=0.5,phase=90".
 
-    If the part cannot be read, raises InputError about the argument `what`, with the whole text and
-    an example.
+    If the part cannot be read, raises InputError about the argument `what`.  The message contains
+    the whole text and an example.
     """
     numbers = {}
     for one in part.split(","):

@@ -35,7 +35,7 @@ class Body:
         return self.mass > 0.0 or self.damping > 0.0
 
     def along(self, path: Path, start: np.ndarray) -> Drive:
-        """Return the Drive for a path. start: x and x' at the start of the path, shape (2,)."""
+        """Return the Drive for a path; start: x and x' at the start of the path, shape (2,)."""
         share = 1.0 / (1.0 + path.carry[-1].sum())  # gamma: the last row of a_ij sums to 1
         lengths = share * np.diff(path.phase)
         return Drive(

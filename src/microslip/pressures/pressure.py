@@ -181,8 +181,10 @@ class Pressure:
 
     @property
     def stiffness(self) -> float:
-        """Force for a uniform displacement u_lim without slip, divided by mu F_z.  It is 2 G* a,
-        which is an upper bound for a contact that does not fill the circle of radius a.
+        """Force for a uniform displacement u_lim without slip, divided by mu F_z.
+
+        It is 2 G* a, which is an upper bound for a contact that does not fill the circle of
+        radius a.
         """
         return 2.0 * self.G_star
 

@@ -72,9 +72,9 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
 
     `toroidal` contains G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
     Multiplication of e^{2 i alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} =
-    r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward recurrence is stable for s < r, and
-    otherwise while (s/r)^m is of order one.  Otherwise the recurrence runs downward from an index
-    at which C is negligible.  Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r)."""
+    r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m
+    is of order one.  Otherwise the recurrence runs downward from an index at which C is negligible.
+    Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r)."""
     n = len(out)
     out[0] = -toroidal[1]
     if s <= r or (n + 1) * np.log(s / r) < 2.0:

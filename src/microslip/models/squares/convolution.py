@@ -84,9 +84,9 @@ def square_convolution(
     poisson, modulus : float
         Poisson's ratio, and G* in working units.
     images : int
-        See Convolution.  4: fields at nu = 0 are even along both axes, and only squares with
-        positive coordinates are resolved. 2: fields have a symmetry of half.py, and only squares
-        with a positive forward coordinate are resolved.
+        See Convolution.  If it is 4, fields at nu = 0 are even along both axes, and only squares
+        with positive coordinates are resolved.  If it is 2, fields have a symmetry of half.py, and
+        only squares with a positive forward coordinate are resolved.
     symmetry : str
         Symmetry of the fields if `images` is 2: half.TURN or half.MIRROR.
 
@@ -195,7 +195,7 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
     """Fill `out` with A q.  Both contain forward and lateral parts of the resolved squares, (2,
-    rows, columns). scratch: arrays from `workspace`."""
+    rows, columns); scratch: arrays from `workspace`."""
     (first, second), radices, roots = scratch, operator.radices, operator.roots
     columns, width = q.shape[1], second.shape[2]
     _spread(operator, q, first)
@@ -305,7 +305,7 @@ def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: n
 
 @kernel
 def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
-    """Multiply the transform in `second` by the transform of the influence coefficients. first:
+    """Multiply the transform in `second` by the transform of the influence coefficients; first:
     scratch array."""
     if operator.images == 4:
         quarter.apply_filter(operator.folding, operator.kernel, second)
