@@ -11,7 +11,7 @@ from microslip.config.records import Refusal
 from microslip.foundation.canonical import number
 
 DRIVES = ("mass", "damping", "stiffness", "force")
-"""Parameters of a drive, in the order of the dimensions of datasets."""
+"""Parameters of a drive, in the order of dataset dimensions."""
 MOST_POINTS = 1_000_000
 """Largest number of points in a sweep.  With more points, each start of the workflow would take a
 minute."""

@@ -14,7 +14,7 @@ HISTORIES_OF_SWEEP = {
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
-"""Name of a sweep -> single runs in its dataset, which figures show."""
+"""Name of a sweep -> single runs in its dataset, for figures."""
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)

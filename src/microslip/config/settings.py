@@ -72,8 +72,7 @@ def _whole(value: Any) -> Any:
 
 
 def _kind(value: object) -> str | None:
-    """Tag of the member of a union that a value belongs to. Pydantic adds it to the location of
-    errors."""
+    """Tag of the union member for a value. Pydantic adds the tag to the location of an error."""
     if isinstance(value, list | dict):
         return "(list)" if isinstance(value, list) else "(spacing)"
     return "(number)" if isinstance(value, int | float) else None
@@ -262,11 +261,10 @@ class SteadySweep(Settings):
     """Number of rings, or of squares across the contact. It must be even. By default, it follows
     from the tolerance."""
     steps: Steps | None = None
-    """Number of time steps of a period. It must be even. By default, it follows from the
+    """Number of time steps in a period. It must be even. By default, it follows from the
     tolerance."""
     points_per_job: Points | None = None
-    """Number of points that one job of this sweep computes. The default is the value of the top
-    level."""
+    """Number of points that one job of this sweep computes. The default is the top-level value."""
 
     @model_validator(mode="after")
     def _refuse_no_tolerance(self) -> Self:
@@ -359,7 +357,7 @@ class ForceHistory(Settings):
     cells: Cells | None = None
     """Number of rings. It must be even. The default is that of microslip.history."""
     steps: Steps | None = None
-    """Number of time steps of a period. It must be even. The default is that of
+    """Number of time steps in a period. It must be even. The default is that of
     microslip.history."""
 
 
@@ -382,7 +380,7 @@ class Transients(Settings):
     cells: Cells | None = None
     """Number of rings. It must be even. The default is that of microslip.history."""
     steps: Steps | None = None
-    """Number of time steps of a run. It must be even. The default is that of microslip.history."""
+    """Number of time steps in a run. It must be even. The default is that of microslip.history."""
 
 
 class Histories(Settings):
@@ -573,7 +571,7 @@ class Propulsion(Settings):
 
 
 class Claims(_Grid):
-    """Test of the statements of the paper: `snakemake claims` makes claims.nc and its figures."""
+    """Test of the paper's statements: `snakemake claims` makes claims.nc and its figures."""
 
     tolerance: Tolerance = 5e-4
     """Largest accepted absolute error of mu_macro."""
@@ -630,4 +628,4 @@ class Root(Settings):
     propulsion: Propulsion = _raw({})
     """Study of self-propelled motions, see `snakemake propulsion`."""
     claims: Claims = _raw({})
-    """Test of the statements of the paper, see `snakemake claims`."""
+    """Test of the paper's statements, see `snakemake claims`."""

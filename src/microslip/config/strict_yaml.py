@@ -93,7 +93,7 @@ class StrictLoader(yaml.SafeLoader):
 
 
 def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
-    """Number of nodes of a tree after expansion of aliases.
+    """Number of nodes in a tree after expansion of aliases.
 
     sizes: dict to which the sizes of the nodes are added, by id.  Raises ConstructorError for a
     node that contains itself.

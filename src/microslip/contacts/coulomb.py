@@ -1,9 +1,9 @@
 """Coulomb's law at points: projection on the friction disc, and the residual of a Coulomb step.
 
-The unknowns of a Coulomb step are tractions q with the slip s = b - A q, where A is the influence
-operator and b the displacement imposed by the rigid motion and the history.  They satisfy |q| <= g
-everywhere; slip occurs only where |q| = g, in the direction of q.  This is the optimality condition
-of a convex problem, and is equivalent to the fixed point
+The unknowns of a Coulomb step are tractions q with |q| <= g.  The slip is s = b - A q, where A is
+the influence operator and b is the displacement imposed by the rigid motion and the history.  Slip
+occurs only where |q| = g, in the direction of q.  This is the optimality condition of a convex
+problem, and is equivalent to the fixed point
 
     q = P_g(q + s / d) for any d > 0; P_g projects onto the disc |q| <= g.
 

@@ -16,7 +16,7 @@ _release = types.ExternalFunction("PyGILState_Release", types.void(types.intc))
 _occurred = types.ExternalFunction("PyOS_InterruptOccurred", types.intc())
 
 BETWEEN_LOOKS = 2e7
-"""Approximate number of multiplications between two calls of `interrupted`, which corresponds to a
+"""Approximate number of multiplications between two calls of `interrupted`.  It corresponds to a
 few hundredths of a second.  A call waits for the other threads of the interpreter, so calls should
 be rare."""
 

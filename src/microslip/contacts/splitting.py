@@ -13,7 +13,7 @@ BETWEEN_BALANCES iterations `rebalance` solves the equation of the body for the 
 A small penalty is best for points that stick, and a large penalty for points that slip.  Let D be
 the derivative of the projection, averaged over the points and both directions.  It is 1 for a point
 that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about (1 - D) / D times
-that of a contact with D = 1/2.  Each step uses the nearest of PENALTIES."""
+the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MOST_ITERATIONS = 4000
 RELAXATION = 1.7
 """Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
-"""Number of iterations of a driven step between calls of `rebalance`.  It is above the mean numbers
+"""Number of iterations in a driven step between calls of `rebalance`.  It is above the mean numbers
 of iterations printed by benchmarks/splitting.py, so few steps need a call."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 """Search for the displacement at which the forces balance: first and largest trial in u_lim (each

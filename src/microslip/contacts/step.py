@@ -1,8 +1,8 @@
 """The Coulomb step, and its dispatch to the contact's solver in compiled code.
 
-The unknowns of a step are tractions q with |q| <= g, whose slip b - A q is in the direction of q
-and occurs only where |q| = g.  A driven body (drive.py) adds one unknown, its displacement d, and
-one equation, stiffness d + forward force = load.  The displacement d is added to b."""
+The unknowns of a step are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
+in the direction of q.  A driven body (drive.py) adds one unknown, its displacement d, and one
+equation, stiffness d + forward force = load.  The displacement d is added to b."""
 
 from __future__ import annotations
 

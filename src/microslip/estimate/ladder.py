@@ -227,7 +227,7 @@ def with_mass(
     stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
     the natural oscillation, runs can agree with each other although they are wrong.  Steps of a
     radian are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the
-    contact raises the natural frequency by a factor of sqrt(s) and reduces the force of this
+    contact raises the natural frequency by a factor of sqrt(s).  It also reduces the force of this
     oscillation on the contact by a factor of s.  For a second-order method the two effects cancel.
 
     Parameters

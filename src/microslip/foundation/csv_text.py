@@ -41,7 +41,7 @@ def check_format(decimal: str, encoding: str) -> None:
 
 
 def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
-    """Line number and text of each line, except empty lines and comments, which begin with #.
+    """Line number and text of each line.  Empty lines, and comments that begin with #, are omitted.
 
     Raises
     ------

@@ -89,8 +89,8 @@ def _unique_beside(path: Path) -> Path:
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """Return the error from writing a small file to the same folder, or the original error if this
-    succeeds.
+    """Return the error from writing a small file to the same folder.  If this file can be written,
+    return the original error.
 
     On a full disk HDF5 reports "Permission denied" or "HDF error".
     """

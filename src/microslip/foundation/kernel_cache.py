@@ -50,8 +50,7 @@ class BySources:
         return ""
 
     def get_disambiguator(self) -> str:
-        """Number of the first line of the function, which distinguishes functions of the same
-        name."""
+        """First line number of the function.  It distinguishes functions of the same name."""
         return str(self.function.__code__.co_firstlineno)
 
 

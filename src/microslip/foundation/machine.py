@@ -14,7 +14,8 @@ CPU_LIST = Path("/proc/cpuinfo")
 
 @functools.cache
 def cpu_model() -> str:
-    """Model name of the processor, such as "AMD EPYC 7B13". If it is unknown, the architecture."""
+    """Model name of the processor, such as "AMD EPYC 7B13", or the architecture if the model is
+    unknown."""
     named = _from_linux() or _from_macos() or platform.processor() or platform.machine()
     return " ".join(named.split()) or "unknown"
 

@@ -64,7 +64,7 @@ class NamedFile:
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of the content.  It is empty if unknown.
     decimal, encoding : str
-        Decimal mark, which is a key of DECIMALS, and encoding of the file.
+        Decimal mark (a key of DECIMALS) and encoding of the file.
     pitch : str
         Distance between the cells of a matrix of pressures, see pressures.grid_units.pitch.  It is
         empty for a file with coordinates.

@@ -45,7 +45,7 @@ FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "press
 
 
 class Sources:
-    """The modules of a package, and the templates and scripts of its pages, at the time of
+    """The modules of a package, and the templates and scripts for its pages, at the time of
     construction.
 
     contents: dict from the path of each file inside the package to its bytes.

@@ -119,7 +119,7 @@ class Contact(Protocol):
         return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        """Return the mirror image of a state under lateral -> -lateral.  This negates lateral
         tractions."""
 
     def march(
@@ -140,7 +140,7 @@ class Contact(Protocol):
         tolerance : float
             Largest allowed residual of a stage, as a force divided by mu F_z.
         previous : Guess or None
-            Earlier march along the same path from a similar state, which provides initial guesses.
+            Earlier march along the same path from a similar state.  It provides initial guesses.
         """
 
 
@@ -194,7 +194,7 @@ def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
 
 
 def forward_slip(contact: Contact) -> np.ndarray:
-    """Forward tractions equal to the friction bound, which is the state after forward sliding."""
+    """Forward tractions equal to the friction bound.  This is the state after forward sliding."""
     out = np.zeros((2, *contact.forward_position.shape))
     out[FORWARD] = contact.bound
     return out

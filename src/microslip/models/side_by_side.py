@@ -2,8 +2,8 @@
 elastically.
 
 Units are those of the body: displacements are in u_lim of a contact under the mean load, and forces
-in mu times the load of all contacts.  A contact whose u_lim is `extent` times larger, and which
-carries the fraction `share` of the load, has
+in mu times the load of all contacts.  If the u_lim of a contact is `extent` times larger, and the
+contact carries the fraction `share` of the load, then it has
 
     influence extent A,   weights share w,   stiffness k share / extent.
 
@@ -24,7 +24,7 @@ from microslip.models.system_contact import SystemContact
 
 
 class SideBySide(SystemContact):
-    """Contacts of equal shape on one body, whose states are concatenated along axis 2.
+    """Contacts of equal shape on one body.  Their states are concatenated along axis 2.
 
     Parameters
     ----------

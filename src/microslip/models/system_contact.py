@@ -24,7 +24,7 @@ class Layout(NamedTuple):
     """Conversion between states (2, rows, columns) and the fields (2, points) of compiled code.
 
     In a state, the contacts of a body are concatenated along the columns. In a field, the points of
-    each contact follow those of the previous one.
+    each contact follow the points of the previous contact.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class SystemContact(Contact):
     layout : Layout
         Converter between states and fields.
     mirror : np.ndarray of int
-        Flat index of the mirror image of each point of a state, under lateral -> -lateral.
+        Flat index of each point's mirror image in a state, under lateral -> -lateral.
     operators : NamedTuple
         The operator A and the resolvents, see contacts/operators.py.
     resultants : np.ndarray, shape (3,)
@@ -161,7 +161,7 @@ class SystemContact(Contact):
         return self.layout.unpack(image)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        """Return the mirror image of a state under lateral -> -lateral. This negates lateral
         tractions."""
         return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 

@@ -63,7 +63,7 @@ class Ellipse(Pressure):
         """Mean distance from the centre, weighted with the pressure.
 
         It is 3 pi/16 on the unit circle.  The ellipse is that circle with one axis scaled by the
-        ratio, which scales the distance along a ray at the angle t by hypot(cos t, ratio sin t).
+        ratio.  This scales the distance along a ray at the angle t by hypot(cos t, ratio sin t).
         """
         angle = (np.arange(512) + 0.5) * (np.pi / 1024)
         stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))
@@ -82,7 +82,7 @@ class Ellipse(Pressure):
         return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
 
     def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
-        """Tangential force after a displacement from rest, which equals that of a sphere."""
+        """Tangential force after a displacement from rest.  It is the same as for a sphere."""
         return hertz.mindlin_force(displacement)
 
 

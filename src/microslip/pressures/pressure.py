@@ -1,5 +1,5 @@
-"""Pressures: the distribution of the load over the contact, which gives the friction bound at each
-point.
+"""Pressures.  A pressure is the distribution of the load over the contact, and gives the friction
+bound at each point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
 of a round contact; for other contacts it is half the longer side of the bounding rectangle.  The
@@ -10,7 +10,7 @@ computed with the compliance averaged over directions,
 
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
 sphere.  A round contact that moves in one direction from rest slides everywhere once the
-displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide some
+displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide a few
 percent earlier or later, depending on the direction.  In working units the reduced shear modulus is
 the number G*, which is 3/4 for a sphere."""
 
@@ -46,7 +46,7 @@ class Pressure:
     torque : float
         Torque about the centre at full slip, divided by mu F_z a.
     largest : float
-        Largest pressure divided by F_z / a^2, which is the largest friction bound.  It can be
+        Largest pressure divided by F_z / a^2.  It equals the largest friction bound, and can be
         infinite.
     mirrored : bool
         Whether the pressure is symmetric under lateral -> -lateral.
@@ -54,7 +54,7 @@ class Pressure:
         Radius of the hole in the middle; 0 if there is no hole.
     hertzian : bool
         Whether the contact is an elliptic Hertz contact.  Its stick zones are ellipses of the same
-        shape (Vermeulen and Johnson), so `loading` is that of a sphere.
+        shape (Vermeulen and Johnson), so `loading` is the same as for a sphere.
     readings : tuple of Pressure
         Alternative pressures that agree with the values of a grid.  The differences in friction
         between these pressures give the error due to the grid.
@@ -71,8 +71,8 @@ class Pressure:
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
-    mean lever arm of a traction with the shape of the bound.  The shape of psi is (n + 1,), that of
-    each result (n,)."""
+    mean lever arm of a traction with the shape of the bound.  psi has the shape (n + 1,), and each
+    result has the shape (n,)."""
     bound: ClassVar[Any] = None
     """bound(r): friction bound mu p at radii r, any shape; for an indenter also bound(r, c)."""
 
@@ -176,7 +176,7 @@ class Pressure:
 
     @property
     def is_indenter(self) -> bool:
-        """Whether the pressure is that of an axisymmetric indenter."""
+        """Whether the pressure belongs to an axisymmetric indenter."""
         return self.depth is not None
 
     @property
@@ -197,8 +197,7 @@ class Pressure:
         """Stick radius after a displacement >= 0 (in u_lim) in one direction from rest.
 
         The stick radius is the contact radius at the depth 1 - displacement (Ciavarella, Jaeger),
-        and 0.0 at full slip.  The result is None unless the pressure is that of an axisymmetric
-        indenter.
+        and 0.0 at full slip.  The result is None except for axisymmetric indenters.
         """
         if self.depth is None:
             return None
@@ -213,8 +212,8 @@ class RoundPressure(Pressure):
     over rings.
 
     A subclass defines `ring_loads` and `ring_moments`.  They integrate the friction bound, and the
-    bound times the radius, over the rings between r = sin(psi).  The shape of psi is (n + 1,), that
-    of the result (n,).
+    bound times the radius, over the rings between r = sin(psi).  psi has the shape (n + 1,), and
+    the result has the shape (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:

@@ -18,7 +18,8 @@ _HALVINGS = 100
 
 @dataclass(frozen=True)
 class Punch(Indenter):
-    """The pressure of a punch whose flat end has the radius `flat`, divided by the contact radius.
+    """The pressure of a punch with a flat end. The radius of the flat end is `flat` times the
+    contact radius.
 
     Its equivalent plane profile is D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c above the
     radius b of the flat end (Ciavarella 1999).

@@ -1,4 +1,4 @@
-"""A ring-shaped contact, such as that of a torus or of the rim of a cup."""
+"""A ring-shaped contact, for example of a torus or of a cup's rim."""
 
 from __future__ import annotations
 
@@ -95,8 +95,8 @@ class Ring(RoundPressure):
     def G_star(self) -> float:
         """G* in working units.  It equals the largest displacement under full slip for G* = 1.
 
-        A circle of radius s under unit load per area causes the displacement 4 s/(r + s) K(m)/pi at
-        the radius r, with 1 - m = ((r - s)/(r + s))^2.
+        A narrow ring of radius s under a unit traction causes the displacement 4 s/(r + s) K(m)/pi
+        per unit of its width at the radius r.  Here 1 - m = ((r - s)/(r + s))^2.
         """
         # imported here, because they take a third of a second to load
         from scipy.integrate import quad

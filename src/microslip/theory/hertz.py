@@ -181,7 +181,7 @@ def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
 def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray | float:
     """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
 
-    It is g - g_c in the stick zone and g outside, where g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
+    It is g - g_c in the stick zone and g outside. Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
     of an inner contact of radius c = sqrt(1 - u). It is exact for nu = 0. Raises ValueError unless
     r >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is dimensionless.
     """

@@ -3,8 +3,8 @@
 If the sphere moves along a line, the tangential force depends only on the history of its
 displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
 it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn the force follows the same curve at
-twice the scale until it reaches the previous turn, and then the older branch. This is exact for
-Poisson's ratio 0. Quantities are dimensionless as in `paper`.
+twice the scale until it reaches the previous turn. Then it follows the older branch. This is exact
+for Poisson's ratio 0. Quantities are dimensionless as in `paper`.
 """
 
 from collections.abc import Callable
@@ -114,7 +114,7 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
     forth = 2.0 * np.pi - back
     end = back + 2.0 * np.pi
     stroke = travel(back) - travel(forth)
-    # The loop closes when the sphere returns to the place of its last turn back.
+    # The loop closes when the sphere returns to the position of its last backward turn.
     closed = _first(lambda phase: travel(phase) - travel(back), forth, end)
 
     def backward(phase: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * 
 """Quadrature on 0..1, clustered at both ends."""
 _HALVINGS = 60
 _SAMPLES = 2001
-"""Number of points in half a period at which the sign of the slope of phi is sampled."""
+"""Number of samples of the sign of phi' in half a period."""
 
 
 def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:

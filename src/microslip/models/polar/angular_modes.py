@@ -1,5 +1,4 @@
-"""The influence operator for points on rings and at angles, which is block-diagonal in angular
-modes.
+"""The influence operator for points on rings and at angles.  It is block-diagonal in angular modes.
 
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
 0 the forward tractions of a mode cause only forward displacements, and the lateral tractions only

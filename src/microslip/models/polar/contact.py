@@ -38,7 +38,8 @@ class PolarContact(SystemContact):
     Parameters
     ----------
     cells, angles : int
-        Number of rings, and number of points of each ring on half the disc, which must be even.
+        Number of rings, and number of points of each ring on half the disc.  The latter must be
+        even.
     rotates : bool
         Whether the motion is a rotation, which has mirror symmetry; otherwise it is a translation.
     poisson : float
@@ -106,7 +107,7 @@ class PolarContact(SystemContact):
         return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
-        """Return a contact whose points fill the largest contact area of a period.
+        """Return a contact whose points fill the largest contact area in a period.
 
         The arguments are those of RadialContact.at_indentation.
         """

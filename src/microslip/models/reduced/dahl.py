@@ -37,7 +37,7 @@ class DahlContact(contact.Contact):
         return state * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Solve q = image(march(q)), which is linear in q, for the two components."""
+        """Solve the linear equation q = image(march(q)) for the two components."""
         image = np.diag([1.0, -1.0]) if mirror else np.eye(2)
         starts = np.vstack([np.zeros(2), np.eye(2)]).reshape(3, 2, 1, 1)
         ends = np.array([image @ self.march(path, q, 0.0).state.ravel() for q in starts])

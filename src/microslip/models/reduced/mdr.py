@@ -3,7 +3,7 @@
 The method is exact for tangential loading of an axisymmetric indenter in one direction (Cattaneo
 and Mindlin).  For slip in two directions it is an approximation, because the springs do not
 interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit
-length, where h(x) is the depth for the contact radius x divided by the reference depth.  So the
+length.  Here h(x) is the depth for the contact radius x divided by the reference depth.  So the
 spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a
 sphere.  At d times the reference depth, it begins to slide at (d - h) u_lim if d > h.
 """
@@ -25,7 +25,7 @@ def mdr_contact(
     """Create a contact of `cells` springs on 0 < x < 1 and their mirror images, graded towards
     `focus`.
 
-    `bound` is a force per unit length.  The weight of a spring is its length plus that of its
+    `bound` is a force per unit length.  The weight of a spring is its length plus the length of its
     mirror image.
     """
     edges = np.sin(make_rings(cells, focus).psi)

@@ -46,7 +46,7 @@ class RigidContact(contact.Contact):
         return np.zeros_like(state)
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Return the mirror image of a state under lateral -> -lateral, which negates lateral
+        """Return the mirror image of a state under lateral -> -lateral.  This negates lateral
         tractions."""
         return state[:, ::-1, :] * contact.MIRROR
 

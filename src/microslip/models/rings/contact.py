@@ -100,7 +100,7 @@ class RadialContact(SystemContact):
         return self.growth
 
     def at_indentation(self, deepest: float, start: float) -> RadialContact:
-        """Return a contact whose rings fill the largest contact area of a period.
+        """Return a contact whose rings fill the largest contact area in a period.
 
         Parameters
         ----------
@@ -171,5 +171,6 @@ class RadialContact(SystemContact):
 
 
 def width_of(rings: int) -> int:
-    """Number of columns of a field for a number of rings: a multiple of 4, and at least LANES."""
+    """Number of columns of a field with this number of rings: a multiple of 4, and at least
+    LANES."""
     return max(-(-rings // 4) * 4, LANES)

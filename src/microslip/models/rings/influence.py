@@ -33,7 +33,7 @@ CLUSTER_POWER = 4
 exponent clusters the inner points where the rings are closest, because the kernels have a
 logarithmic singularity there."""
 APART_POINTS = 5
-"""Number of Gauss points on each of two rings whose distance is at least the width of a ring."""
+"""Number of Gauss points on each ring of a pair whose distance is at least the width of a ring."""
 
 
 class Averaging(NamedTuple):
@@ -64,8 +64,8 @@ def _add_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.nd
     """Average the kernels over ring i (outer rule) and ring j (inner rule).
 
     Ring i must be the narrower one, because only the points of the inner rule are clustered where
-    the rings are closest.  Adds the averages of G_m to near[:, i, j], and those of C_{m+1} to
-    far[:, i, j] and far[:, j, i].  Averages are weighted with the shape of the traction on each
+    the rings are closest.  Adds the averages of G_m to near[:, i, j], and the averages of C_{m+1}
+    to far[:, i, j] and far[:, j, i].  Averages are weighted with the shape of the traction on each
     ring, normalised to Integral shape r dr = 1.
     """
     psi, coupled = averaging.psi, averaging.coupled
@@ -163,7 +163,7 @@ def ring_influence(
         mode m; modes m and -m have the same matrix.
     far : np.ndarray, shape (n_modes, n, n)
         kappa * far[j] maps conjugate tractions of mode 1 - j to displacements of mode 1 + j; its
-        transpose maps those of mode 1 + j to mode 1 - j.
+        transpose maps conjugate tractions of mode 1 + j to displacements of mode 1 - j.
     """
     psi = np.ascontiguousarray(psi, dtype=float)
     n = len(psi) - 1

@@ -86,7 +86,7 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
     q = r / s
     value = 0.0
     for m in range(len(toroidal), 1, -1):
-        # value is C_m on entry to the body and C_{m-1} after it
+        # value is C_m at the start of the loop body and C_{m-1} at its end
         if m - 1 < n:
             out[m - 1] = value
         value = q * value + toroidal[m - 1] - q * toroidal[m - 2]

@@ -3,7 +3,7 @@
 Zero-padding of each side to at least twice as many cells makes the convolution linear.  The output
 of a transform is in digit-reversed order.  The transformed influence coefficients and the input of
 the inverse transform have the same order, so that no array is ever sorted.  Butterflies run over
-whole rows, which the compiler turns into vector instructions.  The transforms skip rows that are
+whole rows, so that the compiler generates vector instructions.  The transforms skip rows that are
 zero or not needed.
 
 For symmetric fields the transform of a part is sufficient: a quarter for fields that are even along

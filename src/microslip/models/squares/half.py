@@ -1,12 +1,12 @@
 """Convolution of fields with one symmetry, from the rows with a positive forward coordinate.
 
 - TURN, for translations: a half turn leaves a field unchanged.  With n cells along a side, row -i
-  is row i in reverse order.  Its transform along the lateral axis at the frequency k is
-  w^((n-1) k) times that of row i at -k, with w = exp(-2 pi i / P).
+  is row i in reverse order.  At the frequency k, the transform of row -i along the lateral axis is
+  w^((n-1) k) times the transform of row i at -k, with w = exp(-2 pi i / P).
 - MIRROR, for rotations about a point of the lateral axis: in the mirror image, forward parts are
-  equal, and lateral parts have the opposite sign.  With the complex field lateral + i forward, the
-  row -i is minus the conjugate of the row i.  Its transform at k is minus the conjugate of that of
-  the row i at -k.
+  equal, and lateral parts have the opposite sign.  With the complex field lateral + i forward, row
+  -i is minus the conjugate of row i.  At the frequency k, the transform of row -i is minus the
+  conjugate of the transform of row i at -k.
 
 So half of the rows are transformed along the lateral axis, and then half of the lateral frequencies
 along the forward axis.  The values at the other frequencies give the other half of the cells.

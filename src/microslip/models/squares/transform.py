@@ -1,7 +1,7 @@
 """Compiled Fourier transform for convolution.py, along the first axis of two real arrays.
 
-Butterflies of 2, 3 and 4 rows run over whole rows, which the compiler turns into vector
-instructions.  The rows of a butterfly are `part` rows apart; a is the first of them, and w is the
+Butterflies of 2, 3 and 4 rows run over whole rows.  The compiler turns these loops into vector
+instructions.  The rows of a butterfly are `part` rows apart; `a` is the first row, and `w` is the
 index of the first root of unity.
 """
 
