@@ -278,7 +278,7 @@ class SteadySweep(Settings):
 
 
 class Sweep(SteadySweep):
-    """Keys of an oscillation across the motion (Eq 1) and of an oscillating rotation (Eq 23)."""
+    """Keys of a sweep of transverse oscillations (Eq 1) or of oscillating rotations (Eq 23)."""
 
     amplitude: Axis
     """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""
@@ -330,7 +330,7 @@ class DriveSweep(_NamedSweep):
     mass: NumberOrAxis = _optional()
     """Mass of the body divided by mu F_z / (u_lim omega^2). A number or an axis."""
     damping: NumberOrAxis = _optional()
-    """Damping parallel to the spring divided by mu F_z / (u_lim omega). A number or an axis."""
+    """Damping parallel to the spring, divided by mu F_z / (u_lim omega). A number or an axis."""
 
 
 @with_config(PLAIN)
@@ -584,7 +584,7 @@ class Claims(_Grid):
     """Amplitudes of the rotation phi0/phi_lk(a/2), above 0. At least one must not exceed 5."""
     cells: Annotated[int, Field(ge=8, le=64, multiple_of=2), WHOLE] = 32
     """Number of rings, and number of angular points on half the disc, in the runs whose tractions
-    are evaluated. It must be even. A run with half as many gives the error estimate."""
+    are evaluated. It must be even. A run with half this number gives the error estimate."""
 
     @model_validator(mode="after")
     def _refuse_mismatch(self) -> Self:

@@ -5,7 +5,7 @@ Gradient steps have Barzilai-Borwein lengths without a line search, because roun
 energy are much larger than those of the tractions.  If the residual does not decrease for a number
 of iterations, shorter steps that always lower the energy are used until the residual decreases.
 
-For a driven body, the secant method finds the displacement d at which its forces balance.  The
+For a driven body, the secant method finds the displacement d at which the forces balance.  The
 forward force never decreases as d increases, and its slope is at most the stiffness of the contact.
 """
 
@@ -40,7 +40,7 @@ SHORT_STEP_BELOW = 0.3
 MOST_DISPLACEMENTS = 60
 """Largest number of trial displacements of a driven body in each step."""
 FLATTEST = 1e-3
-"""Smallest slope of a secant divided by the largest possible slope."""
+"""Smallest slope of a secant, divided by the largest possible slope."""
 INNER = 0.3
 """Allowed residual at a trial displacement, divided by the tolerance of the driven step."""
 

@@ -1,8 +1,8 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
 The compiler turns operations on tuples of four numbers into vector instructions, if indices are
-unsigned.  No kernel is compiled with fastmath.  It would allow the compiler to reorder and fuse
-operations, and the last bits of a result would depend on which kernels were compiled earlier.
+unsigned.  No kernel is compiled with fastmath, which would allow the compiler to reorder and fuse
+operations.  The last bits of a result would then depend on which kernels were compiled earlier.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def four(values: np.ndarray, first: int) -> tuple:
 
 @intrinsic
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return a b + c of floats with a single rounding."""
+    """Return a b + c for floats, with a single rounding."""
     if (a, b, c) != (types.float64,) * 3:
         return None
 

@@ -33,7 +33,7 @@ class System(NamedTuple):
     weight : np.ndarray, shape (points,)
         Area of each point.
     positions : np.ndarray, shape (2, points)
-        Forward and lateral coordinate of the points divided by the contact radius.
+        Forward and lateral coordinates of the points, divided by the contact radius.
     first : np.ndarray of int, shape (contacts + 1,)
         Index of the first point of each contact, followed by the total number of points.
     mirror : np.ndarray of int, shape (points,)

@@ -81,7 +81,7 @@ class Ladder:
     def levels(self, tolerance: float) -> tuple[int, ...]:
         """The levels that are tried in turn as the finest level at a tolerance.
 
-        The last one is one level above the first level for SMALLEST_TOLERANCE.
+        The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
         """
         if self.imposed:
             return (self.start,)
@@ -118,7 +118,8 @@ TRANSLATION = Kind(start=12, steps=2)
 """Translations.  Close to full sliding, coarser levels can agree by chance, see
 tests/adaptive/test_near_full_sliding.py."""
 LOOP = TRANSLATION._replace(start=16)
-"""Slow motions without half-period symmetry, whose two halves have different slip fronts."""
+"""Slow motions without half-period symmetry.  The two halves of a period have different slip
+fronts."""
 ROTATION = TRANSLATION._replace(steps=1)
 WHOLE_DISC = ROTATION._replace(start=LOOP.start)
 """Rotations combined with a lateral motion.  Their slip fronts differ between the halves of a
@@ -126,7 +127,7 @@ period."""
 LOAD = Kind(start=24, steps=4)
 """Oscillating normal loads, under which the edge of the contact moves across the rings."""
 SQUARES = ROTATION._replace(start=LOAD.start)
-"""Squares across the diameter, which are not graded towards the slip front."""
+"""Squares across the diameter.  They are not graded towards the slip front."""
 STATIC = Kind(start=32, steps=0)
 """Static limit at turning points, where slip fronts cut through the cells."""
 COUPLED = LOAD._replace(start=STATIC.start)

@@ -30,10 +30,10 @@ RUN_SHARE = 0.05
 weights of the runs, it contributes at most a twelfth of the tolerance."""
 READING_SAFETY = 2.5
 """Safety factor on the differences between the interpolations (readings) of a pressure or a motion.
-None of them resolves a peak or an edge between the points."""
+No interpolation resolves a peak or an edge between the points."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate for the resolution, divided by the tolerance, because three levels can
-agree by chance.  Calibrated by benchmarks/error_estimates.py."""
+"""Smallest error estimate for the resolution, divided by the tolerance.  It is above 0 because
+three levels can agree by chance.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Largest sum of the other errors, divided by the tolerance, at which finer runs are worthwhile."""
 
@@ -132,8 +132,8 @@ def refine(
     -------
     Refined
         The value.  It is not converged if a run did not converge, if the finest level is not fine
-        enough, or if a run raised budget.Spent.  In the last case it is the estimate before that
-        run, or NaN if there is none.
+        enough, or if a run raised budget.Spent.  In the last case the value is the estimate before
+        that run, or NaN if there is no such estimate.
     """
     levels = _Levels(run, ladder, readings, read, energy_unit, drive_work)
     goal, refined = tolerance, None

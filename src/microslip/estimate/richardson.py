@@ -1,4 +1,5 @@
-"""Richardson extrapolation of three levels, each twice as fine as the last, with error estimate.
+"""Richardson extrapolation of three levels, each twice as fine as the previous one, with an error
+estimate.
 
 The methods are of second order, f(n) = f + C / n^2 + ..., and the difference D of the last two
 levels gives the correction D / 3.  The difference of the first two levels, divided by four, is

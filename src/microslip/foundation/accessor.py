@@ -22,7 +22,7 @@ def register() -> None:
 
 
 class _AfterXarray:
-    """Finder that registers the accessors at the end of the import of xarray."""
+    """Import finder that registers the accessors after the import of xarray."""
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         if name != "xarray":

@@ -9,7 +9,7 @@ NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Operating system errors whose message suffices to find the remedy."""
 
 LONGEST = 400
-"""Largest number of characters of a value in a message.  The middle of a longer value is
+"""Largest length of a value in a message, in characters.  The middle of a longer value is
 omitted."""
 
 

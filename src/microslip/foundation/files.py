@@ -17,7 +17,7 @@ ABANDONED = 3600.0
 
 
 def refuse_no_folder(folder: object) -> None:
-    """Raise CacheError if the name of a folder is empty, is not a text, or begins with ~.
+    """Raise CacheError if the name of a folder is empty, is not a string, or begins with ~.
 
     A shell replaces ~ by the home folder.  Without a shell, a folder with the name ~ would be
     created.

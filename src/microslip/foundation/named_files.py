@@ -66,8 +66,8 @@ class NamedFile:
     decimal, encoding : str
         Decimal mark (a key of DECIMALS) and encoding of the file.
     pitch : str
-        Distance between the cells of a matrix of pressures, see pressures.grid_units.pitch.  It is
-        empty for a file with coordinates.
+        Distance between the cells of a matrix of pressures, see pressures.grid_units.read_pitch.
+        It is empty for a file with coordinates.
     """
 
     path: str

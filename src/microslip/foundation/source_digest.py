@@ -251,7 +251,8 @@ def _of_request(*names: str | None) -> str:
 
 
 def of_solver() -> str:
-    """Digest of the physics, except motions, pressures and methods that only requests name."""
+    """Digest of the physics, except motions, pressures and methods that are named only by
+    requests."""
     return of_request({"motion": "none"})
 
 

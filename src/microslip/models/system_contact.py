@@ -60,8 +60,7 @@ class Layout(NamedTuple):
         return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
 
     def images(self, mirror: np.ndarray) -> np.ndarray:
-        """Convert flat indices of mirror images from the points of a state to the points of a
-        field."""
+        """Convert the flat indices of mirror images in a state to flat indices in a field."""
         place = self.pack(np.arange(mirror.size).reshape(self.rows, -1), -1)
         point = np.argsort(place, kind="stable")[np.count_nonzero(place < 0) :]
         return np.where(place < 0, np.arange(place.size), point[mirror[place]])
@@ -117,7 +116,7 @@ class SystemContact(Contact):
         )
 
     def unprepared(self) -> Self:
-        """Return a copy without cached properties, whose attributes can be changed."""
+        """Return a copy without cached properties. Attributes of the copy can be changed."""
         out = copy(self)
         for name in ("_prepared", "_constant_bound"):
             vars(out).pop(name, None)

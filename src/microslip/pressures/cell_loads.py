@@ -15,8 +15,8 @@ SMALLEST_LOAD = 1e-13
 def of_corner_loads(load: np.ndarray) -> np.ndarray:
     """Compute the loads of the cells, shape (cells, cells). Their sum is 1.
 
-    load: load of the rectangle from the centre to each corner of a cell, odd in both coordinates,
-    (cells + 1, cells + 1).
+    load: load on the rectangle between the centre and each corner of a cell, (cells + 1, cells +
+    1). It is odd in both coordinates.
     """
     return of_loads(np.diff(np.diff(load, axis=0), axis=1))
 

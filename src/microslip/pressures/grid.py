@@ -28,7 +28,7 @@ grid."""
 def read_grids(
     forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
 ) -> dict[str, Grid]:
-    """Create a Grid from values at regular points, and alternative grids from the same values.
+    """Create a Grid from values on a regular grid, and alternative grids from the same values.
 
     The unit of length a is half the longer side of the smallest rectangle that contains all
     pressure.  Rotations are about the centre of this rectangle.

@@ -51,14 +51,13 @@ class Goal(NamedTuple):
     near : bool
         Whether the initial state is near the periodic state.
     share : np.ndarray, shape (steps,)
-        Duration of each step divided by that of the path.
+        Duration of each step divided by the duration of the path.
     static_force : float
-        Mean forward force of the static limit; NaN if unknown.
-    least : float
-        Mean forward force below which a state is stuck and changes slowly.  It is about the force
-        of the static limit; NaN if unknown.
+        Mean forward force in the static limit; NaN if unknown. least : float Mean forward force
+        below which a state is stuck and changes slowly.  It is about the force of the static limit;
+        NaN if unknown.
     full : float
-        Largest possible mean forward force, that of full slip.
+        Mean forward force of full slip, which is the largest possible value.
     gain : float
         Force that a contact without slip gains along the path; infinite unless the drift is slow.
     """

@@ -182,8 +182,9 @@ def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray
     """Shear traction at radius r after the displacement u from rest (Cattaneo and Mindlin).
 
     It is g - g_c in the stick zone and g outside. Here g_c = 3/(2 pi) sqrt(c^2 - r^2) is the bound
-    of an inner contact of radius c = sqrt(1 - u). It is exact for nu = 0. Raises ValueError unless
-    r >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is dimensionless.
+    of an inner contact of radius c = sqrt(1 - u). The formula is exact for nu = 0. Raises
+    ValueError unless r >= 0 and u >= 0 in u_lim; the arguments are broadcast. The result is
+    dimensionless.
     """
     r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
     gap = 1 - u - r * r
@@ -198,8 +199,9 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
 
     Raises ValueError unless r >= 0 and 0 <= stick_radius <= 1; the arguments are broadcast. The
     stick radius is 0 if all points slip. The fraction is between 0 and 1, equals 1 outside the
-    stick radius, and is independent of Poisson's ratio. It is the closed form of a superposition of
-    punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin 1951).
+    stick radius, and is independent of Poisson's ratio. The formula is the closed form of a
+    superposition of punches with the radii s from c to 1, each rotated by -d phi_lk(s) (Lubkin
+    1951).
     """
     r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
     sticks = r < c

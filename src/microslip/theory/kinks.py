@@ -1,4 +1,4 @@
-"""Kinks of friction as a function of velocity and amplitude. An interpolation needs a border there.
+"""Kinks of friction as a function of velocity and amplitude. Interpolations need a border there.
 
 At two places friction is continuous, but its slope or curvature is not: at the amplitude above
 which no point sticks during slow sliding, and at the velocity above which no point ever sticks. A

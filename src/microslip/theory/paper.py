@@ -94,7 +94,7 @@ def steady_bore_traction(
     """Traction (lateral, forward) on a sphere in continuous bore that slips everywhere (Eq 15).
 
     The traction has the magnitude hertz.friction_bound(r) and is opposite to the local velocity
-    (-forward, velocity + lateral). It is 0 at the centre of rotation. One sign in the paper's pair
+    (-forward, velocity + lateral). It is 0 at the centre of rotation. One sign in the paper's Eq 15
     is wrong. The mean lateral force is 0 (Eq 16). lateral, forward: position relative to the
     contact centre. Raises ValueError unless velocity >= 0; the arguments are broadcast.
     """

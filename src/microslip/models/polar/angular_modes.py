@@ -174,7 +174,7 @@ def _single_waves(
     """Waves at nu = 0: their numbers m, and their forward and lateral values, (waves, points).
 
     For a rotation, forward tractions are cosines and lateral tractions are sines.  For a
-    translation, both are cosines and sines of even numbers.
+    translation, both are cosines and sines with even numbers m.
     """
     numbers = np.arange(angles + 1)
     cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))

@@ -98,7 +98,7 @@ def mode_kernels(
 ) -> np.ndarray:
     """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}.
 
-    Returns torus, or a larger array that replaces it if it was too short.
+    Returns `torus`, or a larger array if `torus` was too short.
     """
     top = n_modes
     if coupled:

@@ -194,8 +194,8 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with A q.  Both contain forward and lateral parts of the resolved squares, (2,
-    rows, columns); scratch: arrays from `workspace`."""
+    """Fill `out` with A q.  `q` and `out` contain forward and lateral parts of the resolved
+    squares, (2, rows, columns); scratch: arrays from `workspace`."""
     (first, second), radices, roots = scratch, operator.radices, operator.roots
     columns, width = q.shape[1], second.shape[2]
     _spread(operator, q, first)

@@ -3,7 +3,7 @@
 - TURN, for translations: a half turn leaves a field unchanged.  With n cells along a side, row -i
   is row i in reverse order.  At the frequency k, the transform of row -i along the lateral axis is
   w^((n-1) k) times the transform of row i at -k, with w = exp(-2 pi i / P).
-- MIRROR, for rotations about a point of the lateral axis: in the mirror image, forward parts are
+- MIRROR, for rotations about a point on the lateral axis: in the mirror image, forward parts are
   equal, and lateral parts have the opposite sign.  With the complex field lateral + i forward, row
   -i is minus the conjugate of row i.  At the frequency k, the transform of row -i is minus the
   conjugate of the transform of row i at -k.

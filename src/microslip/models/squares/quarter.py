@@ -55,9 +55,9 @@ def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
     """Compute the coefficients (L, L) for `apply_filter` from the cosine transform of influence
     coefficients.
 
-    The first of two opposite rows contains half their sum, and the second half their difference.
-    transform: cosine transform (L, L), with the rows along the second axis and without the factor 2
-    of `fold`.
+    Of two opposite rows, the first contains half the sum of both, and the second contains half the
+    difference.  transform: cosine transform (L, L), with the rows along the second axis and without
+    the factor 2 of `fold`.
     """
     rows = np.arange(len(transform))[:, None]
     near, far = 0.5 * transform, 0.5 * transform[opposite]
