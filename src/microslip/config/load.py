@@ -45,8 +45,8 @@ each Poisson's ratio."""
 def load(path: str | os.PathLike) -> Configuration:
     """Read and check a YAML file; return a Configuration or raise ConfigError.
 
-    Files of motions and pressures are searched for in the folder of the YAML file, then in the
-    working directory.
+    Motion and pressure files are searched for in the folder of the YAML file, then in the working
+    directory.
     """
     return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
@@ -137,14 +137,14 @@ ROLES = ("motion", "pressure")
 
 
 def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
-    """Entries with some of ROLES in a configuration with defaults, by name, by the place of their
-    mapping."""
+    """Return the entries whose values can name files, in a configuration with defaults: key of the
+    mapping -> name -> entry."""
     places = {key: filled[key] for key in ("extended", "drives")}
     return places | {"propulsion.motions": filled["propulsion"]["motions"]}
 
 
 def remember_files(filled: dict) -> None:
-    """Store the paths of all files in a configuration from `with_defaults_and_paths`.
+    """Store the paths of all files named in a configuration from `with_defaults_and_paths`.
 
     Requests name files by their content.
     """
@@ -163,8 +163,7 @@ def _settings(mapping: dict, source: str) -> Root:
 
 
 def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Add the path and the digest of the file to the name of a motion or a pressure, if it has a
-    file.
+    """Add the path and the digest of the file to the name of a motion or a pressure.
 
     A name without a file is returned unchanged.  If the file is missing, raises InputError if
     `strict` is set; otherwise returns the name unchanged.
@@ -175,7 +174,7 @@ def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
         file = named_files.parse(name, role)
         if not (file.digest and file.path):
             return named_files.read(name, role, folders)[0].placed
-        named_files.remember([name])  # found before
+        named_files.remember([name])  # an earlier call found the file
     except InputError:
         if strict:
             raise
@@ -215,8 +214,7 @@ def from_mapping(
         True to check motions, pressures and drives with the solver, and to refuse missing files.
         Importing the solver takes half a second.  The result does not depend on this argument.
     folders : iterable of paths
-        Folders in which files of motions and pressures are searched for, before the working
-        directory.
+        Folders in which motion and pressure files are searched for, before the working directory.
 
     Raises
     ------
@@ -322,8 +320,8 @@ def _refuse_taken(name: str, others: Iterable[str]) -> None:
 
 
 def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Name of a motion or a pressure, in which the digest of its file, if there is one, replaces
-    the path."""
+    """Name of a motion or a pressure.  If it contains the path of a file, the digest of the file
+    replaces the path."""
     placed = _with_path(name, role, folders, strict)
     if not named_files.speaks_of_file(placed):
         return placed

@@ -122,8 +122,8 @@ def refine(
     read : callable
         `read(run)` returns the quantity.
     energy_unit : float
-        Error of the dissipated energy that corresponds to an error of 1 in the quantity, for the
-        errors from periodicity and solver.
+        Error of the dissipated energy for an error of 1 in the quantity.  It applies to the
+        periodicity and solver errors.
     drive_work : float
         Work of a prescribed force in a period at the velocity 1, divided by mu F_z u_lim, if the
         quantity is a velocity.

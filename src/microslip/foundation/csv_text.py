@@ -14,7 +14,7 @@ SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """Pattern of the heading of a column, with or without a unit in brackets."""
 PURE = ("", "1", "-")
-"""Units in a heading that mean a pure number."""
+"""Units in a heading that stand for a pure number."""
 ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8, or the encoding of the file by name"
 DECIMALS = (".", ",")
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")

@@ -87,7 +87,7 @@ class Registry(Generic[T]):
     first : sequence of str
         Names that are listed before all others.
     from_file : callable
-        from_file(text) -> object, for the name of a data file such as "file:measured.csv".
+        from_file(text) -> object, for names of data files such as "file:measured.csv".
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Registry(Generic[T]):
         )
 
     def parse(self, text: str) -> T:
-        """The object of a text such as "power:exponent=1" or "file:measured.csv".
+        """Return the object for a text such as "power:exponent=1" or "file:measured.csv".
 
         Raises
         ------

@@ -3,7 +3,7 @@
 A result depends on the content of a file and not on its path.  So the digest of the content
 replaces the path in the name of a pressure or a motion:
 "file:sha256=0123456789abcdef,grid=samples".  A process stores the path for each digest.  `remember`
-stores paths that another process has passed on.
+stores paths that another process passes on.
 
 The module imports nothing slow, since every start of the workflow imports it.
 """
@@ -43,7 +43,7 @@ PACKED = {
     b"BZh": "bzip2",
     b"\xfd7zXZ": "xz",
 }
-"""First bytes of compressed files -> their format."""
+"""First bytes of a compressed file -> its format."""
 LARGEST_CACHE = 8
 """Number of objects that a FileReader keeps."""
 
@@ -96,15 +96,15 @@ class NamedFile:
 
 
 class FileReader(Generic[T]):
-    """Reads objects from files by name.  It keeps the objects of the files read most recently, so
+    """Reads objects from files by name.  The objects of the files read most recently are stored, so
     that files with equal content share one object.
 
     Parameters
     ----------
     argument : str
-        Argument of the names, for messages.
+        Name of the argument, for messages.
     create : callable
-        create(file, content) -> object.  It raises ValueError for content of another format.
+        create(file, content) -> object.  Raises ValueError for content in another format.
     """
 
     def __init__(self, argument: str, create: Callable[[NamedFile, bytes], T]):
@@ -112,7 +112,7 @@ class FileReader(Generic[T]):
         self._cache: dict[str, T] = {}
 
     def __call__(self, name: str) -> T:
-        """The object of a name such as "file:measured.csv".
+        """Return the object for a name such as "file:measured.csv".
 
         Raises
         ------
@@ -140,13 +140,12 @@ class FileReader(Generic[T]):
 
 
 def speaks_of_file(name: object) -> TypeGuard[str]:
-    """True if a name of a pressure or a motion is that of a file."""
+    """True if the name of a pressure or a motion is the name of a file."""
     return isinstance(name, str) and name.startswith(PREFIX)
 
 
 def parse(name: str, argument: str = "file") -> NamedFile:
-    """The NamedFile of a name.  Raises InputError, with the name of the argument, for a name
-    without a file."""
+    """Parse the name of a file.  Raises InputError about the argument for other names."""
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
@@ -164,7 +163,8 @@ def parse(name: str, argument: str = "file") -> NamedFile:
 def read(
     name: str, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """The file of a name, with its absolute path and digest, and its content.
+    """Read the file with this name.  Returns its NamedFile, with absolute path and digest, and its
+    content.
 
     Parameters
     ----------
@@ -200,8 +200,8 @@ def remember(names: Iterable[str]) -> None:
 
 
 def with_path(name: str) -> str:
-    """The name with the stored path of its file, for `remember` in another process.  A name
-    without a file, or without a stored path, is returned unchanged."""
+    """Add the stored path to the name of a file, for `remember` in another process.  A name without
+    a file, or without a stored path, is returned unchanged."""
     if not speaks_of_file(name) or (file := parse(name)).digest not in _PLACES:
         return name
     return replace(file, path=str(_PLACES[file.digest])).placed

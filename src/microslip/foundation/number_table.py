@@ -1,4 +1,5 @@
-"""Tables of numbers in CSV files: a heading with names and units of columns, then lines of numbers.
+"""Tables of numbers in CSV files: a heading with the names and units of the columns, then lines of
+numbers.
 
 Commas, semicolons or tabs separate the columns.  Empty lines and lines that begin with # are
 ignored.
@@ -62,7 +63,7 @@ def read_numbers(
     complete : bool
         Whether all columns are needed.
     least : mapping of float
-        Smallest allowed number of some columns, by name.
+        Smallest allowed number in a column, by the name of the column.
     decimal, encoding : str
         Decimal mark and encoding of the file.
     most : int
@@ -111,8 +112,8 @@ def _headings(
 
 
 def number(where: int, name: str, word: str, least: float = -math.inf) -> float:
-    """The number of a word.  Raises ValueError with the line unless it is finite and at least
-    `least`."""
+    """Convert a word to a number.  Raises ValueError with the line number unless it is finite and
+    at least `least`."""
     if not NUMBER.fullmatch(word):
         raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
     value = float(word)

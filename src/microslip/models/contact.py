@@ -182,8 +182,8 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
 
 
 def rigid_displacement(contact: Contact, place: np.ndarray) -> np.ndarray:
-    """Displacement of each point, shape (2, ...), of a rigid motion `place`: forward, lateral,
-    angle."""
+    """Displacement of each point, shape (2, ...), in a rigid motion; place: forward displacement,
+    lateral displacement and angle."""
     forward, lateral, angle = place
     return np.stack(
         [

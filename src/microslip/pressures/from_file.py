@@ -40,5 +40,5 @@ def _of_content(file: named_files.NamedFile, content: bytes) -> Measured:
 
 
 read_pressure = named_files.FileReader("pressure", _of_content)
-"""Function that returns the pressure of a name such as "file:measured.csv".  The name of the
-pressure contains a digest of the content in place of the path."""
+"""Function that returns the pressure for a name such as "file:measured.csv".  In the name of the
+pressure, a digest of the content replaces the path."""

@@ -13,10 +13,11 @@ it follows that:
   v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
-Per radian, the dissipated energy is the work v mu + y <F_lateral cos t> of the transverse motion,
-at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v).  For the bore, divided
-by phi, it is between v and v + 1 / (20 (v - 1)).  With the bound b on d, both are at most
-v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with v >= x.
+The dissipated energy per radian of the transverse motion is the work v mu + y <F_lateral cos t>.
+It is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v).  For the bore,
+the energy divided by phi is between v and v + 1 / (20 (v - 1)).  With the bound b on d, both
+energies are at most v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with v
+>= x.
 
 The bounds hold for any nu and any stiffness.  The arguments are the paper's dimensionless groups.
 

@@ -7,13 +7,14 @@ sliders have the density rho over the slip displacement phi has the slope Integr
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
 which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every history of the
-displacement, because both follow Masing's rules.  Under a punch, the sliders below its flat end
+displacement, because both follow Masing's rules.  Under a punch, the sliders below the flat end
 slip together at phi = 1.
 
 The discrete model divides the contact radius into intervals.  One element replaces the sliders of
-each interval.  It has their total stiffness and their total limit force, so the model has the
-initial stiffness of the contact and its force at full slip.  The first loading of the model
-consists of tangents of F at the ends of the intervals, and its force is never below F.
+each interval.  The element has the total stiffness and the total limit force of these sliders.  So
+the model has the initial stiffness of the contact and the correct force at full slip.  The first
+loading of the model consists of tangents of F at the ends of the intervals, so the force is never
+below F.
 """
 
 from __future__ import annotations
@@ -25,17 +26,18 @@ import numpy as np
 from microslip.theory.indenter_pressure import IndenterPressure
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
-"""Contact radii of the table from which the intervals are interpolated."""
+"""Contact radii in the table from which the intervals are interpolated."""
 LOOP_ERRORS = 3.0
 """Largest error on loops, divided by the largest error on the first loading.  A branch of a loop is
-F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to this error."""
+F(u_max) - 2 F(x) + 2 F(y), and each F has an error between 0 and the largest error on the first
+loading."""
 
 
 @dataclass(frozen=True, eq=False)
 class Iwan:
     """Parallel Jenkins elements whose forces add up to the tangential force.
 
-    Without units, displacements are divided by u_lim, forces by mu F_z and stiffnesses by
+    In dimensionless form, displacements are divided by u_lim, forces by mu F_z and stiffnesses by
     mu F_z / u_lim.  `microslip.predict_iwan` uses m, N and N/m.
 
     Attributes
@@ -45,11 +47,11 @@ class Iwan:
     limit_force : np.ndarray, shape (elements,)
         Force at which each element slips.
     force_error : np.ndarray, shape (elements,)
-        Largest error of the force on the first loading around the displacement at which each
-        element slips, due to the finite number of elements.
+        Largest error of the force on the first loading near the slip displacement of each element,
+        due to the finite number of elements.
     poisson_error : float
-        Largest difference from the force of the full contact on a first loading and a loop between
-        full slip in both directions, due to Poisson's ratio.  It is 0 for nu = 0.
+        Largest force error due to Poisson's ratio, compared with the full contact.  It is taken
+        over a first loading and a loop between full slip in both directions.  It is 0 for nu = 0.
     """
 
     stiffness: np.ndarray
@@ -72,7 +74,7 @@ class Iwan:
         return 2.0 * float(self.force_error.sum()) + self.poisson_error
 
     def force(self, displacement: np.ndarray) -> np.ndarray:
-        """Force along a path that begins without tangential forces at the displacement 0.
+        """Force along a path that begins at the displacement 0, without tangential force.
 
         Parameters
         ----------
@@ -91,8 +93,8 @@ class Iwan:
         return np.array(out)
 
     def scaled(self, force: float, displacement: float) -> Iwan:
-        """Copy in other units; force and displacement: values of the present units in the new
-        ones."""
+        """Return a copy in other units; force, displacement: the present units of force and
+        displacement, expressed in the new units."""
         return Iwan(
             self.stiffness * (force / displacement),
             self.limit_force * force,

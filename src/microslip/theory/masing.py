@@ -60,10 +60,10 @@ def longitudinal(
 def longitudinal_energy(
     velocity: float, amplitude: float, curve: Callable = mindlin_force
 ) -> float:
-    """Energy that friction dissipates in a period of `longitudinal`, divided by mu F_z u_lim.
+    """Dissipated energy per period of the motion in `longitudinal`, divided by mu F_z u_lim.
 
-    The sphere slides forward over its net advance, and its way back and forth is a loop.  Arguments
-    are those of `longitudinal`, as floats.
+    The sphere slides forward over its net advance, and the backward and forward strokes form a
+    loop. The arguments are those of `longitudinal`, as floats.
     """
     stroke = 0.0
     if velocity < amplitude:
@@ -75,10 +75,10 @@ def longitudinal_energy(
 def loop_energy(
     amplitude: np.ndarray | float, curve: Callable = mindlin_force
 ) -> np.ndarray | float:
-    """Energy that a loop of force and displacement dissipates, 8 W(A) - 4 A F(A).
+    """Dissipated energy of a loop of force against displacement, 8 W(A) - 4 A F(A).
 
     W is the work of the first loading, the integral of the curve F from 0 to the amplitude A. For a
-    sphere it is the energy of Mindlin and Deresiewicz.
+    sphere this is the formula of Mindlin and Deresiewicz.
 
     Parameters
     ----------
