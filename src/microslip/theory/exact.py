@@ -1,7 +1,7 @@
 """Closed forms that replace simulations of some motions under Hertz pressure.
 
-Stored results depend on this file and on its functions. The names of these and other formulas are
-in datasets/catalogue.py. Stored results do not depend on that file.
+Stored results depend on this file and on the functions that it uses. They do not depend on
+datasets/catalogue.py, which contains the names of these and other formulas.
 """
 
 from __future__ import annotations

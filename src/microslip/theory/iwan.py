@@ -7,8 +7,8 @@ sliders have the density rho over the slip displacement phi has the slope Integr
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
 which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every history of the
-displacement, because both follow Masing's rules.  Under a punch, the sliders below the flat end
-slip together at phi = 1.
+displacement, because the model and the contact follow Masing's rules.  Under a punch, the sliders
+below the flat end slip together at phi = 1.
 
 The discrete model divides the contact radius into intervals.  One element replaces the sliders of
 each interval.  The element has the total stiffness and the total limit force of these sliders.  So
