@@ -1,6 +1,6 @@
 """Figure of a certified map: friction, cells and points of the map, and error bounds of the cells.
 
-A certified map of drift has the velocity under a force instead of friction.
+For a certified map of drift, the figure shows the velocity under a force instead of friction.
 """
 
 from __future__ import annotations

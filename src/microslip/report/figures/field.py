@@ -21,7 +21,7 @@ from microslip.report.figures.data import at_one_poisson, columns
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
-"""Colours with enough contrast to black arrows."""
+"""Colours that contrast well with black arrows."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

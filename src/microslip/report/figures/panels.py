@@ -131,7 +131,7 @@ def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink:
 
 
 def _once(axes: Axes, label: str) -> str:
-    """Return a label that matplotlib omits from the legend if the panel already has the label."""
+    """Return the label. Prefix it with "_" if the panel has it, so that the legend omits it."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 
 

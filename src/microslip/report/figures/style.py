@@ -129,7 +129,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def number(value: float) -> str:
-    """Format a number with three digits as mathtext. A large or small one has a power of ten."""
+    """Format a number with three digits as mathtext, with a power of ten if large or small."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
