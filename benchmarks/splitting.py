@@ -1,4 +1,4 @@
-"""Iterations of the step solvers of microslip.contacts for several values of their constants.
+"""Iterations of the step solvers in microslip.contacts, for several values of their constants.
 
     PYTHONPATH=src python benchmarks/splitting.py
 

@@ -26,11 +26,11 @@ from microslip.theory.catalogue import FORMS, STATIC
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
 CERTAIN = 5.0
-"""Smallest excess over its error estimate for which an exponent is printed."""
+"""An exponent is printed if the excess is at least this many times its error estimate."""
 
 
 def exponent(points, limit):
-    """Local exponent between the last two points, or None if it is less certain than CERTAIN."""
+    """Local exponent between the last two points, or None if it is uncertain, see CERTAIN."""
     if len(points) < 2:
         return None
     excess = [point.mu_macro - limit for point in points[-2:]]
