@@ -4,15 +4,15 @@
                                    [--output FILE] [--markdown FILE]
 
 Each folder contains the certified maps of a run (snakemake certified). Random points are uniform in
-the logarithm of the velocity, in the amplitude and, for a map over Poisson's ratio, in that ratio.
-The points were not used to make a map or to choose map_cells.SHARE. Their references are solved to
-a smaller tolerance than that of the most accurate map of the motion. A point is covered if the
-map's error is at most the map's error estimate plus the reference's error estimate. The output file
-stores the references, so that the next run can reuse them.
+log velocity and in amplitude and, for a map over Poisson's ratio, also in this ratio. The points
+were not used to make a map or to choose map_cells.SHARE. Their references have a smaller tolerance
+than the motion's most accurate map. A point is covered if the map's error is at most the map's
+error estimate plus the reference's error estimate. The output file stores the references, so that
+the next run can reuse them.
 
 The error estimate of a uniform grid is computed by microslip.at. The grid's nodes are taken from
-the certified map and count as exact. The cost of a point is measured by solving some points of the
-grid and of the map at the map's tolerance.
+the certified map and count as exact. To measure the cost of a point, some points of the grid and of
+the map are solved to the map's tolerance.
 """
 
 from __future__ import annotations

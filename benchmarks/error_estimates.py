@@ -8,14 +8,14 @@ The points are those of `blind_points.py`. The quantity is the friction or, unde
 velocity. The tolerance of a velocity above 1 is relative. A point fails if it is converged and its
 error exceeds the error estimate by more than the reference's uncertainty.
 
-The first reference is the same point at a tenth of the tolerance, or at a quarter of it for 1e-4
-and below. It is computed by the same rules as the estimate. Therefore every twentieth point, and
-every point whose error may exceed its estimate, has a second reference that shares no run with the
-result. For one contact at a prescribed velocity, `finer.py` computes the second reference.
-Otherwise, it is computed from two runs with more cells and steps than the first reference. The
-second reference is also used if the first one would take too much work, for example for rotations
-at 1e-4. The reference with the smallest uncertainty judges the point. References that contradict
-each other are listed.
+The first reference is the same point, solved to a tenth of the tolerance. For tolerances of 1e-4
+and below, it is solved to a quarter. It is computed by the same rules as the estimate. Therefore
+some points have a second reference, which shares no run with the result. These are every twentieth
+point, and every point whose error may exceed its estimate. For one contact at a prescribed
+velocity, `finer.py` computes the second reference. Otherwise, it is computed from two runs with
+more cells and steps than the first reference. The second reference is also used if the first
+reference would take too much work, for example for rotations at 1e-4. The reference with the
+smallest uncertainty judges the point. References that contradict each other are listed.
 
 Results are written to a file of JSON lines, point by point, and an interrupted run can be
 continued. The run ends if changed sources give different values. --again solves all points again
@@ -62,9 +62,9 @@ MOST_WORK = 3e7
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
-"""Ratios of a second reference's cells and steps to the first one's. No level has such numbers."""
+"""Ratios of a second reference's cells and steps to the first reference's. No level has them."""
 EXACT = 1e-7
-"""Largest uncertainty of a closed form, which runs cannot improve."""
+"""Largest uncertainty of a closed form. Runs cannot improve a closed form."""
 CONFIDENCE = 0.95
 """Probability that the rate of failures is below its limit."""
 AGAIN = 24

@@ -48,7 +48,7 @@ drift velocities are divided by the square root of 1 + velocity squared; the vel
 is 0.
 """
 TIMED = 20
-"""Number of points of a map at which the time of a point is measured."""
+"""Number of map points at which the time for a point is measured."""
 
 
 def map_of(name, error):

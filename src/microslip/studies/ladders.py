@@ -41,13 +41,13 @@ LADDERS = {
 """Levels of each model. Squares have few levels, because they are by far the most expensive."""
 
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels of each model for any method except the shipped one. The other methods can be
+"""Number of levels of each model for methods other than the shipped method. These methods can be
 slow or use dense matrices."""
 
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""Tolerance of the periodic state (force divided by mu F_z) at the first level, and the exponent
-with which it decreases as the number of steps grows. At every level, the tolerance is below the
-discretisation error (1e-4 to 1e-6 for rings at nu = 0)."""
+"""Tolerance of the periodic state (force divided by mu F_z) at the first level. It is proportional
+to 1 / steps^TOLERANCE_POWER. At every level, the tolerance is below the discretisation error (1e-4
+to 1e-6 for rings at nu = 0)."""
 
 
 TRANSLATIONS = ("transverse", "longitudinal", "zigzag")

@@ -21,7 +21,7 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references: for rings, which are cheap, and for angular points."""
+"""Tolerances of references for rings (cheap) and for angular points."""
 MOST_WORK = 5_000_000
 """Work budget of a probe, in step solves times unknowns. It is several times the work of the
 shipped method."""

@@ -104,7 +104,7 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
 
 
 def _torque(shown: xr.Dataset, along: str) -> list[dict]:
-    """Return the torque of a steady bore, which the chart does not show, and its closed form."""
+    """Return the torque of a steady bore and its closed form. The chart does not show them."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]

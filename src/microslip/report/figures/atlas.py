@@ -36,12 +36,12 @@ WIDTH, HEIGHT = 6.0, 9.7
 NARROWEST = 5
 """Smallest width of a block, as a number of squares, so that its heading fits."""
 HEAD, FOOT = 0.75, 0.95
-"""Height in inches of the headings of a row of blocks, and of the legend."""
+"""Heights of a row's headings and of the legend, in inches."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """A block of the atlas, with its title, its note, the labels of its cases, and the outcomes.
+    """A block of the atlas: title, note, labels of the cases, and outcomes.
 
     outcome: codes of the outcomes, shape (methods, cases).
     """
@@ -96,7 +96,7 @@ def _bands(blocks: list[Block], squares: int) -> list[list[Block]]:
 
 
 def _read(dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
-    """Return the methods, with the default one first, and a block for every axis with cases."""
+    """Return the methods (the default method first), and a block for every axis with cases."""
     outcome = dataset["outcome"].transpose("method", "case").values.astype(int)
     methods = dataset["method"].values.astype(str)
     first = np.argsort(methods != "shipped", kind="stable")

@@ -83,7 +83,7 @@ __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
 
 def figure_of(group: str) -> str:
-    """Return the name of the figure of a group of sweeps in `extended`."""
+    """Return the name of the figure for a group of sweeps in `extended`."""
     return f"extended_{group}"
 
 

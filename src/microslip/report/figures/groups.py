@@ -1,4 +1,4 @@
-"""Figure of a group of sweeps in `extended`, with a map or a line for each sweep."""
+"""Figure for a group of sweeps in `extended`, with a map or a line for each sweep."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns by number of maps. Other numbers of maps have 3 columns."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height in inches of a row of maps for each number of columns, and of the margins together."""
+"""Height of a row of maps by number of columns, and total height of the margins, in inches."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Levels of the contours, fewer than on a large map."""
 BEYOND = 0.01

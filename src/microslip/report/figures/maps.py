@@ -49,10 +49,10 @@ POISSONS = (
 ACROSS = 3
 """Number of maps in a row."""
 ROW = {2: 2.9, 3: 2.4}
-"""Height in inches of a row of maps, by the number of maps in the row."""
+"""Height of a row in inches, by the number of maps in the row."""
 
 Cut = list[tuple[xr.Dataset, float]]
-"""Pairs of a dataset at one Poisson's ratio and this ratio."""
+"""List of pairs: a dataset at one Poisson's ratio, and this ratio."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

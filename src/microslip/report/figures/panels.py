@@ -20,7 +20,7 @@ from microslip.report.figures.data import finite_or_nan
 WIDE = 10.0
 """An axis is logarithmic if the ratio of its ends is above this number."""
 VISIBLE_ERROR = 0.01
-"""Smallest error estimate that is drawn. Smaller ones are hidden by the markers."""
+"""Smallest error estimate that is drawn. The markers hide smaller error estimates."""
 
 
 def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
@@ -50,7 +50,7 @@ def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None
 def legend_of_figure(
     figure: Figure, handles: Sequence[Artist], where: str = "upper center", ncols: int | None = None
 ) -> None:
-    """Add one legend for all panels, outside of them."""
+    """Add one legend for all panels, outside the panels."""
     if handles:
         columns = ncols or len(handles)
         place: look.Ink = {"loc": f"outside {where}", "ncols": columns}

@@ -30,7 +30,7 @@ MOST = 3
 MOST_LEVELS = 12
 """With this many levels on each side of 0, the labels of the two innermost would overlap."""
 DIVERGING = "PuOr"
-"""Colour map of differences, which is pale in the middle."""
+"""Colour map of differences. It is pale in the middle."""
 
 
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:

@@ -119,7 +119,7 @@ def axis(quantity: Quantity) -> str:
 
 
 def style() -> AbstractContextManager[None]:
-    """Return a context with the settings of the figures, which replace the user's settings."""
+    """Return a context in which the figures' settings replace the user's settings."""
     return matplotlib.style.context(RC, after_reset=True)
 
 
@@ -185,7 +185,7 @@ def width(text: str, size: float) -> float:
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """Break a text into lines with a width of at most `room` inches, at a font size in points.
+    """Break a text into lines at most `room` inches wide, at a font size in points.
 
     Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """

@@ -30,7 +30,7 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
     """Return the index of the cheapest trial within the tolerance, or None if there is none.
 
-    Times are uncertain, so costs within a factor AS_CHEAP of the lowest one count as equal. The
+    Times are uncertain, so costs within a factor AS_CHEAP of the lowest cost count as equal. The
     first of these trials is returned.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
@@ -58,9 +58,10 @@ def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
 
 
 def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
-    """Fit the exponent p of values ~ sizes^p to the logarithms of the larger half of the sizes.
+    """Fit the exponent p in values ~ sizes^p.
 
-    sizes, values: arrays of shape (n,). Returns NaN if fewer than two sizes have a positive value.
+    The fit is linear in the logarithms and uses the larger half of the sizes. sizes, values: arrays
+    of shape (n,). Returns NaN if fewer than two sizes have a positive value.
     """
     sizes, values = np.asarray(sizes, float), np.asarray(values, float)
     good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)

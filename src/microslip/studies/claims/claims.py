@@ -22,7 +22,7 @@ STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT_VELOCITY = 0.8
 STARTS = ("stress-free", "full-rotation", "full-slip")
 TRAVEL = 10.0
-"""Forward travel of a transient in units of u_lim, twice that in Figure 5 of the paper."""
+"""Forward travel of a transient in units of u_lim, twice as far as in the paper's Figure 5."""
 CELLS = {"fine": 32, "coarse": 16}
 """Number of rings for transients and steady tractions. The error is the difference between the fine
 and the coarse run."""
@@ -34,7 +34,7 @@ PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
 STIFF_EXPONENTS = (25, 50, 100)
-"""Indenter exponents, extrapolated to a flat end, which has a constant stiffness."""
+"""Indenter exponents for extrapolation to a flat end. A flat end has a constant stiffness."""
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 """Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
 RUNS_PER_JOB = 2

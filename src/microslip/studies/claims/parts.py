@@ -42,7 +42,7 @@ Margin = Callable[[float, float], float]
 """Function of a computed value and its reference that returns a margin. The margin is positive if
 the part holds."""
 Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
-"""Source of values. For each value, it yields the place, the value, its error and its runs."""
+"""Source of values. It yields tuples of a place, a value, an error estimate and runs."""
 Amplitudes = Callable[[float], bool]
 """Function that returns True for the amplitudes that a part applies to."""
 
@@ -174,7 +174,7 @@ def _end(quantity: str) -> Values:
 
 
 def _field(index: int) -> Values:
-    """Return the source of one number of `_tractions`.
+    """Return the source of one of the two numbers of `_tractions`.
 
     The error is the change from half as many rings.
     """
@@ -255,9 +255,9 @@ def _sine_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
-    """Yield checks of the paper's runs.
+    """Yield checks of the paper's own runs.
 
-    The error of one of these runs is its distance from a run at the study's tolerance.
+    A run's error is the distance from a run at the study's tolerance.
     """
     for amplitude in claims.sliding(study):
         place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}

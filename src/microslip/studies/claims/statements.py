@@ -1,4 +1,4 @@
-"""The statements of the paper and one of M. Popov (2020) in plain words, and their criteria.
+"""The paper's statements and one by M. Popov (2020), in plain words, and their criteria.
 
 A part is one aspect of a statement that numbers can confirm or refute. The checks of each part are
 in `parts`.

@@ -1,9 +1,9 @@
 """Verdicts on statements, from the margins and errors of checks.
 
 A statement of the paper has parts, and a part is judged by checks. Each check has a margin with an
-error. A check holds if its margin is positive and larger than the error, and fails if the margin is
-negative and its absolute value is larger than the error; otherwise the check is open. A part holds
-if some checks hold and none fails. A statement holds if all its parts hold.
+error. A check holds if its margin is larger than the error. It fails if the margin is negative and
+its absolute value is larger than the error. Otherwise, the check is open. A part holds if some
+checks hold and none fails. A statement holds if all its parts hold.
 """
 
 from __future__ import annotations

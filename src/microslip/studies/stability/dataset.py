@@ -117,7 +117,7 @@ def build(settings: Stability, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield lines of text with the number of cases with each outcome, for each method."""
+    """Yield a line of text for each method: the number of cases with each outcome."""
     for method, row in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
         counts = ((OUTCOMES[i], int((row == i).sum())) for i in range(1, len(OUTCOMES)))
         yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)

@@ -1,8 +1,8 @@
 """Cases of the stability study, in which all methods are tested.
 
-An axis varies one quantity of a base point into a range in which methods fail. The quantity belongs
-to the point, to the resolution, or to the method. A case is one value of this quantity. All probes
-have the same tolerance.
+An axis varies one quantity of a base point into a range where methods fail. The quantity belongs to
+the point, to the resolution, or to the method. A case is a value of this quantity. All probes have
+the same tolerance.
 """
 
 from dataclasses import dataclass
