@@ -48,7 +48,7 @@ function hottestCells({ density, map }, rims) {
   });
 }
 
-// Outlines of the hottest cells of both halves of the disc, as one line with gaps.
+// Outlines of the hottest cells in both halves of the disc, as one line with gaps.
 function hottestLines({ outlines, hottest, period }) {
   const half = period.density.length;
   const every = hottest.flatMap((k) => [outlines[k], outlines[k + half]]);

@@ -2,8 +2,8 @@
 
 Numbers in datasets are stored exactly. Numbers in periods are rounded to integers, which are
 encoded in base64. The rounding steps are bound/127 for tractions, 2 pi/65535 for phases, 1/65535
-for radii and bounds, and the largest force divided by 32767 for forces. Densities of the dissipated
-energy are those of the stored period.
+for radii and bounds, and the largest force divided by 32767 for forces. The densities of dissipated
+energy belong to the stored period.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan
 
 WIDE = 10.0
-"""An axis is logarithmic if the ratio of its ends is above this number."""
+"""An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn. The markers hide smaller error estimates."""
 
@@ -74,7 +74,7 @@ def ticks_outside(axes: Axes) -> None:
 
 
 def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
-    """Make the abscissa logarithmic if the values are above 0 and their ratios exceed WIDE."""
+    """Make the abscissa logarithmic if all values are positive and their ratio exceeds WIDE."""
     if values.min() > 0.0 and values.max() > WIDE * values.min():
         axes.set_xscale("log")
         logarithmic(axes.xaxis)

@@ -139,9 +139,9 @@ def number(value: float) -> str:
 
 
 def prefixed(values: np.ndarray | float, unit: str) -> tuple[float, str]:
-    """Return the power of ten of an SI prefix for values, and the unit with this prefix.
+    """Return the factor of an SI prefix that suits the values, and the unit with this prefix.
 
-    Without a unit, the power is 1.
+    Without a unit, the factor is 1.
     """
     largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
     power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
