@@ -7,12 +7,13 @@
 # CONTRIBUTING.md follows one point along this way.
 #
 # The name of a batch is a hash of its requests and of the code, so an existing batch is up to date.
-# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, which
-# the job writes last: the fingerprint of its inputs, and the checksums of its files.
+# Datasets, figures and pages have plain names.  Each has a stamp, results/.made/NAME.json, with the
+# fingerprint of its inputs and the checksums of its files.  The job writes the stamp last.
 #
-# Snakemake compares dates.  The file results/.again is an input of every rule.  Outdated products
-# and damaged batches are dated before it.  For all other files it is `ancient`, and so are all
-# inputs that are up to date.  So neither other dates nor .snakemake matter.
+# Snakemake compares modification times.  The file results/.again is an input of every rule.
+# Outdated products and damaged batches are backdated to before .again.  For all other files, .again
+# is marked `ancient`, and so are all inputs that are up to date.  Therefore, neither other
+# modification times nor .snakemake matter.
 
 from snakemake.utils import min_version
 
@@ -53,7 +54,7 @@ for target in PLAN.targets:
                 files_of_target(target),
 
 
-# Compiles the solver once, before several jobs would do it at the same time.
+# Compiles the solver once, so that parallel jobs do not all compile it.
 rule warm_up:
     input:
         lambda wildcards: ancient(
@@ -97,7 +98,7 @@ rule solve:
         "workflow/scripts/solve.py"
 
 
-# Solves all points of a certified map, by several processes.
+# Solves all points of a certified map in several processes.
 use rule solve as map with:
     log:
         f"{RESULTS}/logs/map/{{group}}/{{batch}}.log",
@@ -163,7 +164,7 @@ rule draw:
         "workflow/scripts/draw.py"
 
 
-# Interactive page of the maps; explorer_all.html also has all other sweeps.
+# Interactive page of the maps. The page explorer_all.html also contains all other sweeps.
 rule explore:
     input:
         datasets=lambda wildcards: datasets_for(f"pages/{wildcards.page}"),
@@ -190,7 +191,7 @@ rule explore:
         "workflow/scripts/explore.py"
 
 
-# Folder of results of the rules, with the prefix of a module.
+# The folder in which the rules write results, with the prefix of a Snakemake module.
 PLACE = os.path.dirname(str(rules.collect.output[0]))
 
 with refused_in_one_line():

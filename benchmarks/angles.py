@@ -1,10 +1,10 @@
-"""Error of the friction by the number of angles, for rotations and for translations at nu > 0.
+"""Friction error by number of angles, for rotations, and for translations at nu > 0.
 
     python benchmarks/angles.py [--points N] [--markdown FILE]
 
 Random points of several motions and pressures are solved with few and with many angles, with equal
-rings and steps. The table has one line for each motion: the largest difference of the friction for
-each number of angles on half the disc.
+rings and steps. The table has one line for each motion. It shows the largest friction difference
+for each number of angles on half the disc.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ DISTANCE = 1e-7
 
 
 def differences(motion: str, place: tuple, poisson: float, pressure: str) -> list[float]:
-    """Friction with ANGLES minus that with MANY; place: velocity and amplitude."""
+    """Friction with ANGLES minus friction with MANY. place: velocity and amplitude."""
     problem = Problem(motion_named(motion), *place, poisson, pressure_named(pressure))
     settings = Settings(focus=edge_focus(problem, "polar"))
     steps = round(STEPS * max(problem.stroke, 1.0) ** 0.5)

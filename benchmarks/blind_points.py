@@ -1,9 +1,9 @@
-"""Random points of all kinds in strata, with many points where error estimates can be too small.
+"""Stratified random points of all kinds, concentrated where error estimates can be too small.
 
-`point(seed, k)` is point k of the sample of a seed. It depends on seed and k only, so that a long
-sample begins with a short one. Seed 3 has the strata that calibrate the error estimate. All other
-seeds have strata that also cover drives, several contacts, slow loops under steep pressures, the
-neighbourhood of full sliding, and the ranges of the paper at 1e-4.
+`point(seed, k)` returns point k of a seed's sample. The point depends on seed and k only, so every
+longer sample begins with the shorter ones. Seed 3 has the strata that calibrate the error estimate.
+The strata of all other seeds also cover drives, several contacts, slow loops under steep pressures,
+the neighbourhood of full sliding, and the ranges of the paper at 1e-4.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 TOLERANCES, SHARES = (1e-2, 1e-3, 1e-4), (0.45, 0.45, 0.1)
 COARSE = (1e-2,)
-"""Tolerance of points whose references at smaller tolerances are too expensive."""
+"""Tolerance of points whose references would be too expensive at smaller tolerances."""
 ROUND = ("hertz", "power:exponent=1", "power:exponent=8", "punch", "ring")
 OTHERS = ROUND[1:]
 TURNING = (
@@ -44,26 +44,26 @@ class Stratum:
     name : str
         Common property of the points.
     weight : float
-        Fraction of the points, times the sum of all weights.
+        Relative number of points. The weights of all strata are divided by their sum.
     motions : tuple of str, or callable
-        Motions with equal probability, or a function of the generator that draws one.
+        Equally probable motions, or a function of the random generator that draws a motion.
     pressures : tuple of str
-        Pressures with equal probability.
+        Equally probable pressures.
     poisson : tuple of float
-        Poisson's ratios with equal probability.
+        Equally probable Poisson's ratios.
     velocity : (float, float) or None
-        Decimal logarithms of the range of the velocity; None: the static limit.
+        Decimal logarithms of the velocity range, or None for the static limit.
     amplitude : (float, float)
-        Decimal logarithms of the range of the amplitude.
+        Decimal logarithms of the amplitude range.
     tolerances : tuple of float
-        Tolerances with the probabilities SHARES, of which the first ones are used.
+        Tolerances. Their probabilities are the first entries of SHARES.
     largest_amplitude : float or None
-        If not None, amplitudes are uniform between 0 and this one instead of log-uniform.
+        If not None, amplitudes are uniform between 0 and this value instead of log-uniform.
     drive : callable or None
-        Function of the generator that draws a drive: a dict of arguments of `microslip.solve`.
-        A force replaces the velocity.
+        Function of the random generator that draws a drive as a dict of `microslip.solve`
+        arguments. A force replaces the velocity.
     contacts : tuple of str
-        Texts of several contacts, with equal probability.
+        Equally probable strings that describe several contacts.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Stratum:
 
 
 LATE = np.log10(0.6), np.log10(1.05)
-"""Range of amplitudes at which the stick zone of a translation is small, as decimal logarithms."""
+"""Amplitude range in which a translation's stick zone is small, as decimal logarithms."""
 NEAR = {"velocity": (-3.0, 1.0), "amplitude": (-1.3, 0.7)}
 """Range in which friction depends on partial slip, as decimal logarithms."""
 CALIBRATION_SEED = 3
@@ -133,14 +133,14 @@ CALIBRATION = (
 
 
 STEEP = ("hertz", *OTHERS, "power:exponent=30", "punch:flat=0.95")
-"""Pressures, most of them with a steep edge."""
+"""Pressures, mostly with a steep edge."""
 CYCLES = ((1, 1), (1, 1), (2, 1), (1, 2), (3, 1), (3, 2))
 PHASES = (0, 10, 30, 45, 60, 90, 120)
-"""Loops: cycles forward and sideways in a period, and phases between them in degrees."""
+"""Loops: forward and sideways cycles in a period, and phases between them in degrees."""
 SLOW = {"velocity": (-4.5, -1.0), "tolerances": (1e-2, 5e-3, 2e-3)}
 STRAIGHT = ("transverse", "transverse", "zigzag", *LOOPS)
 MOVING = {"velocity": (-2.0, 0.5), "amplitude": (-0.5, 1.0), "tolerances": TOLERANCES[:2]}
-"""Range in which a force moves most contacts, and a spring changes the friction."""
+"""Range in which a force moves most contacts, and in which a spring changes the friction."""
 COUPLES = (
     "phase=0;phase=180",
     "phase=0;phase=180",
@@ -170,7 +170,7 @@ def _loop(draw):
 
 
 def _between(draw, low, high):
-    """A log-uniform number with four digits."""
+    """Draw a log-uniform number with four digits."""
     return float(f"{10.0 ** draw.uniform(np.log10(low), np.log10(high)):.4g}")
 
 
@@ -187,7 +187,7 @@ def _mass(draw):
 
 
 def _light_mass(draw):
-    """A mass whose natural frequency is 2 to 50 times that of the vibration."""
+    """Draw a mass with a natural frequency of 2 to 50 times the vibration frequency."""
     return {"mass": float(f"{STIFFNESS / _between(draw, 2.0, 50.0) ** 2:.4g}")}
 
 
@@ -227,7 +227,7 @@ WEIGHTS = {
     "oscillating load": 0.015,
     "static limit": 0.015,
 }
-"""Weights in the validation of strata of the calibration; FEW for the others."""
+"""Weights of the calibration strata in the validation. Other strata have the weight FEW."""
 VALIDATION = (
     *(replace(stratum, weight=WEIGHTS.get(stratum.name, FEW)) for stratum in CALIBRATION),
     Stratum(
@@ -316,12 +316,12 @@ GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
 
 def strata_of(seed: int) -> tuple[Stratum, ...]:
-    """Strata of the sample of a seed."""
+    """Strata of a seed's sample."""
     return CALIBRATION if seed == CALIBRATION_SEED else VALIDATION
 
 
 def point(seed: int, k: int) -> dict:
-    """Point k of the sample of a seed: arguments of `microslip.solve`, and its stratum."""
+    """Point k of a seed's sample: arguments of `microslip.solve`, and the stratum."""
     draw = np.random.default_rng([seed, k])
     strata = strata_of(seed)
     weights = np.array([stratum.weight for stratum in strata])

@@ -4,15 +4,15 @@
                                    [--output FILE] [--markdown FILE]
 
 Each folder contains the certified maps of a run (snakemake certified). Random points are uniform in
-the logarithm of the velocity, in the amplitude and, if the map is over it, in Poisson's ratio. They
-were not used to make a map or to choose map_cells.SHARE. Their references are solved to a smaller
-tolerance than the most accurate map of the name. A point is covered if the error of the map is at
-most its estimate plus the error estimate of the reference. The output file stores the references,
-so that the next run continues.
+log velocity and in amplitude and, for a map over Poisson's ratio, also in this ratio. The points
+were not used to make a map or to choose map_cells.SHARE. Their references have a smaller tolerance
+than the motion's most accurate map. A point is covered if the map's error is at most the map's
+error estimate plus the reference's error estimate. The output file stores the references, so that
+the next run can reuse them.
 
-The error estimate of a uniform grid is that of microslip.at, with nodes from the certified map that
-count as exact. The cost of a point is measured by solving some points of the grid and of the map at
-the tolerance of the map.
+The error estimate of a uniform grid is computed by microslip.at. The grid's nodes are taken from
+the certified map and count as exact. To measure the cost of a point, some points of the grid and of
+the map are solved to the map's tolerance.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from microslip.datasets.query.cells import cells_of
 from microslip.sweeps.map_cells import surpluses_of
 
 TRUTH = {"transverse": 0.1, "bore": 0.2}
-"""Tolerance of the references of a motion over the smallest error of its maps."""
+"""Tolerance of a motion's references, divided by the smallest error of the motion's maps."""
 TIMED = 40
 """Number of points of a grid that are solved to measure their cost."""
 UNIFORM = (25, 49, 97, 193)
-"""Nodes along each axis of the uniform grids."""
+"""Numbers of nodes along each axis of the uniform grids."""
 
 
 def random_points(dataset, number, seed):
@@ -80,7 +80,7 @@ def solved(motion, points, tolerance, path):
 
 
 def cost(dataset, velocity, amplitude, poisson):
-    """Mean CPU time of a point of a grid in s, measured at some of its points, shape (n,) each."""
+    """Mean CPU time of a grid point in s, measured at some of the points, shape (n,) each."""
     chosen = np.random.default_rng(0).permutation(len(velocity))[:TIMED]
     begun = time.process_time()
     for k in chosen:
@@ -91,7 +91,7 @@ def cost(dataset, velocity, amplitude, poisson):
 
 
 def surpluses_at(dataset, points):
-    """Surplus of the cell at each point, and largest error estimate of its nodes."""
+    """Surplus of the cell at each point, and largest error estimate of the cell's nodes."""
     answers = cells_of(dataset)
     coordinates = answers.cells.coordinates
     scaled = coordinates.scaled(*np.array(points).T[: len(coordinates.directions)])
@@ -142,7 +142,7 @@ def of_map(dataset):
 
 
 def of_uniform_grid(dataset, count):
-    """Line of a uniform grid, with error estimates at the centres of its meshes."""
+    """Line of a uniform grid, with error estimates at the centres of the grid cells."""
     grid = dataset.microslip.on_grid(count, count)
     grid["mu_macro_error"] = xr.zeros_like(grid.mu_macro_error) + dataset.tolerance
     grid["converged"] = xr.ones_like(grid.mu_macro, bool)
@@ -157,7 +157,7 @@ def of_uniform_grid(dataset, count):
 
 
 def of_grid(dataset, grid, points, estimate, seconds):
-    """Line of a grid; estimate: error estimates, any shape; seconds: CPU time of a point."""
+    """Line of a grid. estimate: error estimates, any shape; seconds: CPU time for a point."""
     return named(dataset) | {
         "grid": grid,
         "points": points,

@@ -2,7 +2,7 @@
 
 CONTACT computes a shift in one backward Euler step on equal square elements. The traction bound of
 an element is friction times its pressure. The pressure is computed on the same elements, or it is
-that of Hertz at the centre of the element. Lengths are in mm and forces in N.
+the Hertz pressure at the element's centre. Lengths are in mm and forces in N.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ RESIDUAL = 1e-11
 SLIDES = 1e-7
 """Slip divided by u_lim above which an element counts as slipping."""
 DIFFERENCE = 1e-4
-"""Change of the shift in the difference quotients of the stiffness, divided by u_lim."""
+"""Shift increment in the difference quotients of the stiffness, divided by u_lim."""
 JOULE = 1e-3
-"""Joules in 1 N mm."""
+"""Number of joules in 1 N mm."""
 
 
 def normal_problem(case: dict, centres: np.ndarray) -> dict:
@@ -33,7 +33,7 @@ def normal_problem(case: dict, centres: np.ndarray) -> dict:
     Parameters
     ----------
     case : dict
-        Case of CONTACT in docs/measured/published_numbers.json.
+        CONTACT case in docs/measured/published_numbers.json.
     centres : np.ndarray, shape (n,)
         Coordinates of the centres of the elements along both axes.
     """
@@ -65,21 +65,21 @@ def normal_problem(case: dict, centres: np.ndarray) -> dict:
 
 
 def elliptical_bound(case: dict, centres: np.ndarray) -> dict:
-    """Pressure of Hertz at the centre of each element; parameters as for normal_problem."""
+    """Hertz pressure at the centre of each element. The parameters are those of normal_problem."""
     radius, load = case["prescribed"]["radius"], case["prescribed"]["load"]
     inside = 1.0 - (centres[:, None] ** 2 + centres**2) / radius**2
     return {"pressure": 1.5 * load / (np.pi * radius**2) * np.sqrt(np.maximum(inside, 0.0))}
 
 
 def shifted(case: dict) -> dict:
-    """Solve a case of CONTACT on its own elements.
+    """Solve a CONTACT case on CONTACT's own elements.
 
     Returns
     -------
     dict
-        The numbers that CONTACT prints, by their names in the data file, and the fields `pressure`,
-        `forward`, `lateral` (tractions on the body that is shifted, in N/mm2) and `slip` (in mm) of
-        the elements of the contact, with their coordinates `x` and `y`.
+        The numbers that CONTACT prints, by their names in the data file. For the elements in
+        contact, the dict also contains the fields `pressure`, `forward` and `lateral` (tractions on
+        the shifted body in N/mm2), `slip` (in mm), and the coordinates `x` and `y`.
     """
     element, prescribed = case["element"], case["prescribed"]
     count = case["elements_along_side"]

@@ -4,25 +4,27 @@
                                          [--output FILE] [--markdown FILE] [--again] [--keep]
                                          [--start F] [--safety S] [--smallest S]
 
-The points are those of `blind_points.py`. The quantity is the friction, or the velocity under a
-force, whose tolerance is relative above 1. A point fails if it is converged and its error exceeds
-its estimate by more than the uncertainty of the reference.
+The points are those of `blind_points.py`. The quantity is the friction or, under a force, the
+velocity. The tolerance of a velocity above 1 is relative. A point fails if it is converged and its
+error exceeds the error estimate by more than the reference's uncertainty.
 
-The first reference is the same point at a tenth of the tolerance, or at a quarter of it for 1e-4
-and below. It is computed by the same rules as the estimate. So every twentieth point, and every
-point whose error may exceed its estimate, has a second reference that shares no run with the
-result. This is `finer.py` for one contact at a prescribed velocity, else two runs with more cells
-and steps than the first reference. The second reference is also used if the first one would take
-too much work, for example for rotations at 1e-4. The reference with the smallest uncertainty judges
-the point. References that contradict each other are listed.
+The first reference is the same point, solved to a tenth of the tolerance. For tolerances of 1e-4
+and below, it is solved to a quarter. It is computed by the same rules as the estimate. Therefore
+some points have a second reference, which shares no run with the result. These are every twentieth
+point, and every point whose error may exceed its estimate. For one contact at a prescribed
+velocity, `finer.py` computes the second reference. Otherwise, it is computed from two runs with
+more cells and steps than the first reference. The second reference is also used if the first
+reference would take too much work, for example for rotations at 1e-4. The reference with the
+smallest uncertainty judges the point. References that contradict each other are listed.
 
 Results are written to a file of JSON lines, point by point, and an interrupted run can be
-continued. The run ends if changed sources give other values. --again solves all points again and
-uses the existing references, including those in `docs/measured/references-SEED.csv`. The previous
-file is renamed to FILE.before. --keep writes all references to this table.
+continued. The run ends if changed sources give different values. --again solves all points again
+and uses the existing references, including those in `docs/measured/references-SEED.csv`. The
+previous file is renamed to FILE.before. --keep writes all references to that table.
 
---start multiplies the first level of every ladder. --safety and --smallest replace the safety
-factor and the smallest estimate over the tolerance. With seed 3 they calibrate the estimate.
+--start multiplies the first level of every ladder. --safety replaces the safety factor. --smallest
+replaces the smallest ratio of estimate to tolerance. With seed 3, these options calibrate the
+estimate.
 """
 
 from __future__ import annotations
@@ -52,29 +54,29 @@ from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 
 TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
-"""Tolerance of the first reference over that of the point; 1e-5 is too expensive for rotations."""
+"""Ratio of the first reference's tolerance to the point's. 1e-5 is too expensive for rotations."""
 TWICE = 20
-"""Points whose number is a multiple of TWICE have a second reference."""
+"""Every point whose number is a multiple of TWICE has a second reference."""
 MOST_WORK = 3e7
-"""Largest work of a first reference and of other runs except those of `finer.py`: about 10 s."""
+"""Largest work of a first reference and of other runs (about 10 s), except for `finer.py`."""
 NOT_FINER = {"force", "stiffness", "contacts"}
 """Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
-"""Cells and steps of a second reference over those of the first; no level has these numbers."""
+"""Ratios of a second reference's cells and steps to the first reference's. No level has them."""
 EXACT = 1e-7
-"""Largest uncertainty of a closed form, which runs cannot improve."""
+"""Largest uncertainty of a closed form. Runs cannot improve a closed form."""
 CONFIDENCE = 0.95
 """Probability that the rate of failures is below its limit."""
 AGAIN = 24
 """Number of points solved again when a run is continued, to detect changed sources."""
 CHANGED = 0.1
-"""Change of a value divided by its error estimate from which on the sources count as changed.
-Processors differ in the last digits."""
+"""The sources count as changed if a value changes by this fraction of its error estimate. Last
+digits differ between processors."""
 EVERY = 500
 """Number of points between two summaries."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
 LADDER_FOR = friction.ladder_for
-"""The unchanged function of the package."""
+"""The package's unmodified function."""
 ALL_REFERENCES = "all_references"
 """Key of the list of all references in a line."""
 SOURCES = ("resolution", "periodicity", "solver", "model")
@@ -82,27 +84,27 @@ SOURCES = ("resolution", "periodicity", "solver", "model")
 
 
 def arguments_of(point: dict) -> dict:
-    """Arguments of `microslip.solve` of a point."""
+    """Arguments of `microslip.solve` for a point."""
     return {name: value for name, value in point.items() if name != "stratum"}
 
 
 def quantity(result: microslip.Result) -> tuple[float, float]:
-    """The friction and its error estimate; under a force the velocity."""
+    """The friction (under a force, the velocity) and its error estimate."""
     return result.answer.value, result.answer.error
 
 
 def allowed(line: dict) -> float:
-    """Tolerance of the quantity of a line."""
+    """Tolerance of a line's quantity."""
     return line["tolerance"] * (max(1.0, abs(line["reference"])) if "force" in line else 1.0)
 
 
 def off(line: dict) -> float:
-    """Distance of the value of a line from its reference."""
+    """Distance of a line's value from its reference."""
     return abs(line["value"] - line["reference"])
 
 
 def ratio(line: dict) -> float:
-    """Error of a line, less the uncertainty of its reference, over its error estimate."""
+    """Error of a line minus the reference's uncertainty, divided by the error estimate."""
     beyond = off(line) - line["uncertainty"]
     return beyond / max(line["error"], 1e-12) if beyond > 0.0 else 0.0
 
@@ -133,7 +135,7 @@ def calibrate(
 
 
 def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
-    """One line of the output: point k, its result and its reference, which is computed if None."""
+    """One line of the output: point k, result and reference. If None, the reference is computed."""
     point = blind_points.point(seed, k)
     calibrate(**constants)
     began = time.process_time()
@@ -157,7 +159,7 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
 
 
 def judged(k: int, point: dict, line: dict, result: microslip.Result, before: dict | None) -> dict:
-    """The reference of point k with the smallest uncertainty, all references, and CPU seconds.
+    """For point k: the reference with the smallest uncertainty, all references, and CPU seconds.
 
     line: contains the value and the error of the point; result: its microslip.Result; before:
     references of an earlier run.
@@ -194,7 +196,7 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
 
 
 def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microslip.Result]:
-    """A reference at a tighter tolerance, and its Result; `by` is empty if it did not converge."""
+    """A reference at a tighter tolerance, and its Result. `by` is empty if not converged."""
     tolerance = point["tolerance"] * (TIGHTER if point["tolerance"] > 1e-4 else TIGHTER_AT_1E_4)
     arguments = arguments_of(point) | {"tolerance": tolerance}
     result = microslip.solve(**arguments, most_work=most_work)
@@ -204,7 +206,7 @@ def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microsli
 
 
 def independent(point: dict, result: microslip.Result, first: microslip.Result) -> dict:
-    """A reference that shares no run with the result and the first reference of a point."""
+    """A reference that shares no run with a point's result and first reference."""
     if not NOT_FINER & point.keys():
         pressure = pressure_named(point["pressure"])
         place = (point["velocity"], point["amplitude"], point["poisson"])
@@ -242,7 +244,7 @@ def contradict(line: dict) -> bool:
 
 
 def summary(seed: int, lines: list[dict]) -> str:
-    """Markdown: table of errors over estimates by stratum and tolerance, and all failures."""
+    """Markdown: table of error/estimate ratios by stratum and tolerance, and all failures."""
     rows = []
     names = [stratum.name for stratum in blind_points.strata_of(seed)]
     for tolerance in sorted({line["tolerance"] for line in lines}, reverse=True):
@@ -276,7 +278,7 @@ def _verdict(lines):
 
 
 def _over_tolerance(line):
-    """Error less the uncertainty of the reference, over the tolerance."""
+    """Error minus the reference's uncertainty, divided by the tolerance."""
     return max(off(line) - line["uncertainty"], 0.0) / allowed(line)
 
 
@@ -327,7 +329,7 @@ def _named(line):
 
 
 def refuse_changed(lines: list[dict], constants: dict) -> None:
-    """End the run if some of the lines have other values with the present sources."""
+    """End the run if the present sources give different values for some of the lines."""
     calibrate(**constants)
     for i in np.linspace(0, len(lines) - 1, min(AGAIN, len(lines))).astype(int):
         point = blind_points.point(lines[i]["seed"], lines[i]["k"])

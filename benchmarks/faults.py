@@ -1,14 +1,14 @@
-"""Test sweeps with kills, signals and damaged files at random moments, each with a re-run.
+"""Test sweeps with kills, signals and damaged files at random moments, then run them again.
 
     python benchmarks/faults.py [--rounds N] [--seed S] [--markdown FILE]
 
 The project is copied to a temporary folder, and the sweeps of config/smoke.yaml are run once
-without a fault. Every round removes a random part of the results. Then Snakemake is killed, with
-its jobs or alone, or gets SIGINT or SIGTERM, or files are damaged. The plain re-run unlocks the
-folder first if Snakemake asks for it. Afterwards all results except logs must be equal to those of
-the first run, bit for bit. No point that was stored before a signal may be lost or written again.
-The processes are found as on Linux. Full and read-only disks are tested in tests/sweeps and
-tests/app.
+without a fault. Every round removes a random part of the results. Then Snakemake is killed (alone
+or with its jobs) or receives SIGINT or SIGTERM, or files are damaged. The sweeps are run again
+without special options; the folder is unlocked first if Snakemake asks for it. Afterwards all
+results except logs must be equal to those of the first run, bit for bit. Points stored before a
+signal must not be lost or written again. The search for processes works on Linux. Full and
+read-only disks are tested in tests/sweeps and tests/app.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class Project:
             path.relative_to(self.results).as_posix(): path
             for path in sorted(self.results.rglob("*"))
             if path.is_file() and path.suffix not in (".damaged", ".part")
-            if path.name != ".again"  # its content changes with each run
+            if path.name != ".again"  # the content of .again changes with each run
             if path.relative_to(self.results).parts[0] not in IGNORED
         }
 
@@ -94,7 +94,7 @@ class Project:
         return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files}
 
     def stored(self):
-        """Inode and time of all stored points and single runs, by name."""
+        """Inode and modification time of all stored points and single runs, by name."""
         folders = ("points/", "histories/")
         stats = {n: path.stat() for n, path in self.files().items() if n.startswith(folders)}
         return {name: (stat.st_ino, stat.st_mtime_ns) for name, stat in stats.items()}
@@ -125,7 +125,7 @@ def damage(path, rng):
 
 
 def round_of(project, fault, reference, seconds, rng):
-    """Findings after one fault: a list of sentences, empty if all results are unchanged."""
+    """Findings after one fault, as a list of sentences. It is empty if no result has changed."""
     chosen = rng.choice([1.0, 0.5, 0.2])
     for path in project.files().values():
         if rng.random() < chosen:
@@ -161,7 +161,7 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         project = Project(Path(folder, "project"))
-        for _ in range(2):  # the first one compiles
+        for _ in range(2):  # the first run compiles
             shutil.rmtree(project.results, ignore_errors=True)
             started = time.perf_counter()
             if output := project.run():

@@ -1,12 +1,11 @@
-"""Reference of a point on a mesh four times as fine as that of the result that it judges.
+"""Reference of a point, on a mesh four times as fine as the result's mesh.
 
-The reference shares no run with the result. It has four times the rings, angles and steps of the
-result, up to 192 rings or squares, 32 angles and 2048 steps in half a period, and at least twice
-those of the result. Each axis is refined alone, from a base that is finer than the first level of
-any result. The mixed difference of two axes is also computed at the base. Every search for a
-periodic state has a new start and goes to a tenth of the tolerance. The uncertainty is estimated
-from runs with half of the refinement. If a state does not become periodic, half of the refinement
-is used.
+The reference shares no run with the result. It has four times the result's rings, angles and steps,
+up to 192 rings or squares, 32 angles and 2048 steps in half a period. It has at least twice the
+result's numbers. Each axis is refined alone, from a base that is finer than the first level of any
+result. The mixed difference of two axes is also computed at the base. Every search for a periodic
+state starts anew and continues to a tenth of the tolerance. The uncertainty is estimated from runs
+with half of the refinement. If a run does not become periodic, half of the refinement is used.
 
 A static limit over rings scatters, because the edge of the stick zone lies within a ring. Its
 reference is the mean over many numbers of rings.
@@ -30,32 +29,32 @@ from microslip.solver.stick_edge import edge_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4
-"""Rings and angles of references under an oscillating load, and steps in half a period over rings.
-All three are refined together."""
+"""For references under an oscillating load: rings and angles, and ratio of steps in half a period
+to rings. All three are refined together."""
 STATIC_RINGS = range(160, 513, 32)
-"""Numbers of rings of static limits."""
+"""Numbers of rings for static limits."""
 ROUNDED = 1e-9
-"""Difference of the torques of full slip below which two pressures count as equal."""
+"""Two pressures count as equal if their full-slip torques differ by less than this."""
 FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
 LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
 BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
 PEAKED = 48
-"""Rings of the base of rotations under pressures with a peak or a steep edge."""
+"""Number of rings in the base, for rotations under pressures with a peak or a steep edge."""
 MOST = Resolution(192, 32, 2048)
-"""Resolutions (steps in half a period) of the reference: base, and limits of the finest run."""
+"""Resolutions of the reference (steps in half a period): base, and limits of the finest run."""
 PERIODICITY = 0.1
-"""Largest distance of the runs of a reference from their periodic states, over the tolerance."""
+"""Largest distance of a reference's runs from their periodic states, divided by the tolerance."""
 
 
 def reference(problem, tolerance, certified):
-    """(mu, uncertainty) on a mesh four times as fine as that of the Result `certified`."""
+    """(mu, uncertainty) on a mesh four times as fine as the mesh of the Result `certified`."""
     kind = problem.motion
     model = choose_model(replace(problem, velocity=1.0))
     stroke = min(max(problem.stroke, 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
-    # the static limit of a loop determines the edge of its stick zone itself
+    # the run for a loop's static limit computes the edge of the stick zone itself
     by_itself = problem.velocity == 0.0 and not at_turning_points(problem)
     settings = Settings(focus=None if by_itself else edge_focus(problem, model))
 
@@ -90,7 +89,7 @@ def reference(problem, tolerance, certified):
         return solved.mu
 
     def settled(axis, finest):
-        """The largest of finest, finest/2, ... along an axis with a periodic state."""
+        """The largest of finest, finest/2, ... along an axis for which the run becomes periodic."""
         while finest > 2 * getattr(base, axis):
             if run(replace(base, **{axis: finest})).converged:
                 break

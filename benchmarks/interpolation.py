@@ -1,11 +1,12 @@
-"""Validate the error bounds of interpolation with omitted lines of maps and random points.
+"""Validate interpolation error bounds with omitted lines of maps, and at random points.
 
     python benchmarks/interpolation.py [--results FOLDER] [--points N] [--seed S] [--markdown FILE]
 
 The folder contains the maps of a run (transverse.nc, bore.nc). Each inner line of a map, along both
 axes, is omitted in turn and interpolated from the other lines. Then N random points on each map,
-and N/4 points outside every side of it, are solved to 2e-4 and compared with the map. An answer is
-covered if its error is at most its bound plus the error estimate of the reference.
+and N/4 points outside every side of it, are solved to 2e-4 and compared with the map. An
+interpolated value is covered if its error is at most its error bound plus the error estimate of the
+reference.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ TOLERANCE = 2e-4
 
 
 def omitted(dataset):
-    """(error, bound) of every point on every inner line, from the other lines of the map."""
+    """(error, bound) at every point of every inner line, interpolated from the other lines."""
     errors, bounds = [], []
     for dim in ("amplitude", "velocity"):
         for i in range(1, dataset.sizes[dim] - 1):
@@ -53,7 +54,7 @@ def places(dataset, points, rng):
 
 
 def solved(dataset, velocity, amplitude, label):
-    """(error, bound) of answers at points, with the solver as reference."""
+    """(error, bound) of interpolated values at points, with the solver as reference."""
     pairs = list(zip(velocity, amplitude, strict=True))
     answer = dataset.microslip.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
     results = [

@@ -1,8 +1,9 @@
-"""Table of the references of random points.
+"""Table of references for random points.
 
 A reference is far more expensive than the result that it judges, and does not depend on the error
-estimate. So the references in `docs/measured/references-SEED.csv` also judge later versions of this
-package, and other codes for the same contact. A row contains all arguments of its point.
+estimate. Therefore the references in `docs/measured/references-SEED.csv` can also judge later
+versions of this package, and other codes for the same contact. A row contains all arguments of its
+point.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ COLUMNS = (
 )
 """Possible arguments of a point."""
 REFERENCE = ("reference", "uncertainty", "by")
-"""Friction, or velocity under a force; its uncertainty; method of the reference."""
+"""Friction (or velocity under a force), its uncertainty, and the method of the reference."""
 DIGITS = {"reference": ".12f", "uncertainty": ".2e"}
 
 

@@ -1,10 +1,10 @@
-"""Time and memory of 10^8 queries of a certified map in chunks.
+"""Time and memory for 10^8 queries of a certified map, in chunks.
 
     python benchmarks/many_questions.py MAP.nc [--questions N] [--chunk N] [--threads N]
                                         [--markdown FILE]
 
-Velocities, or forces, and amplitudes are random and never in memory as a whole. For each chunk dask
-draws them, queries the map, and keeps the sum and the largest error only.
+Velocities (or forces) and amplitudes are random, and are never in memory as a whole. For each
+chunk, dask draws them, queries the map, and keeps only the sum and the largest error.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def questions(dataset, count, chunk):
 
 
 def memory():
-    """Largest memory of this process so far, in bytes."""
+    """Peak memory of this process so far, in bytes."""
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 

@@ -1,4 +1,4 @@
-"""Limit each process to one thread. Import this module before NumPy reads the variables."""
+"""Limit each process to one thread. Import this module before NumPy, which reads the variables."""
 
 import os
 

@@ -4,10 +4,11 @@
                                     [--results FOLDER] [--markdown FILE]
 
 NAME is a sweep under `extended` or `drives` of the configuration. Its map is made for each error,
-round by round, and compared with the solver at random points. They are uniform in the logarithm of
-the velocity, or in the force, and in the amplitude. The tolerance of the solver is a tenth of the
-error. A point is covered if the error of the map is at most its estimate plus the error estimate of
-the solver. The store of the folder holds all points, so that the next run continues.
+round by round, and compared with the solver at random points. The points are uniform in the
+logarithm of the velocity (or in the force) and in the amplitude. The tolerance of the solver is a
+tenth of the error. A point is covered if the map's error is at most the map's error estimate plus
+the solver's error estimate. The folder's store holds all points, so that the next run can reuse
+them.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ drift velocities are divided by the square root of 1 + velocity squared; the vel
 is 0.
 """
 TIMED = 20
-"""Number of points of a map at which the time of a point is measured."""
+"""Number of map points at which the time for a point is measured."""
 
 
 def map_of(name, error):
-    """The certified map of a sweep of the configuration, for an error."""
+    """The certified map for a sweep in the configuration and an error."""
     whole = load.read_yaml(CONFIGURATION)
     part = "drives" if name in whole["drives"] else "extended"
     sweeps = {name: whole[part][name] | {"adaptive": {"error": error}}}
@@ -73,7 +74,7 @@ def records_of(map_, store):
 
 
 def points_of(map_, number, seed):
-    """Requests at random points of a map, for a tenth of its error."""
+    """Requests at random points of a map, with a tenth of the map's error as tolerance."""
     rng = np.random.default_rng([seed, *map_.name.encode()])
     tolerance = float(f"{map_.error / 10:.6g}")
     requests = []
@@ -126,7 +127,7 @@ def judged(name, error, options, store):
 def _seconds(records):
     """CPU time of the solver for all points, extrapolated from a few points."""
     few = records[:: max(1, len(records) // TIMED)]
-    evaluate.computed(few[0]["request"])  # compiled
+    evaluate.computed(few[0]["request"])  # compiles
     begun = time.process_time()
     for record in few:
         evaluate.computed(record["request"])

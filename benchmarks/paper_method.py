@@ -1,12 +1,13 @@
-"""Time of the paper's method and of a point with an error estimate, on one core.
+"""Time for the paper's method, and for a point with an error estimate, on one core.
 
     python benchmarks/paper_method.py [--steps N] [--repeats N] [--markdown FILE]
 
-The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020) has 32 x 32 squares, backward Euler,
-up to 8,000 time steps from full forward slip, and stresses to 0.1 %. Here a period has 100 steps.
-Each step is solved until the residual of Coulomb's law is 0.1 % of the total friction. The result
-is the mean over the last period. The certified point is ``microslip.solve`` with an error of at
-most 1e-3. Both are compiled before they are timed and run alternately. The times are medians.
+The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020) uses 32 x 32 squares, backward
+Euler, up to 8,000 time steps from full forward slip, and a stress tolerance of 0.1 %. Here a period
+has 100 steps. Each step is solved until the residual of Coulomb's law is 0.1 % of the total
+friction. The result is the mean over the last period. The certified point is ``microslip.solve``
+with an error of at most 1e-3. Both are compiled before timing, and they run alternately. The times
+are medians.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Comparison of microslip with numbers and formulas that others have published.
+"""Compare microslip with published numbers and formulas.
 
     python benchmarks/published_numbers.py [--markdown FILE]
 
@@ -24,13 +24,13 @@ NUMBERS = json.loads(
     (Path(__file__).parents[1] / "docs/measured/published_numbers.json").read_text("utf-8")
 )
 GRID = 2e-3
-"""Largest difference between the elements of CONTACT and a refined mesh."""
+"""Largest difference between CONTACT's elements and a refined mesh."""
 SLIDERS = 2e-3
-"""Largest error of the 100 sliders of tmdsimpy, from their finite number."""
+"""Largest error of tmdsimpy due to its finite number of sliders (100)."""
 EXACT = 1e-4
-"""Largest difference between exact formulas and the solver, for formulas of a flat end."""
+"""Largest difference between exact formulas for a flat end and the solver."""
 EXPONENTS = (50, 100)
-"""Exponents of the indenters from which a flat end is extrapolated."""
+"""Indenter exponents used to extrapolate to a flat end."""
 AMPLITUDE = 0.6
 """Amplitude of the indentation for the sawtooth and square waveforms."""
 ROWS = 80
@@ -38,7 +38,7 @@ ROWS = 80
 
 
 class Comparison(NamedTuple):
-    """A published value, the value of microslip, and the largest difference that is agreement."""
+    """A published value, microslip's value, and the largest difference that counts as agreement."""
 
     what: str
     published: float
@@ -62,21 +62,21 @@ class Comparison(NamedTuple):
 
 
 def half_digit(value: float, digits: int) -> float:
-    """Largest rounding error of a number that is printed with some significant digits."""
+    """Largest rounding error of a number printed with `digits` significant digits."""
     return 0.5 * 10.0 ** (np.floor(np.log10(abs(value))) - digits + 1)
 
 
 # CONTACT
 
 QUOTIENT = 0.015
-"""Largest relative error of a stiffness of CONTACT, which is a difference quotient of the last
-iterations that search for the shift."""
+"""Largest relative error of a CONTACT stiffness. It is a difference quotient of the last iterations
+in the search for the shift."""
 LAST_DIGITS = {"stiffness_forward": 3, "stiffness_lateral": 3}
-"""Number of printed digits of quantities that are not printed with four digits."""
+"""Number of printed digits of these quantities. All others are printed with four digits."""
 
 
 def contact_on_its_elements(case: dict) -> list[Comparison]:
-    """Compare a shift on the elements of CONTACT: all printed numbers, to their last digit."""
+    """Compare all printed numbers of a shift on CONTACT's elements, to their last digit."""
     computed = contact_squares.shifted(case)
     out = []
     for name, published in case["printed"].items():
@@ -144,7 +144,7 @@ def contact_refined(case: dict) -> list[Comparison]:
 SMALL = 1e-3
 """Displacement in u_lim, or angle in u_lim / a, at which a stiffness is computed."""
 STIFFNESS = 2e-3
-"""Largest relative error of a stiffness, from slip near the edge of the contact."""
+"""Largest relative error of a stiffness, due to slip near the contact's edge."""
 POISSON, LOOP = 0.3, 0.5
 """Poisson's ratio of the stiffness, and displacement amplitude of the loop in u_lim."""
 
@@ -186,7 +186,7 @@ def closed_forms() -> list[Comparison]:
 
 
 def tmdsimpy_loop(name: str) -> tuple[np.ndarray, microslip.Response]:
-    """Published forces of a loop divided by friction times the first load, and the response."""
+    """Published forces of a loop, divided by friction times the first load, and the response."""
     data = NUMBERS["tmdsimpy"]
     loop = {key: np.array(column) for key, column in data["loops"][name].items()}
     nu, approach = data["poisson"], loop["approach_m"]
@@ -198,7 +198,7 @@ def tmdsimpy_loop(name: str) -> tuple[np.ndarray, microslip.Response]:
 
 
 def tmdsimpy(name: str) -> Comparison:
-    """Compare a loop in the row with the largest difference."""
+    """Compare a loop at the row with the largest difference."""
     published, answer = tmdsimpy_loop(name)
     worst = np.argmax(np.abs(answer.force_forward - published))
     allowed = SLIDERS + answer.force_error[worst, 0]

@@ -1,4 +1,4 @@
-"""Compute many points in several processes into a file of JSON lines, which can be continued."""
+"""Compute many points in several processes, and write them to a resumable JSON lines file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_lines(
     numbers : iterable of int
         Numbers of the points.
     jobs_of : callable
-        jobs_of(k) -> a function of a module and its arguments; the function returns line k.
+        jobs_of(k) returns a module-level function and its arguments. That function returns line k.
     workers : int
         Number of processes.
     """

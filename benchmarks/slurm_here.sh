@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Run the small sweep with Slurm on one node, this machine, and without Slurm, and compare datasets
-# and points byte for byte.
+# Run the small sweep with and without Slurm, and compare datasets and points byte for byte. This
+# machine is Slurm's only node.
 #
 #     benchmarks/slurm_here.sh [--markdown FILE]
 #
-# Root gets Debian's packages slurm-wlm and munge installed if they are missing. The extra slurm of
-# this package is installed into the environment of .venv/bin/snakemake, or of the snakemake in the
-# variable SNAKEMAKE. Slurm runs in a temporary folder on separate ports, without systemd, accounting
-# and cgroups, and is stopped and removed at the end. An existing Slurm is not changed. The exit code
-# is 0 if all files are equal, 1 if not, and 2 if a requirement is missing.
+# If run by root, this script installs the Debian packages slurm-wlm and munge if they are missing.
+# The extra `slurm` of this package is installed into the environment of .venv/bin/snakemake, or of
+# the snakemake in the variable SNAKEMAKE. Slurm runs in a temporary folder on separate ports,
+# without systemd, accounting and cgroups, and is stopped and removed at the end. An existing Slurm
+# is not changed. The exit code is 0 if all files are equal, 1 if not, and 2 if a requirement is
+# missing.
 set -euo pipefail
 
 refuse() {
@@ -104,7 +105,7 @@ SwitchType=switch/none
 ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU_Memory
-# Jobs that exceed the memory of their rule are ended.
+# Slurm ends jobs that exceed the memory of their rule.
 JobAcctGatherType=jobacct_gather/linux
 JobAcctGatherFrequency=1
 JobAcctGatherParams=OverMemoryKill
@@ -151,7 +152,7 @@ sweep() { # folder, further options
     seconds=$((SECONDS - started))
 }
 
-# Short intervals; the defaults of the plugin are for shared clusters.
+# Short intervals, because the plugin's defaults are for shared clusters.
 sweep slurm --profile profiles/slurm --latency-wait 5 --slurm-status-command squeue \
     --slurm-init-seconds-before-status-checks 2 --seconds-between-status-checks 2
 slurm_seconds=$seconds

@@ -1,9 +1,9 @@
-"""Iterations of the step solvers of microslip.contacts for several values of their constants.
+"""Iterations of the step solvers in microslip.contacts, for several values of their constants.
 
     PYTHONPATH=src python benchmarks/splitting.py
 
-The tables show the mean number of iterations in a step during the search for the periodic state,
-for each value of a constant, on few and many rings, in bores, and on squares.
+For each value of a constant, the tables show the mean number of iterations per step during the
+search for the periodic state. The cases are few and many rings, bores, and squares.
 """
 
 import numpy as np
@@ -59,7 +59,7 @@ def main():
     balanced(12)
 
     def ratio(value):
-        """Set the ratio of consecutive penalties; 1: one penalty for all steps."""
+        """Set the ratio of consecutive penalties. With 1, all steps have the same penalty."""
         penalties = value ** (np.arange(4) - 1.5)
         for module in (splitting, rings, angular_modes):
             module.PENALTIES = penalties

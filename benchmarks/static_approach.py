@@ -2,11 +2,11 @@
 
     python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
 
-Each motion (transverse and bore, nu = 0) and amplitude has a table with velocity, mu_macro, its
-error estimate and its excess over the closed form of the limit. The last column is the local
-exponent p of excess ~ velocity^p between a velocity and the next larger one. It is empty where an
-excess is not much larger than its error estimate. Smaller tolerances show the exponent at smaller
-velocities.
+There is a table for each motion (transverse and bore, nu = 0) and amplitude. It lists the velocity,
+mu_macro, the error estimate, and the excess over the closed form of the limit. The last column is
+the local exponent p in excess ~ velocity^p, between a velocity and the next larger velocity. It is
+empty where an excess is not much larger than its error estimate. Smaller tolerances show the
+exponent at smaller velocities.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from microslip.datasets.catalogue import FORMS, STATIC
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
 CERTAIN = 5.0
-"""Smallest excess over its error estimate for which an exponent is printed."""
+"""An exponent is printed if the excess is at least this many times its error estimate."""
 
 
 def exponent(points, limit):
-    """Local exponent between the last two points, or None if it is less certain than CERTAIN."""
+    """Local exponent between the last two points, or None if it is uncertain, see CERTAIN."""
     if len(points) < 2:
         return None
     excess = [point.mu_macro - limit for point in points[-2:]]
@@ -44,7 +44,7 @@ def exponent(points, limit):
 
 
 def table(motion, amplitude, tolerance):
-    """Markdown lines of the table of one motion and amplitude."""
+    """Markdown lines of the table for a motion and an amplitude."""
     limit = float(FORMS[motion][STATIC].function(amplitude))
     lines = [f"{motion}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
     lines += [

@@ -1,10 +1,11 @@
-"""CPU time of the points of a configuration, in one process on one core, without compilation.
+"""CPU time for a configuration's points, in one process on one core, without compilation.
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 
-Solves every point of every sweep once, the single runs beside them and some of the periods that the
-explorer shows, and sums up the CPU time spent in the solver. The datasets leave it out, because it
-differs from run to run. The mean over all requests is TYPICAL in microslip/app/dry_run.py.
+Solves every point of every sweep once, as well as the single runs and some of the explorer's
+periods, and sums up the CPU time spent in the solver. The datasets do not contain this time,
+because it differs from run to run. The mean over all requests is TYPICAL in
+microslip/app/dry_run.py.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def cost_beside(configuration, name):
 
 
 def columns_of(seconds):
-    """Columns with times; seconds: CPU time of each point, shape (n,)."""
+    """Columns with times. seconds: CPU time of each point, shape (n,)."""
     return {
         "solver time, s": f"{np.sum(seconds):.1f}",
         "mean, ms": f"{1e3 * np.mean(seconds):.1f}",

@@ -1,4 +1,4 @@
-"""Helpers of benchmarks: arguments, tables and their files, and JSON lines of an earlier run."""
+"""Helpers for benchmarks: arguments, tables and their files, and JSON lines of an earlier run."""
 
 import argparse
 import json
@@ -6,18 +6,18 @@ from pathlib import Path
 
 
 def markdown(rows):
-    """Markdown table of a list of dicts; their common keys are the headings of the columns."""
+    """Markdown table of a list of dicts. Their common keys are the column headings."""
     lines = [list(rows[0]), ["---"] * len(rows[0]), *(map(str, row.values()) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def measured(rows):
-    """Markdown table of pairs of a quantity and its value."""
+    """Markdown table of (quantity, value) pairs."""
     return markdown([{"what": what, "measured": value} for what, value in rows])
 
 
 def parser_of(description):
-    """Parser of a benchmark with the option --markdown of `publish`; description: its docstring."""
+    """Parser with the option --markdown, see `publish`. description: the benchmark's docstring."""
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--markdown", type=Path, help="file that the table is written to")
     return parser

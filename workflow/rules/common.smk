@@ -17,15 +17,15 @@ if (ROOT / "src").is_dir():
     search = [str(ROOT / "src"), *filter(None, [os.environ.get("PYTHONPATH")])]
     os.environ.update(PYTHONPATH=os.pathsep.join(search))
 
-# For the jobs, too: each process solves one point at a time, with one thread.
+# The jobs inherit this: each process solves one point at a time, with one thread.
 for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
 
 def hang_up(*_):
-    """After SIGHUP (the terminal was closed), end the jobs, and Snakemake without leaving a lock.
+    """After SIGHUP (closed terminal), end the jobs, and end Snakemake without leaving a lock.
 
-    A terminal sends the signal to its first process only, a shell to the whole group.
+    A terminal sends SIGHUP to its first process only. A shell sends it to the whole group.
     """
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     if os.getpgrp() == os.getpid():
@@ -34,7 +34,7 @@ def hang_up(*_):
 
 
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
-    signal.signal(signal.SIGHUP, hang_up)  # not so under nohup
+    signal.signal(signal.SIGHUP, hang_up)  # not reached under nohup
 
 from microslip.app import dry_run, figure_targets
 from microslip.app.plan import Plan
@@ -48,7 +48,7 @@ from microslip.sweeps import batches, stamps, store
 
 @contextmanager
 def refused_in_one_line():
-    """Context that ends the run with one line, before any job, for errors that the user can fix."""
+    """Context manager: end the run with one line, before any job, for errors the user can fix."""
     try:
         yield
     except load.ConfigError as error:
@@ -57,8 +57,9 @@ def refused_in_one_line():
         sys.exit(f"Error in {ORIGIN}: results: {error}")
 
 
-# A file given with --configfile replaces the default configuration.  The default is that of the
-# working directory, else that of the package.  The outer workflow configures a module.
+# A file given with --configfile replaces the default configuration.  The default is
+# config/config.yaml in the working directory, or else in the package. A module is configured by the
+# outer workflow.
 MAIN = os.path.abspath(workflow.basedir) in (str(ROOT), str(ROOT / "workflow"))
 if not (config and workflow.configfiles):
     DEFAULT = "config/config.yaml"
@@ -74,9 +75,9 @@ if not (config and workflow.configfiles):
 elif MAIN:
     with refused_in_one_line():
         for file in workflow.configfiles:
-            load.read_yaml(os.path.relpath(file))  # refuses a key that occurs twice
+            load.read_yaml(os.path.relpath(file))  # rejects duplicate keys
 
-# In a module, these files belong to the outer workflow, and may have other keys.
+# In a module, these files belong to the outer workflow and can have other keys.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
 ORIGIN = ", ".join(FILES) or "configuration"
 # Folders of files named in the configuration; the working directory comes after them.
@@ -84,13 +85,13 @@ FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfil
 
 with refused_in_one_line():
     CONFIGURATION = load.from_mapping(config, source=ORIGIN, folders=FOLDERS)
-    # With default values for captions, and absolute paths of files for jobs.
+    # Adds default values for captions, and makes file paths absolute for jobs.
     config = load.with_defaults_and_paths(config, source=ORIGIN, folders=FOLDERS)
 PLAN = Plan(CONFIGURATION)
 RESULTS = os.path.normpath(CONFIGURATION.results)
 
 # The end of the Snakefile defines PLACE: RESULTS with the prefix of a module.
-HERE = exists(os.devnull)  # False for results in a storage, where stamps cannot be read
+HERE = exists(os.devnull)  # False for results in remote storage, where stamps cannot be read
 AGAIN = f"{RESULTS}/{stamps.AGAIN}"
 in_place = update if HERE else str  # keeps the old file until a job has written the new one
 marked = str if HERE else local
@@ -98,16 +99,16 @@ TO_SOLVE = {}
 
 
 def made_again(right):
-    """The file AGAIN, as ancient, that is without regard to its date, if all is up to date."""
+    """Return the file AGAIN. If all is up to date, it is ancient: Snakemake ignores its date."""
     return ancient(marked(AGAIN)) if right else marked(AGAIN)
 
 
 @functools.cache
 def is_whole(file):
-    """True for a final or missing batch; other batches are dated back."""
+    """Return True for a final or missing batch. Any other batch is backdated."""
     path = f"{PLACE}/{file}"
     if not (HERE and os.path.exists(path)):
-        return True  # in a storage batches are trusted
+        return True  # batches in remote storage are trusted
     right = store.is_final(path)
     stamps.date([path], right)
     if not right:
@@ -117,7 +118,7 @@ def is_whole(file):
 
 @functools.cache
 def is_right(product):
-    """True if a product is up to date; outdated products are dated back."""
+    """Return True if a product is up to date. An outdated product is backdated."""
     if not HERE:
         return False  # made again, from batches or datasets
     stamp = f"{PLACE}/{stamps.stamp_of(product)}"
@@ -128,7 +129,7 @@ def is_right(product):
 
 
 def batches_for(product):
-    """Batches of a product; whole ones are ancient, so that they start no job."""
+    """Return the batches of a product. Whole batches are ancient, so that they start no job."""
     names = PLAN.batch_files(*PLAN.products[product].groups)
     if HERE and not is_right(product):
         missing = [f for f in names if not (is_whole(f) and os.path.exists(f"{PLACE}/{f}"))]
@@ -137,13 +138,13 @@ def batches_for(product):
 
 
 def datasets_for(product):
-    """Datasets of a product; those that are up to date are ancient."""
+    """Return the datasets of a product. Datasets that are up to date are ancient."""
     names = PLAN.products[product].datasets
     return [(ancient if is_right(name) else str)(f"{RESULTS}/{name}.nc") for name in names]
 
 
 def batch_of(group, name):
-    """A batch as JSON: the requests of a job; null for a certified map."""
+    """Return a batch (the requests of a job) as JSON, or null for a certified map."""
     if name not in PLAN.batches_in(group):  # in a job on another machine
         sys.exit(
             f"Error: the batch {name} of {group} was planned with another solver, or its times on "
@@ -154,18 +155,18 @@ def batch_of(group, name):
 
 
 def kernels_for(group):
-    """Marks of the compiled code that a group needs."""
+    """Return the files that mark the compiled kernels of a group."""
     with_drive = {*CONFIGURATION.drives, *(f"certified_{name}" for name in CONFIGURATION.drives)}
     return compiled("rings", "angles", *["pulled"] * (group in with_drive))
 
 
 def compiled(*kernels, place=RESULTS):
-    """Files that mark compiled kernels; their names contain the digest of the solver."""
+    """Return the files that mark compiled kernels. Their names contain the solver's digest."""
     return [f"{place}/warm_up/{source_digest.of_solver()[:16]}_{name}.txt" for name in kernels]
 
 
 def files_of_target(target):
-    """Input function of a target."""
+    """Return the input function of a target."""
 
     def files(wildcards):
         try:
@@ -178,7 +179,7 @@ def files_of_target(target):
 
 
 def report_work():
-    """Write the number of points to solve, and an estimate of the time, to standard error."""
+    """Write the number of points to solve and an estimate of the time to standard error."""
     try:
         cores = min(workflow.cores, max(len(TO_SOLVE), 1))
     except WorkflowError:  # jobs run elsewhere
@@ -192,7 +193,7 @@ def report_work():
 
 
 def make_ready():
-    """Before the first job: check that results can be written, remove files of killed runs."""
+    """Before the first job, check that results can be written, and remove files of killed runs."""
     with refused_in_one_line():
         store.Store(PLACE).try_writing()
     for path in files.clear_abandoned(PLACE):

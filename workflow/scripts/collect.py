@@ -9,7 +9,7 @@ bytes of studies.
   stability.nc       dims (method, case); group axes
   propulsion.nc      dims (line, point)
   claims.nc          dim claim; groups parts, checks, runs, static limit, patches
-Variables with other axes are in groups of the file.  An HTML page summarises it.
+Variables with other axes are in groups of the file.  An HTML page summarises the file.
 """
 
 import logging
@@ -27,7 +27,7 @@ name, path = snakemake.wildcards.dataset, snakemake.output[0]
 
 def write_sweep(grid, paths) -> list[str]:
     """Write the dataset and the page of a sweep; return the lines of its report."""
-    of_points = len(plan.batch_files(name))  # then come those of single runs
+    of_points = len(plan.batch_files(name))  # the files of single runs follow
     points, runs = map(batches.records_in, (paths[:of_points], paths[of_points:]))
     sweep_dataset.write_sweep(path, grid, points, list(runs), configuration.of_sweep(name))
     with xr.open_dataset(path) as data:

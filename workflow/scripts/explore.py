@@ -1,4 +1,4 @@
-"""Make an interactive page of sweeps, with a period behind each point of the maps.
+"""Make an interactive page of sweeps, with stored periods for points of the maps.
 
 Output: one HTML file that needs no network.  All numbers in it are dimensionless.
 """

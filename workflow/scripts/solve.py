@@ -2,8 +2,8 @@
 certified map.
 
 Output: the records of the batch in the order of the requests, as JSON lines.  All numbers in them
-are dimensionless, except times (s) and memory (byte) of trials and scaling.  Each record is also
-stored as soon as it is computed, in the folders of batches.FOLDERS.
+are dimensionless, except times (s) and memory (byte) of trials and scaling.  As soon as a record is
+computed, it is also stored in a folder of batches.FOLDERS.
 """
 
 import json
@@ -17,7 +17,7 @@ folder = store.Store(snakemake.params.store)
 
 
 def solved_batch(batch: batches.Batch) -> tuple[list[dict], dict]:
-    """Records of a batch of requests, and their statistics."""
+    """Return the records of a batch of requests, and their statistics."""
     load.remember_files(snakemake.config)  # requests name files by their content
     if batch.name != name:
         raise batches.SourcesEdited("the solver")
@@ -25,7 +25,7 @@ def solved_batch(batch: batches.Batch) -> tuple[list[dict], dict]:
 
 
 def solved_map() -> tuple[list[dict], dict]:
-    """Records of the points of a certified map, and their statistics."""
+    """Return the records of the points of a certified map, and their statistics."""
     from microslip.app.plan import Plan
     from microslip.sweeps import map_refinement
 

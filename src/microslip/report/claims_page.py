@@ -31,7 +31,7 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the text of the page, which depends on the arguments only."""
+    """Return the text of the page. It depends on the arguments only."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = {"number": _number, "with_error": _with_error, "is_finite": np.isfinite}
     environment.filters.update(filters)
@@ -56,9 +56,9 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Return the entries along a dimension. The coordinate of an entry is its attribute `name`.
+    """Return the entries along a dimension. An entry's coordinate is its attribute `name`.
 
-    prefix: text that is removed from the names of variables, by default the name of the dimension.
+    prefix: removed from the names of variables. Defaults to the name of the dimension.
     """
     columns = {
         name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
@@ -109,7 +109,7 @@ def _number(value: float, digits: int = 4) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """Return a number with its significant digits and its error estimate as text."""
+    """Format a number's significant digits and its error estimate."""
     if not np.isfinite(value):
         return "none"
     if not np.isfinite(error):
@@ -122,7 +122,7 @@ def _with_error(value: float, error: float) -> str:
 def _static(dataset: xr.Dataset, motion: str) -> SimpleNamespace:
     """Return the table of the static limit, with a row for each amplitude.
 
-    It also has the excess of each formula over the limit.
+    The table also contains the excess of each formula over the limit.
     """
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     gaps = [

@@ -26,14 +26,14 @@ def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> Non
 
     Raises CacheError if the file cannot be written.
     """
-    # Snakemake's report shows HTML in place.
+    # Snakemake's report displays HTML inline.
     text, title = escape(page(dataset, lines)), escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
     write_atomically(Path(path), f"{head}\n<pre>{text}</pre></html>\n".encode())
 
 
 def page(dataset: xr.Dataset, lines: list[str]) -> str:
-    """Return the text of the page, which depends on the arguments only."""
+    """Return the text of the page. It depends on the arguments only."""
     shown = lines[:MOST_LINES]
     if len(lines) > MOST_LINES:
         shown.append(f"... and {len(lines) - MOST_LINES} lines more, see the log of collecting")

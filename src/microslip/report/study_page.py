@@ -7,7 +7,7 @@ import xarray as xr
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
-"""Modules that write the page of a study. All other studies have a page of `dataset_page`."""
+"""Modules that write a study's page. For all other studies, `dataset_page` writes the page."""
 
 
 def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:

@@ -1,7 +1,7 @@
 """Ladders: resolutions of each model, from coarse to fine, and the models of each motion.
 
-Cells, angles and steps are refined together, so that their errors decrease together. The file of a
-method can prescribe a model and a resolution for this method.
+Cells, angles and steps are refined together, so that their errors decrease together. A method's
+file can prescribe the model and the resolution for that method.
 """
 
 from typing import NamedTuple
@@ -41,13 +41,13 @@ LADDERS = {
 """Levels of each model. Squares have few levels, because they are by far the most expensive."""
 
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels of each model for all methods except the shipped one. These methods can be slow
-or use dense matrices."""
+"""Number of levels of each model for methods other than the shipped method. These methods can be
+slow or use dense matrices."""
 
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
-"""Tolerance of the periodic state, as a force divided by mu F_z: its value at the first level, and
-the exponent with which it decreases with the number of steps. At every level it is below the
-discretisation error (rings at nu = 0: 1e-4 to 1e-6)."""
+"""Tolerance of the periodic state (force divided by mu F_z) at the first level. It is proportional
+to 1 / steps^TOLERANCE_POWER. At every level, the tolerance is below the discretisation error (1e-4
+to 1e-6 for rings at nu = 0)."""
 
 
 TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
@@ -55,7 +55,7 @@ TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
 
 
 def models_of(motion: str, poisson: float) -> list[str]:
-    """Return the names of the models of a motion at a Poisson's ratio, from coarse to expensive."""
+    """Return the names of the models for a motion and a Poisson's ratio, coarsest first."""
     allowed = MODELS_OF_MOTION[motion]
     return [m for m in LADDERS if m in allowed and (m != "radial" or poisson == 0)]
 
@@ -66,7 +66,7 @@ def exact_model(motion: str, poisson: float) -> str:
 
 
 def ladder(model: str, method: str, count: int) -> list:
-    """Return at most `count` tuples (number of the level, Level, tolerance) for a method."""
+    """Return at most `count` tuples (level number, Level, tolerance) for a method."""
     name, _ = split(method)
     own = declared(name, "resolution")
     if own is not None:
@@ -84,9 +84,9 @@ def ladder(model: str, method: str, count: int) -> list:
 def models_for(method: str, motion: str, poisson: float) -> list[str]:
     """Return the models with which a method is run.
 
-    The shipped method is run with all models. Any other method is run with the model of its file,
-    or with the model that `model="auto"` selects. The list is empty if the method does not support
-    the motion, or if a package that the method requires is not installed.
+    The shipped method is run with all models. Any other method is run with the model named in its
+    file, or else with the model that `model="auto"` selects. The list is empty if the method does
+    not support the motion, or if a package that the method requires is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:

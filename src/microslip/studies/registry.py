@@ -1,4 +1,4 @@
-"""All studies: cost of accuracy, failures of methods, claims of the paper, and propulsion.
+"""All studies: cost of accuracy, failures of methods, the paper's claims, and propulsion.
 
 Each study is a package with two main modules. The first one (`accuracy_cost`, `stability`, `claims`
 or `propulsion`) makes the requests. It imports only light modules, because the workflow reads it at
@@ -24,11 +24,11 @@ DATASETS = {
     "claims": "claims",
     "propulsion": "propulsion",
 }
-"""Names of the dataset and the request module of each study, by the name in the configuration."""
+"""Name of each study's dataset and request module. The keys are names in the configuration."""
 
 
 def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
-    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
+    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     return _module(study, DATASETS[study]).pieces(getattr(configuration, study))
 
 
@@ -47,7 +47,7 @@ def build(study: str, configuration: Configuration, answer: Callable) -> object:
 
 
 def groups(study: str) -> dict:
-    """Return title and dimensions of the groups of a dataset by name, as for netcdf.divide."""
+    """Return each group's title and dimensions by group name, as for netcdf.divide."""
     return _module(study, "dataset").GROUPS
 
 

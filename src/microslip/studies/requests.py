@@ -1,16 +1,17 @@
-"""Requests of the studies, as dicts with numbers as canonical strings (see sweeps.batches).
+"""Build the requests of the studies.
 
-The kinds of requests are:
+A request is a dict whose numbers are canonical strings, see sweeps.batches. The kinds of requests
+are:
 
 - trial: a timed run at a point, with a model, a method and a resolution;
-- choice: a timed solve at a tolerance, which selects the model and the resolution itself;
-- probe: a solve with another method, without a measurement of time;
-- point: a solve at a tight tolerance, which is the reference of the other requests;
+- choice: a timed solve at a tolerance, with automatic selection of the model and resolution;
+- probe: an untimed solve with a given method;
+- point: a solve at a tight tolerance, used as the reference for the other requests;
 - propulsion: the force-velocity line of a self-propelled motion;
 - scaling: the cost of a step at one size.
 
-Timed requests (trial, choice, scaling) contain the name of the CPU. Therefore times of different
-CPUs have different keys and are not drawn in one chart.
+Timed requests (trial, choice, scaling) contain the name of the CPU. Therefore, times measured on
+different CPUs have different keys and are not drawn in one chart.
 """
 
 from typing import NamedTuple
@@ -20,10 +21,10 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references with rings, which are cheap, and with angular points."""
+"""Tolerances of references for rings (cheap) and for angular points."""
 MOST_WORK = 5_000_000
-"""Budget of a probe, as step solves times unknowns. It is several times the work of the shipped
-method."""
+"""Work budget of a probe, in step solves times unknowns. It is several times the work of the
+shipped method."""
 
 
 class Point(NamedTuple):
@@ -74,9 +75,9 @@ def choice(point: Point, tolerance: float, repeats: int) -> dict:
 def probe(
     point: Point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
 ) -> dict:
-    """Return the request for a solve with another method, with the budget MOST_WORK.
+    """Return the request for an untimed solve with a method and the budget MOST_WORK.
 
-    cells, steps: imposed resolution. If it is None, the tolerance determines the resolution.
+    cells, steps: imposed resolution. If None, the resolution follows from the tolerance.
     """
     kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
     budget = {"most_work": MOST_WORK}
@@ -86,7 +87,7 @@ def probe(
 def reference(point: Point, tolerance: float | None = None) -> dict:
     """Return the request for the reference of a point.
 
-    tolerance: by default RINGS_TOLERANCE if the model is rings, else TOLERANCE.
+    tolerance: defaults to RINGS_TOLERANCE for rings and to TOLERANCE for other models.
     """
     if tolerance is None:
         rings = exact_model(point.motion, point.poisson) == "radial"

@@ -17,10 +17,10 @@ Kind = TypeVar("Kind")
 
 
 class Answers:
-    """Results of requests.
+    """Look up the results of requests.
 
-    The object collects the keys of the results, the versions of the libraries that computed them,
-    and the computers on which times were measured (`machines`, a list of dicts).
+    The object also collects the keys of the results, the library versions, and the computers on
+    which times were measured (`machines`, a list of dicts).
 
     answer: function that returns the record of a request, see microslip.sweeps.batches.
     """
@@ -45,9 +45,9 @@ class Answers:
         return self.record(request)["result"]
 
     def machine_of(self, result: dict) -> int:
-        """Return the index in `machines` of the computer on which a time was measured.
+        """Return the index in `machines` of the computer that measured a result's time.
 
-        If there is no time, the index is -1.
+        The index is -1 if the result has no time.
         """
         machine = result.get("machine")
         return self.machines.index(machine) if machine in self.machines else -1
@@ -64,7 +64,7 @@ def value_of(result: dict, name: str, kind: type[Kind]) -> Kind: ...
 def value_of(result: dict, name: str, kind: type = float) -> Any:
     """Return a value of a result, converted to `kind`.
 
-    A missing value is NaN, 0, False or an empty text.
+    A missing value becomes NaN, 0, False or an empty string, depending on `kind`.
     """
     value = result.get(name)
     if value is None:
@@ -77,8 +77,8 @@ def table(
 ) -> dict[str, tuple]:
     """Return the variables of a table as arguments of xarray.Dataset.
 
-    columns: name -> (function of the items of a row, long_name, kind, units). kind and units have
-    the defaults of `variable`.
+    columns: maps each name to (function of a row's items, long_name, kind, units). The defaults of
+    kind and units are those of `variable`.
     """
     rows = list(rows)
     return {
@@ -97,7 +97,7 @@ def finished(
 ) -> xr.Dataset:
     """Return a dataset with provenance. The settings are stored as an attribute in JSON.
 
-    coordinates: names of coordinates that differ from the name of their dimension.
+    coordinates: names of coordinates that are not named after their dimension.
     """
     # The keys also depend on the sources of the methods.
     digest = sha256("\n".join(sorted(answers.keys)))

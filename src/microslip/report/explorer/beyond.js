@@ -4,12 +4,13 @@
 
 const ROUNDING = 1e-12;
 const SLOW_EXPONENT = 2 / 3; // power of the velocity with which friction approaches its static limit
-const FAST_EXPONENT = 2; // power of 1 / velocity with which it approaches 1
-const NARROW_EXPONENT = 1; // power of the amplitude with which it departs from 1
-const WIDE_EXPONENT = 1; // power of 1 / amplitude with which it approaches its limit for large ones
+const FAST_EXPONENT = 2; // power of 1 / velocity with which friction approaches 1
+const NARROW_EXPONENT = 1; // power of the amplitude with which friction departs from 1
+const WIDE_EXPONENT = 1; // power of 1 / amplitude with which friction nears its large-amplitude limit
 const STEEPEST = 2; // largest local exponent of a power law, relative to the asymptotic one
 
-// Clips a value to its bracket; returns it and the largest distance to an end of the bracket.
+// Clips a value to its bracket. Returns the result and its largest distance to an end of the
+// bracket.
 function bracketed(low, high, guess) {
   const value = clipped(guess, low, high);
   return [value, Math.max(high - value, value - low) + ROUNDING];
@@ -22,7 +23,7 @@ function largestKnown(a, b) {
 
 const largeAtEdges = new WeakMap();
 
-// The limit for large amplitudes along the upper edge of a map, computed once.
+// The large-amplitude limit along the upper edge of a map, computed once.
 function largeAtEdge(map, limits) {
   if (!largeAtEdges.has(map)) {
     largeAtEdges.set(map, map.edge.map((at) => limits.large(at, map.amplitude[1], map.rule)));
@@ -30,7 +31,7 @@ function largeAtEdge(map, limits) {
   return largeAtEdges.get(map);
 }
 
-// Largest difference between the upper edge of the map and the limit for large amplitudes, within a
+// Largest difference between the upper edge of the map and the large-amplitude limit, within a
 // decade of a velocity.
 function distanceAt(map, limits, velocity, poisson) {
   const [slow, fast] = map.velocity, widest = map.amplitude[1];
@@ -47,8 +48,8 @@ function distanceAt(map, limits, velocity, poisson) {
   return most;
 }
 
-// Returns friction, its error bound, and its source: { value, error, source }. Throws a Refusal if an
-// argument is invalid, or if it is outside the range of a motion without limits.
+// Returns friction, its error bound, and its source: { value, error, source }. Throws a Refusal if
+// an argument is invalid, or outside the map of a motion without limits.
 function frictionAt(map, velocity, amplitude, poisson) {
   for (const [name, value] of Object.entries({ velocity, amplitude })) {
     if (!(Number.isFinite(value) && value >= 0)) refuse(name, value, "allowed is a finite number >= 0");
@@ -106,7 +107,7 @@ function staticLimit(rule, limits, amplitude, poisson) {
   return { value: (high + low) / 2, error: (high - low) / 2 + ROUNDING };
 }
 
-// Clips an answer to the bounds from the energy balance. NaN is not changed.
+// Clips a result to the bounds from the energy balance. NaN is not changed.
 function withinTheBalance(limits, value, error, velocity, amplitude) {
   const low = Math.max(1 - limits.drop(velocity, amplitude), 0);
   const kept = clipped(value, low, 1);

@@ -34,7 +34,7 @@ NAMES = {
     for name, form in forms.items()
     if not name.startswith("mu_torque")
 }
-"""A closed form of each friction limit, by the name of its variable."""
+"""Closed form of each friction limit, by variable name."""
 
 
 def is_map(dataset: xr.Dataset) -> bool:
@@ -45,7 +45,7 @@ def is_map(dataset: xr.Dataset) -> bool:
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the maps at all Poisson's ratios as values for JSON.
+    """Pack the maps at all Poisson's ratios as JSON values.
 
     Raises ValueError if a variable is missing.
     """
@@ -67,7 +67,7 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the lines at all Poisson's ratios as values for JSON.
+    """Pack the lines at all Poisson's ratios as JSON values.
 
     Raises ValueError if a variable is missing.
     """
@@ -104,7 +104,7 @@ def _lines(name: str, dataset: xr.Dataset) -> dict:
 
 
 def _torque(shown: xr.Dataset, along: str) -> list[dict]:
-    """Return the torque of a steady bore, which the chart does not show, and its closed form."""
+    """Return the torque of a steady bore and its closed form. The chart does not show them."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []
     theory = FORMS["continuous-bore"]["mu_torque_theory"]
@@ -119,7 +119,7 @@ def _torque(shown: xr.Dataset, along: str) -> list[dict]:
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
-    """Return the description of a map or of lines. The group of the paper's sweeps is None."""
+    """Return the description of a map or of lines. The paper's sweeps have the group None."""
     group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
     return {
         "name": name,

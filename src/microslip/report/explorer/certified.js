@@ -3,9 +3,9 @@
 // This file does not depend on the page, so that node can run it. The answers equal those of
 // microslip.at; see datasets/query/cells.py and sweeps/map_coordinates.py for the derivation.
 
-const SAME_POISSON = 1e-12; // ratios that differ by less are one
+const SAME_POISSON = 1e-12; // ratios that differ by less count as equal
 
-// An error for invalid arguments. Its message is one line.
+// An error for invalid arguments, with a one-line message.
 class Refusal extends Error {}
 
 function refuse(name, value, allowed) {
@@ -47,7 +47,8 @@ function spreadShare(map, amplitude, ends) {
   return shareOf(small(amplitude), ends.map(small));
 }
 
-// Scaled coordinate of an amplitude in a patch, 0 to 1, graded towards kinks and, below one, 0.
+// Scaled coordinate of an amplitude in a patch, 0 to 1. It is graded towards kinks and, in a patch
+// between 0 and a kink, also towards 0.
 function even(map, amplitude, ends) {
   const [low, above] = ends.map((end) => map.kink_amplitudes.includes(end));
   const below = low || (above && ends[0] === 0);
@@ -85,7 +86,7 @@ function scaled(map, velocity, amplitude, poisson) {
   return map.nodes.length > 2 ? [x, y, shareOf(poisson, map.poisson)] : [x, y];
 }
 
-// Lagrange weights of equally spaced nodes at a relative position between the first and the last.
+// Lagrange weights of equally spaced nodes, at a relative position between the first and last node.
 function weightsAt(count, share) {
   const at = (count - 1) * share;
   return Array.from({ length: count }, (_, own) => {
@@ -142,7 +143,7 @@ function poissonWithin(map, poisson) {
   return poisson;
 }
 
-// Formats a number like Python's format "g": `count` digits, without trailing zeros.
+// Formats a number as Python's format "g" does, with `count` digits and without trailing zeros.
 function general(value, count = 6) {
   if (!Number.isFinite(value) || value === 0) return String(value);
   const [digits, exponent] = rounded(Math.abs(value), count);

@@ -11,7 +11,7 @@ from microslip.sweeps import map_coordinates
 from microslip.sweeps.evaluate import plain
 
 RULE = 64
-"""Number of Gauss nodes, equal to that of theory.paper."""
+"""Number of Gauss nodes, the same as in theory.paper."""
 
 
 def packed(dataset: xr.Dataset) -> dict:
@@ -25,10 +25,10 @@ def packed(dataset: xr.Dataset) -> dict:
     Returns
     -------
     dict
-        Values for JSON, with flat arrays. `values` is the friction at the points, null if unknown.
+        JSON values, with flat arrays. `values` is the friction at the points, null if unknown.
         `nodes` is the number of nodes of a cell in each direction, with the velocity first. Three
-        arrays describe the cells: `cells` has the indices of the points of each cell, `borders`
-        its two ends in each direction, and `bounds` its error bound.
+        arrays describe the cells: `cells` contains the point indices of each cell, `borders` the
+        cell's two ends in each direction, and `bounds` the cell's error bound.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def packed(dataset: xr.Dataset) -> dict:
     """
     source = cells_of(dataset)
     table, coordinates = source.cells, source.cells.coordinates
-    assert isinstance(coordinates, map_coordinates.MapCoordinates)  # of friction
+    assert isinstance(coordinates, map_coordinates.MapCoordinates)  # for maps of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
         "motion": motion,

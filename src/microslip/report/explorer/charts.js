@@ -43,7 +43,7 @@ function layout(more) {
   };
 }
 
-// Edges of cells around points, half-way between neighbours. The first and the last point are in the
+// Edges of cells around points, half-way between neighbours. The first and last points are in the
 // middle of their cells.
 function edges(points) {
   const inner = points.slice(1).map((value, k) => (value + points[k]) / 2);
@@ -57,7 +57,7 @@ function shownColumns(map) {
   return map.velocity.map((_, j) => j).filter((j) => map.velocity[j] > 0);
 }
 
-// Edges of the cells of the map, half-way between velocities by ratio.
+// Edges of the map's cells. Between velocities, an edge is half-way by ratio.
 function cellEdges(map) {
   const exponents = shownColumns(map).map((j) => Math.log10(map.velocity[j]));
   return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
@@ -128,10 +128,10 @@ function drawMap(element, map, row, column, contact) {
     margin: { l: 52, r: 10, t: BAR, b: 42 },
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
   }), config());
-  Plotly.Plots?.resize(element); // its height depends on what is beside it
+  Plotly.Plots?.resize(element); // its height depends on the panel beside it
 }
 
-// contact: the position [velocity, amplitude] of the contact of the form, or null.
+// contact: position [velocity, amplitude] of the form's contact, or null.
 function contactTrace(contact) {
   return {
     type: "scatter",
@@ -150,7 +150,7 @@ function cross(map, row, column) {
   const velocity = map.velocity[column], amplitude = map.amplitude[row];
   const line = { color: VERMILLION, width: 1.2, dash: "dot" };
   const across = { type: "line", xref: "paper", x0: 0, x1: 1, y0: amplitude, y1: amplitude, line };
-  if (velocity === 0) return [across]; // it has no place on the axis
+  if (velocity === 0) return [across]; // not on the logarithmic axis
   const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: velocity, x1: velocity, line };
   const { x, y } = cellEdges(map);
   const j = column - map.velocity.length + x.length - 1; // the first velocity may be 0

@@ -174,7 +174,7 @@ function warningsOf(si, measures) {
       unit ? withPrefix(si, measures[name], Number(count), unit) : general(measures[name], Number(count))));
 }
 
-// A number with the largest prefix of its unit that leaves it at least 1.
+// A number with the largest unit prefix for which it is at least 1.
 function withPrefix(si, value, count, unit) {
   const [prefix, size] = si.prefixes.find(([, one]) => value >= one) ?? si.prefixes.at(-1);
   return `${Number(general(value / size, count))} ${prefix}${unit}`;

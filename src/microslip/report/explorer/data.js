@@ -12,7 +12,7 @@ function bytesOf(text) {
 
 const decodedMaps = new Map();
 
-// Returns the decoded periods of a map. They are decoded at the first call.
+// Returns the decoded periods of a map. The first call decodes them.
 function decoded(map) {
   if (!decodedMaps.has(map.id)) {
     const p = map.periods;
@@ -30,8 +30,8 @@ function decoded(map) {
 }
 
 // The stored period of a point of a map: forces over mu F_z and phases in rad at every frame, radii
-// over a and bounds over mu F_z/a^2 of the rings, and densities of the dissipated energy over the largest
-// one, cell by cell. Null without a period; then `whyNone` has the reason.
+// over a and bounds over mu F_z/a^2 of the rings, and for each cell the density of the dissipated
+// energy over the largest density. If there is no period, returns null, and `whyNone` has the reason.
 function periodAt(map, row, column) {
   const p = map.periods;
   if (p.count === 0) return null;
@@ -79,7 +79,7 @@ function cellsOf(period, frame) {
   const { tractions, slips } = decoded(period.map);
   const half = frames / 2;
   const at = frame % frames;
-  const mirrored = at >= half; // half a period later: right and left change places
+  const mirrored = at >= half; // half a period later, right and left are swapped
   const kept = mirrored ? at - half : at;
   const plane = angles * cells;
   const base = (period.k * half + kept) * 2 * plane;

@@ -2,10 +2,10 @@
 // dissipate half the energy of the period.
 
 const STICK = "#56B4E9", SLIP = "#E69F00";
-const LONGEST = 0.17; // length of an arrow, over a, where the traction is the largest bound
-const CLOSEST = 0.14; // arrows on a ring are no closer than this, over a
+const LONGEST = 0.17; // arrow length, divided by a, where the traction equals the largest bound
+const CLOSEST = 0.14; // smallest distance between arrows on a ring, divided by a
 
-// The parts that all frames share: outlines of the cells, and positions and lengths of the arrows.
+// The parts common to all frames: outlines of the cells, and positions and lengths of the arrows.
 function discOf(period) {
   const { angles, cells } = period.map.periods;
   const theta = sectorAngles(period.map);
@@ -35,7 +35,7 @@ function discOf(period) {
   return disc;
 }
 
-// The fewest cells of half the disc that dissipate half the energy, as their indices.
+// Indices of the fewest cells in half the disc that dissipate half the energy.
 function hottestCells({ density, map }, rims) {
   const { cells } = map.periods;
   const energy = density.map((one, k) => one * (rims[(k % cells) + 1] ** 2 - rims[k % cells] ** 2));
@@ -48,14 +48,14 @@ function hottestCells({ density, map }, rims) {
   });
 }
 
-// Outlines of the hottest cells of both halves of the disc, as one line with gaps.
+// Outlines of the hottest cells in both halves of the disc, as one line with gaps.
 function hottestLines({ outlines, hottest, period }) {
   const half = period.density.length;
   const every = hottest.flatMap((k) => [outlines[k], outlines[k + half]]);
   return [0, 1].map((axis) => every.flatMap((ring) => [...ring[axis], null]));
 }
 
-// Outlines of all cells in slip, or in stick, as one line with gaps.
+// Outlines of all slipping cells, or of all sticking cells, as one line with gaps.
 function filled(disc, cells, slipping) {
   const x = [], y = [];
   disc.outlines.forEach(([xs, ys], k) => {
@@ -63,7 +63,7 @@ function filled(disc, cells, slipping) {
     x.push(...xs, null);
     y.push(...ys, null);
   });
-  return x.length ? [x, y] : [[NaN], [NaN]]; // so that the legend keeps its name
+  return x.length ? [x, y] : [[NaN], [NaN]]; // keeps the name in the legend
 }
 
 // Arrows as one line with gaps: shaft, and two barbs at the tip.

@@ -5,7 +5,7 @@ This module lists the inputs of a page. `payload` packs datasets, periods and ce
 files in this folder run in the browser and draw with plotly.js. The page shows datasets and stored
 periods, and evaluates certified maps.
 
-The workflow imports this module whenever it is parsed. Therefore it has few imports.
+Snakemake imports this module whenever it parses the workflow, so the module has few imports.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from microslip.foundation.canonical import number
 
 SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
-"""Files that the page consists of, besides the data and plotly.js. Scripts run in this order."""
+"""Files of the page, besides the data and plotly.js. The scripts run in this order."""
 PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
 MAPS = ("transverse", "bore")
-"""Sweeps with stored periods. The form for a real contact has the motions of the same names."""
+"""Sweeps with stored periods. The motions in the form for a real contact have the same names."""
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Number of rings, of points on half a ring, and of steps of a stored period. The resolution is
+"""Resolution of a stored period: number of rings, points on half a ring, and steps. It is
 sufficient for a picture of 300 pixels."""
 PERIODS_PER_JOB = 150
-"""Number of periods in one job, which takes a few seconds."""
+"""Number of periods in one job. The job takes a few seconds."""
 MOST_PERIODS = 1250
 """Maximum number of periods on a page of at most 15 MB. A period takes about 6 kB."""
 MOST_POINTS = 5000

@@ -1,8 +1,8 @@
-// The form for a real contact: its fields, and the texts of its answer.
+// The form for a real contact: the fields, and the text of the answer.
 
 const SI = NUMBERS.si;
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
-const TEXTS = {}; // what the form holds, by the names of fields
+const TEXTS = {}; // contents of the form, by field name
 const ONE_COLUMN = matchMedia("(max-width: 1199px)"); // as in style.css
 
 // Sets a field of the form. Unknown fields and choices are ignored.
@@ -14,7 +14,7 @@ function fillField(id, text) {
   else control.value = before;
 }
 
-// Position of the contact of the form on a map: [velocity, amplitude]; null for another motion.
+// Position of the form's contact on a map: [velocity, amplitude], or null for another motion.
 function contactOn(map) {
   const { contact } = STATE;
   const same = contact && contact.motion === map.motion && map.pressure === "hertz";

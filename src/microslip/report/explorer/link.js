@@ -1,9 +1,9 @@
 // The state of the page in the fragment of its address, so that a link restores it.
 
-const LINK_DELAY = 250; // ms; browsers refuse more than some 200 changes of the address in 30 s
+const LINK_DELAY = 250; // ms; browsers refuse more than about 200 changes of the address in 30 s
 let linkTimer = 0;
 
-// The fragment of the address for a state.
+// The address fragment for a state.
 function linkOf(state) {
   const { shown, map } = state, said = new URLSearchParams();
   said.set("sweep", shown.name);
@@ -30,7 +30,7 @@ function writeLink() {
   linkTimer = setTimeout(() => history.replaceState(null, "", `#${linkOf(STATE)}`), LINK_DELAY);
 }
 
-// Index of the value with this text, else the selected index.
+// Index of the value with this text, or else the selected index.
 function indexNamed(values, text, selected) {
   const index = values.findIndex((value) => String(value) === text);
   return index < 0 ? selected : index;

@@ -3,10 +3,10 @@
 const element = (id) => document.getElementById(id);
 const STATE = { shown: null, map: null, row: 0, column: 0, frame: 0, period: null, disc: null,
   at: 0, hidden: new Set(), asking: false, contact: null };
-const SECONDS = 4; // that a period takes when it plays
-let playing = 0; // the request for the next picture, 0 at rest
+const SECONDS = 4; // that a period takes while playing
+let playing = 0; // id of the next animation frame, 0 while paused
 
-// Shows a sweep at one of Poisson's ratios.
+// Shows a sweep at one Poisson's ratio.
 function show(entry) {
   pause();
   STATE.shown = entry;
@@ -74,7 +74,7 @@ function arrange() {
   const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || STATE.shown.periods.count === 0);
   const right = STATE.asking ? "contact-view" : "point-view";
   element(beside ? right : "map-view").append(element("cuts"));
-  element("map").classList.toggle("tall", beside); // plotly has a class of its own there
+  element("map").classList.toggle("tall", beside); // plotly adds its own class to this element
   element("lines-view").classList.toggle("wide", !STATE.asking);
   element("line-view").hidden = STATE.asking || isMap;
   element("contact-view").hidden = !STATE.asking;
@@ -117,7 +117,7 @@ function select(row, column) {
   writeLink();
   element("inside").hidden = STATE.period === null;
   if (!STATE.period || STATE.asking) {
-    pause(); // what is hidden has no size to draw in
+    pause(); // a hidden panel has no size to draw in
     return;
   }
   const { mu_macro, mu_macro_error } = map.points;
@@ -171,7 +171,7 @@ function paragraph(id, text, bad = false) {
   element(id).className = bad ? "bad" : "";
 }
 
-// drawn: row and column of the period that is drawn, or null.
+// drawn: row and column of the drawn period, or null.
 function tell(drawn) {
   const { map, row, column, period } = STATE;
   const at = (name) => map.points[name][row][column];
@@ -308,7 +308,7 @@ function lineLike(given) {
   return piece;
 }
 
-// Plotly adds its events to an element at the first drawing.
+// Plotly adds its events to an element when it first draws there.
 function connectCharts() {
   element("map").on("plotly_click", ({ points }) => {
     const cell = points.find((point) => point.data.type === "heatmap");

@@ -19,7 +19,7 @@ FOLDER = Path(__file__).parent
 def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Sequence = ()) -> None:
     """Write the page atomically. Equal arguments give equal bytes.
 
-    datasets, periods, certified: arguments of `payload.build`. Raises ValueError if they are
+    datasets, periods, certified: arguments of `payload.build`. Raises ValueError if an argument is
     incomplete, and CacheError if the file cannot be written.
     """
     write_atomically(Path(path), page(payload.build(datasets, periods, certified)).encode())
@@ -30,7 +30,7 @@ def page(content: dict) -> str:
     template, style, *scripts = (
         (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS
     )
-    # A "<" inside a script could end it, so it is escaped.
+    # A "<" could end the script, so it is escaped.
     numbers = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "style": style,

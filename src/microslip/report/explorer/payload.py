@@ -1,9 +1,9 @@
-"""Pack the data of the page (maps, lines, limits and periods) as one value for JSON.
+"""Pack the data of the page (maps, lines, limits and periods) as one JSON value.
 
-Numbers of datasets are stored exactly. Numbers of periods are rounded to integers in base64, with
-these steps: bound/127 for tractions, 2 pi/65535 for phases, 1/65535 for radii and bounds, and the
-largest force divided by 32767 for forces. Densities of the dissipated energy are those of the
-stored period.
+Numbers in datasets are stored exactly. Numbers in periods are rounded to integers, which are
+encoded in base64. The rounding steps are bound/127 for tractions, 2 pi/65535 for phases, 1/65535
+for radii and bounds, and the largest force divided by 32767 for forces. The densities of dissipated
+energy belong to the stored period.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ OTHER_FORCES = {
     "transverse": ("force_lateral", "lateral force / (<i>μF<sub>z</sub></i>)"),
     "bore": ("torque", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>"),
 }
-"""The second force component of each map, as its name in a period and its label for plotly."""
+"""Second force component of each map: its name in a period, and its label for plotly."""
 ERRORS = {
     "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
@@ -59,12 +59,12 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     Returns
     -------
     dict
-        Values for JSON.
+        JSON values.
 
     Raises
     ------
     ValueError
-        If a variable is missing, or a period belongs to no point of its map.
+        If a variable is missing, or if a period is for a point that is not on its map.
     """
     content: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
@@ -104,7 +104,7 @@ def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
 
 
 def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
-    """Pack the periods of a map, and the index of the period of each point (-1 if it has none)."""
+    """Pack a map's periods, and the index of each point's period (-1 for no period)."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
@@ -135,7 +135,7 @@ def _packed(results: list[dict], force: str) -> dict:
     step = float(np.abs(forces).max()) / SIGNED
     count, frames, _, angles, cells = shares.shape
     phases = np.array([r["phase"] for r in results])
-    start = float(phases[0, 0])  # phase of the turning point at which periods begin
+    start = float(phases[0, 0])  # phase of the turning point where periods begin
     return {
         "count": count,
         "frames": 2 * frames,

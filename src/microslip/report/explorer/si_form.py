@@ -1,6 +1,6 @@
 """Pack the data of the form for a real contact: fields, units, materials, rules and messages.
 
-The data are those of microslip.predict. Thus the page has the same checks, warnings and messages.
+The data come from microslip.predict, so the page has the same checks, warnings and messages.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Field:
     unit : str
         SI unit, as for si.quantities.read.
     units : tuple of str
-        Units in the list of the field. The first one is the default.
+        Units offered by the field. The first one is the default.
     example : str
         Default number.
     low_open : bool
@@ -73,14 +73,14 @@ FIELDS = {
 }
 """Fields by their names in the scripts, in the order in which the form shows them."""
 SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_nu")}
-"""For each of the two bodies, the fields that replace the name of the material."""
+"""For each of the two bodies, the fields that replace the material's name."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
 CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
-"""Default choices of the lists of the form."""
+"""Default choices in the form's lists."""
 
 
 def packed() -> dict:
-    """Pack the data of the form as values for JSON."""
+    """Pack the data of the form as JSON values."""
     return {
         "motions": {motion: f"{motion}: {MOTIONS[motion]}" for motion in CHOICES},
         "fields": {
@@ -110,7 +110,7 @@ def packed() -> dict:
 
 
 def _unit(name: str, unit: str) -> dict:
-    """Return a unit with its factor to the SI unit, and the exponent if that is a power of ten."""
+    """Return a unit, its factor to the SI unit, and the exponent if the factor is a power of 10."""
     factor = read(name, f"1 {name}", unit).si
     power = round(math.log10(factor))
     exact = float(f"1e{power}") == factor

@@ -1,4 +1,4 @@
-"""Figures of the accuracy study: performance profiles, and cost of a step against its unknowns."""
+"""Figures of the accuracy study: performance profiles, and cost of a step by number of unknowns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from microslip.report.figures.data import columns
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
 """Labels of competitors whose names need an explanation."""
 LEAST_RANGE = 10.0
-"""Smallest upper end of the axis of a profile."""
+"""The axis of a profile extends at least to this ratio."""
 GROWTH = {
     "iterations": "iterations per step  (dimensionless)",
     "seconds": "time per step (s)",

@@ -1,7 +1,6 @@
 """The stability atlas: a coloured square for the outcome of each method in each case.
 
-Each quantity that is varied has a block of squares. The blocks in a row share the names of the
-methods.
+Each varied quantity has a block of squares. The blocks in a row share the names of the methods.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ OUTCOMES = {
     4: ("diverged", "#222222", "D", "white", "diverged, or no result"),
 }
 """Outcomes by code: name, fill colour, symbol, symbol colour, meaning. The fill colours darken from
-good to bad, so that they differ in grey as well."""
+good to bad, so that they also differ in greyscale."""
 BLANK = "blank: the method does not apply"
 SIZES = ((27, 0.15), (33, 0.15), (33, 0.12), (40, 0.12), (40, 0.105))
 """Layouts to try, best first: number of squares and gaps in a row, height of a square in inches."""
@@ -37,12 +36,12 @@ WIDTH, HEIGHT = 6.0, 9.7
 NARROWEST = 5
 """Smallest width of a block, as a number of squares, so that its heading fits."""
 HEAD, FOOT = 0.75, 0.95
-"""Height in inches of the headings of a row of blocks, and of the legend."""
+"""Heights of a row's headings and of the legend, in inches."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """A block of the atlas, with its title, its note, the labels of its cases, and the outcomes.
+    """A block of the atlas: title, note, labels of the cases, and outcomes.
 
     outcome: codes of the outcomes, shape (methods, cases).
     """
@@ -97,7 +96,7 @@ def _bands(blocks: list[Block], squares: int) -> list[list[Block]]:
 
 
 def _read(dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
-    """Return the methods, with the default one first, and a block for every axis with cases."""
+    """Return the methods (the default method first), and a block for every axis with cases."""
     outcome = dataset["outcome"].transpose("method", "case").values.astype(int)
     methods = dataset["method"].values.astype(str)
     first = np.argsort(methods != "shipped", kind="stable")
@@ -112,7 +111,7 @@ def _read(dataset: xr.Dataset) -> tuple[list[str], list[Block]]:
 
 
 def _methods_of(band: list[Block]) -> np.ndarray:
-    """Return the indices of the default method and of all methods that apply to a case of a row."""
+    """Return the indices of the default method and of all methods that apply to a row's cases."""
     used = np.any([(block.outcome != 0).any(axis=1) for block in band], axis=0)
     used[0] = True
     return np.flatnonzero(used)

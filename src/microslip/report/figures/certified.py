@@ -1,6 +1,6 @@
 """Figure of a certified map: friction, cells and points of the map, and error bounds of the cells.
 
-A certified map of drift has the velocity under a force instead of friction.
+For a certified map of drift, the figure shows the velocity under a force instead of friction.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SIDE = np.linspace(0.0, 1.0, 17)
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map with its cells and points, and the error bound of each cell.
 
-    A map with several Poisson's ratios is drawn at the smallest one. A map of the static limit is
+    A map with several Poisson's ratios is drawn at the smallest ratio. A map of the static limit is
     drawn as a line.
     """
     if is_static(dataset) and not certified_map.is_of_drift(dataset):

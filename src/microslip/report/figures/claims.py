@@ -33,7 +33,7 @@ colour and a line style."""
 LIGHTEST = 0.82
 """Upper end of the colour map for lines. Lines in lighter colours have too little contrast."""
 PIXELS = 401
-"""Number of pixels along each side of the image of a contact."""
+"""Number of pixels along each side of a contact's image."""
 MOMENTS = {0: "before one turning point", 1: "mid-stroke", 2: "before the other"}
 """Labels of the moments of `patches` by their index in the dataset."""
 AREAS = (

@@ -14,14 +14,15 @@ FRICTION = (
     ("friction_force_N", "friction_force_error_N", "friction force ", "N"),
 )
 DRIFT = (("speed_m_s", "speed_error_m_s", "speed ", "m/s"),)
-"""Variable, its error estimate, label and SI unit of each panel: at a speed, and under a force."""
+"""Variable, error estimate, label and SI unit of each panel. FRICTION is for contacts at a speed,
+DRIFT for contacts under a force."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw friction over the longest axis, with one line for each value of the other axis.
 
-    For contacts under a force, draw the speed. A band shows the error estimate. Values that are not
-    converged are left out.
+    For contacts under a force, draw the speed. A band shows the error estimate. Values that did not
+    converge are omitted.
     """
     abscissa, *others = sorted(dataset.dims, key=dataset.sizes.__getitem__, reverse=True)
     x, unit = _scaled(dataset[abscissa])
@@ -52,7 +53,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _scaled(axis: xr.DataArray) -> tuple[np.ndarray, str]:
-    """Return the values of an axis in a unit with a prefix, and this unit."""
+    """Return the values of an axis in a prefixed unit, and this unit."""
     factor, unit = look.prefixed(axis.values, axis.attrs["units"].removeprefix("1"))
     return axis.values / factor, unit
 

@@ -53,9 +53,9 @@ _DRAWN: dict[str, tuple[str, ...]] = {
 """For each figure, the module and function that draw it, and the names of its datasets."""
 
 ON_DEMAND = {"fit": ("fit",), "curve": ("curve",)}
-"""Figures that commands draw from their own results, and the names of their datasets."""
+"""Figures that commands draw from their own results, with the names of the datasets."""
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
-"""Figures of the workflow, and the names of their datasets.
+"""Figures of the workflow, with the names of the datasets.
 
 Figures whose names depend on the configuration are not included. These are the figures of groups in
 `extended`, see `figure_of`, and of certified maps.
@@ -65,7 +65,7 @@ SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswi
 """Full names of the figures of the paper by their short names fig1 to fig6."""
 
 CERTIFIED = "certified_"
-"""Prefix of the names of certified maps. The figure of a map has the name of its dataset."""
+"""Prefix of the names of certified maps. A map's figure has the same name as its dataset."""
 MOST_POISSONS = 4
 """Maximum number of Poisson's ratios in the figure `poisson`."""
 
@@ -73,8 +73,8 @@ FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
-"""Formats of `save`: metadata to omit, because they contain dates and versions, and the metadata
-entry for the provenance."""
+"""Formats of `save`: metadata to omit (dates and versions), and the metadata entry for the
+provenance."""
 PROVENANCE = ["title", "references", "microslip_version", "source_digest", "results_digest"]
 PROVENANCE += ["configuration", "library_versions"]
 """Attributes of a dataset that describe its provenance."""
@@ -83,7 +83,7 @@ __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
 
 def figure_of(group: str) -> str:
-    """Return the name of the figure of a group of sweeps in `extended`."""
+    """Return the name of the figure for a group of sweeps in `extended`."""
     return f"extended_{group}"
 
 
@@ -154,7 +154,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 def _missing_variable(
     name: str, datasets: Mapping[str, xr.Dataset], error: KeyError
 ) -> KeyError | ValueError:
-    """Convert a KeyError of xarray to an error that names the dataset without the variable.
+    """Convert an xarray KeyError to an error that names the dataset and the missing variable.
 
     Other errors are returned unchanged.
     """
@@ -183,7 +183,7 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:
-    """Return the provenance of datasets, their attributes in `PROVENANCE`, as a list in JSON."""
+    """Return the provenance of datasets: a JSON list of their attributes in `PROVENANCE`."""
     attributes = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
     return json.dumps(attributes, sort_keys=True)
 

@@ -16,13 +16,13 @@ from microslip.report.figures.data import at_one_poisson, columns, require
 from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
-"""Colour and marker of the points at each stiffness, ascending."""
+"""Colours and markers of the points, by ascending stiffness."""
 GOOD = 0.01
 """Relative deviation below which a constant velocity is a good model of a drive."""
 AS_A_VELOCITY = 1e5
 """Smallest dimensionless stiffness that is labelled as a constant velocity."""
 MARGIN = 1.1
-"""Factor by which the axis of the velocity extends beyond the first and the last velocity."""
+"""Factor by which the velocity axis extends beyond the first and the last velocity."""
 MU = ("mu_macro", "mu_macro_error", "converged")
 
 
@@ -131,7 +131,7 @@ def _constant_velocity(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
 
 
 def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """Select a value of a dimension, except for rounding. Raises ValueError if it is missing."""
+    """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
     same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
     if not same.size:
         raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")

@@ -21,7 +21,7 @@ from microslip.report.figures.data import at_one_poisson, columns
 SPACING = 0.14
 """Distance between the arrows, in contact radii."""
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
-"""Colours with enough contrast to black arrows."""
+"""Colours that contrast well with black arrows."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -56,7 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> ScalarMappable:
-    """Draw the friction bound, which is constant between the outermost cells and the rim."""
+    """Draw the friction bound. It is constant between the outermost cells and the rim."""
     angle = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
     rim_x, rim_y = np.cos(angle), np.sin(angle)
     nearest = griddata((x, y), bound, (rim_x, rim_y), method="nearest")

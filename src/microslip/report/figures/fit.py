@@ -30,15 +30,15 @@ PARAMETERS = (
 )
 """Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
 BAND = 2.0
-"""Half the width of the band with about 95 % of the residuals, in standard errors."""
+"""Half-width of the residual band, in standard errors. About 95 % of the residuals are inside."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw measured and fitted friction above, residuals below.
 
     The abscissa is the condition with the most values. Rows that differ in another condition have
-    different colours and markers. The line is the model curve, with a band for the model error.
-    A row without a model curve has a short dash at the friction of the model.
+    different colours and markers. The line is the model curve, with a band for the model error. A
+    row without a model curve has a short dash at the model's friction.
     """
     abscissa = abscissa_of({each: dataset[each].values for each in CONDITIONS})
     figure = look.new_figure(look.SINGLE, 4.0)
@@ -135,7 +135,7 @@ def _value(condition: str, value: float, dataset: xr.Dataset) -> str:
 
 
 def _parameters(dataset: xr.Dataset) -> str:
-    """Return the fitted parameters as text, each with the larger half of its interval."""
+    """Format the fitted parameters, each with the larger half of its interval."""
     parts = []
     for symbol, name, unit in PARAMETERS:
         names = [name.format(part) for part in ("", "_low", "_high")]

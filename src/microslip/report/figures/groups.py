@@ -1,4 +1,4 @@
-"""Figure of a group of sweeps in `extended`, with a map or a line for each sweep."""
+"""Figure for a group of sweeps in `extended`, with a map or a line for each sweep."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Number of columns for each number of maps. For all other numbers it is 3."""
+"""Number of columns by number of maps. Other numbers of maps have 3 columns."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height in inches of a row of maps for each number of columns, and of the margins together."""
+"""Height of a row of maps by number of columns, and total height of the margins, in inches."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Levels of the contours. There are fewer levels than on a large map."""
+"""Levels of the contours, fewer than on a large map."""
 BEYOND = 0.01
 """Largest excess below 0 or above 1 that is attributed to the errors of the points."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
@@ -44,7 +44,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw a map or a line for every Poisson's ratio of each dataset.
 
     The figure has maps if every dataset has at least two amplitudes and two velocities above 0. It
-    has lines if no dataset has them. If there is enough space, `poisson.draw` draws the effect of
+    has lines if no dataset does. If there is enough space, `poisson.draw` draws the effect of
     Poisson's ratio instead.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
@@ -163,7 +163,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
-    """Draw a closed form or the computed static limit. Returns whether the dataset has one."""
+    """Draw a closed form or the computed static limit. Returns False if there is neither."""
     forms = [variable for variable in THEORY[dim] if variable in dataset]
     if forms and float(dataset["poisson"]) == 0.0:
         line = limit(dataset, forms[0])

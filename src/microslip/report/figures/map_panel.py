@@ -24,11 +24,11 @@ from microslip.report.figures.data import columns
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
 FEW = len(LINE_LEVELS)
-"""The points are drawn if there are fewer than this along an axis."""
+"""The points are drawn if an axis has fewer points than this."""
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 OUTLINE = 3.0
-"""Line width in points of the outline of numbers. Half of it is outside the letters."""
+"""Width of the outline of numbers, in points. Half of it is outside the digits."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 
 
@@ -44,16 +44,16 @@ def number_contours(
 ) -> None:
     """Write numbers on contours after the layout has given the panel its final size.
 
-    A number is placed where the other contours and the ends of its own contour, which could be read
-    as a minus sign, are farthest away. A contour without enough space for a number has none.
+    A number is placed as far as possible from other contours and from the ends of its own contour.
+    Such an end could be read as a minus sign. A contour without enough space has no number.
 
     Parameters
     ----------
     size : float
         Font size in points.
     filled : ContourSet or None
-        Bands behind the contours. Their colour outlines the numbers, which can then be read above
-        points. Defaults to no outline.
+        Bands behind the contours. Numbers are outlined in the colour of their band, so that they
+        can be read above points. If None, there is no outline.
     """
     height = size * look.DPI / 72.0
 

@@ -36,7 +36,7 @@ CURVES: dict[str, dict[str, tuple[str, Any]]] = {
 }
 """Colour and line style of the closed forms of each motion."""
 NOTHING = 0.02
-"""Friction below which curves are not shown. The horizontal axis of a cut ends accordingly."""
+"""Curves are not shown below this friction. It also determines where a cut's axis ends."""
 POISSONS = (
     (look.BLACK, "o"),
     (look.PURPLE, "s"),
@@ -45,14 +45,14 @@ POISSONS = (
     (look.VERMILLION, "v"),
     (look.ORANGE, "P"),
 )
-"""Colour and marker of the points at each Poisson's ratio, ascending."""
+"""Colours and markers of the points, by ascending Poisson's ratio."""
 ACROSS = 3
 """Number of maps in a row."""
 ROW = {2: 2.9, 3: 2.4}
-"""Height in inches of a row of maps, by the number of maps in the row."""
+"""Height of a row in inches, by the number of maps in the row."""
 
 Cut = list[tuple[xr.Dataset, float]]
-"""Pairs of a dataset at one Poisson's ratio and this ratio."""
+"""List of pairs: a dataset at one Poisson's ratio, and this ratio."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -124,7 +124,7 @@ def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
 
 
 def _where_not_zero(axes: Axes) -> tuple[float, float]:
-    """Return the horizontal range in which a line is above `NOTHING`, extended by a half."""
+    """Return the horizontal range in which a line is above `NOTHING`, extended by half."""
     x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
     last = x[y > NOTHING].max(initial=x.min())
     following = x[x > last].min(initial=x.max())

@@ -75,7 +75,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
 
 
 def _centres(inside: np.ndarray) -> list[np.ndarray]:
-    """For every connected region, return the indices of the cell farthest from its border."""
+    """For every connected region, return the indices of the cell farthest from the border."""
     regions, count = ndimage.label(inside)
     centres = []
     for region in range(1, count + 1):

@@ -18,9 +18,9 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan
 
 WIDE = 10.0
-"""An axis is logarithmic if the ratio of its ends is above this number."""
+"""An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
 VISIBLE_ERROR = 0.01
-"""Smallest error estimate that is drawn. Smaller ones are hidden by the markers."""
+"""Smallest error estimate that is drawn. The markers hide smaller error estimates."""
 
 
 def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
@@ -50,7 +50,7 @@ def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None
 def legend_of_figure(
     figure: Figure, handles: Sequence[Artist], where: str = "upper center", ncols: int | None = None
 ) -> None:
-    """Add one legend for all panels, outside of them."""
+    """Add one legend for all panels, outside the panels."""
     if handles:
         columns = ncols or len(handles)
         place: look.Ink = {"loc": f"outside {where}", "ncols": columns}
@@ -74,7 +74,7 @@ def ticks_outside(axes: Axes) -> None:
 
 
 def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
-    """Make the abscissa logarithmic if the values are above 0 and their ratios exceed WIDE."""
+    """Make the abscissa logarithmic if all values are positive and their ratio exceeds WIDE."""
     if values.min() > 0.0 and values.max() > WIDE * values.min():
         axes.set_xscale("log")
         logarithmic(axes.xaxis)
@@ -131,7 +131,7 @@ def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink:
 
 
 def _once(axes: Axes, label: str) -> str:
-    """Return a label that matplotlib omits from the legend if the panel already has the label."""
+    """Return the label. Prefix it with "_" if the panel has it, so that the legend omits it."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 
 

@@ -24,23 +24,23 @@ LOOKS = (
     (look.VERMILLION, look.DOTTED),
     (look.GREEN, look.DASHDOT),
 )
-"""Colour and line style at each Poisson's ratio, ascending."""
+"""Colours and line styles, by ascending Poisson's ratio."""
 MOST = 3
 """Maximum number of datasets in a figure."""
 MOST_LEVELS = 12
-"""Number of levels on each side of 0 from which the labels of the two innermost would overlap."""
+"""With this many levels on each side of 0, the labels of the two innermost would overlap."""
 DIVERGING = "PuOr"
-"""Colour map of differences, which is pale in the middle."""
+"""Colour map of differences. It is pale in the middle."""
 
 
 def has_room(datasets: Sequence[xr.Dataset]) -> bool:
-    """Return whether all datasets have changes with Poisson's ratio and fit into one figure."""
+    """Return whether all datasets have several Poisson's ratios and fit into one figure."""
     ratios = [d.sizes.get("poisson", 1) if "mu_macro_change" in d else 1 for d in datasets]
     return len(datasets) <= MOST and min(ratios) > 1 and max(ratios) <= len(LOOKS)
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw two panels for each dataset: contours at every ratio, and the change to the largest one.
+    """Draw two panels for each dataset: contours at every ratio, and the change over all ratios.
 
     Raises ValueError if the datasets do not fit, see `has_room`.
     """

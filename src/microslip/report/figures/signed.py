@@ -18,7 +18,7 @@ equal distances in CIELAB, and become lighter away from 0. From 0 to -0.5 they d
 colours of `style.COLOURMAP` for all common kinds of colour vision."""
 LOWEST = -1.0
 DARK = 0.5
-"""Lines are white on bands with a lower luminance, else black."""
+"""Lines are white on bands with a luminance below this value, and black on all others."""
 
 
 def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
@@ -37,7 +37,7 @@ def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
 
 
 def inks(levels: np.ndarray, fills: np.ndarray) -> list[str]:
-    """Return colours of lines at `levels` with enough contrast to the bands between `fills`."""
+    """Return line colours for `levels` that contrast with the bands between `fills`."""
     colours, norm = scale(fills)
     weights = (0.2126, 0.7152, 0.0722)  # luminance by Rec. 709
     luminances = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]

@@ -15,8 +15,8 @@ QUANTITIES = (
     ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
     ("torque", "Eq 22", "torque", "mu_torque", "transient_torque", look.VERMILLION, look.DASHED),
 )
-"""Quantities: name, equation, and the names of the closed form, of the steady value and of the
-history; colour and line style."""
+"""For each quantity: name; equation; names of the closed form, the steady value and the history;
+colour; line style."""
 MARKERS = "os"
 LABEL = f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}"
 STARTS = {
@@ -24,7 +24,7 @@ STARTS = {
     "full-rotation": "full rotational slip",
     "full-slip": "full forward slip",
 }
-"""Labels of the initial states in the paper. The labels of other states are their names."""
+"""Labels of the initial states in the paper. Other states are labelled with their names."""
 
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:

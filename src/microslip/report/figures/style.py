@@ -119,7 +119,7 @@ def axis(quantity: Quantity) -> str:
 
 
 def style() -> AbstractContextManager[None]:
-    """Return a context with the settings of the figures, which replace the user's settings."""
+    """Return a context in which the figures' settings replace the user's settings."""
     return matplotlib.style.context(RC, after_reset=True)
 
 
@@ -129,7 +129,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def number(value: float) -> str:
-    """Format a number with three digits as mathtext. A large or small one has a power of ten."""
+    """Format a number with three digits as mathtext, with a power of ten if large or small."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
@@ -139,9 +139,9 @@ def number(value: float) -> str:
 
 
 def prefixed(values: np.ndarray | float, unit: str) -> tuple[float, str]:
-    """Return the power of ten of an SI prefix for values, and the unit with this prefix.
+    """Return the factor of an SI prefix that suits the values, and the unit with this prefix.
 
-    Without a unit, the power is 1.
+    Without a unit, the factor is 1.
     """
     largest = float(np.max(np.abs(values), initial=0.0)) * (1.0 + 1e-9)
     power = 3 * int(np.clip(np.floor(np.log10(largest) / 3), -3, 3)) if largest and unit else 0
@@ -185,7 +185,7 @@ def width(text: str, size: float) -> float:
 
 
 def wrapped(text: str, room: float, size: float) -> str:
-    """Break a text into lines with a width of at most `room` inches, at a font size in points.
+    """Break a text into lines at most `room` inches wide, at a font size in points.
 
     Lines are broken at spaces outside mathtext, and inside words that are wider than a line.
     """

@@ -1,10 +1,10 @@
 """Work-precision diagrams: error of each trial against CPU time or effort.
 
 There is a panel for each point, and all panels have the same axes. Each model with the default
-method has a colour and a marker. Runs of other methods are small grey dots, which the figure
-`accuracy_profile` compares. Trials outside the axes are drawn in strips at the ends. The strip at
-the bottom is for errors below the error of the reference, that at the top for trials without a
-result, and that at the left for costs of zero.
+method has a colour and a marker. Runs of other methods are small grey dots. The figure
+`accuracy_profile` compares these methods. Trials outside the axes are drawn in strips at the ends.
+The bottom strip is for errors below the reference's error, the top strip for trials without a
+result, and the left strip for zero cost.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ COSTS = {
 COLUMNS, WIDTH, ROW, LINE = 3, 1.95, 1.95, 0.15
 """Number of panels in a row; width of a panel, height of a row and of a legend line, in inches."""
 BELOW_REFERENCE = 3.0
-"""Errors below the error of the reference divided by this number are drawn at the bottom."""
+"""Errors below the reference's error divided by this number are drawn at the bottom."""
 MOST = 1e6
-"""Largest ratio of the upper end of the axis of errors to its lower end."""
+"""Largest ratio of the upper to the lower end of the error axis."""
 
 FRONT: look.Ink = {"color": "#EBD9A0", "lw": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN: look.Ink = {"fc": "none", "ec": "#A8A8A8", "lw": 0.0, "hatch": "/////"}
@@ -175,7 +175,7 @@ def _head(axes: Axes, letter: str, point: xr.Dataset) -> None:
 
 
 def _reference(axes: Axes, error: float) -> None:
-    """Hatch the errors below the error of the reference, unless that is NaN."""
+    """Hatch the range below the reference's error, unless this error is NaN."""
     bottom, top = axes.get_ylim()
     if error > bottom:
         axes.axhspan(bottom, min(error, top), gid="reference", zorder=0.5, **UNKNOWN)

@@ -1,12 +1,13 @@
-"""Requests of the study of accuracy and cost.
+"""Requests for the study of accuracy and cost.
 
 At each point every model is run with the shipped method at all levels of its ladder. Every other
 method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
-given tolerances and a reference. The maps of two motions have trials of all models on a grid of
-points. The cost of a step is measured for a series of sizes.
+given tolerances and a reference. For two motions there are also maps, with trials of all models on
+a grid of points. The cost of a step is measured for a series of sizes.
 
-Requests are grouped into pieces, one for each job. A piece takes much longer than the start of
-a job. A new method in the configuration adds pieces, but does not change the others.
+Requests are grouped into pieces, one for each job. Computing a piece takes much longer than
+starting a job. Adding a method to the configuration adds pieces and does not change the existing
+ones.
 """
 
 from collections.abc import Iterator
@@ -22,10 +23,10 @@ CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_MOTIONS = ("transverse", "bore")
 MAP_LEVELS, MAP_REPEATS = 5, 3
 MAP_SQUARES = 16
-"""Largest number of squares along a side in a map. Even such a mesh costs more than rings, which
-are far more accurate."""
+"""Largest number of squares along a side in a map. Even this mesh costs more than rings, which are
+far more accurate."""
 TRUTH_SHARE = 0.1
-"""Tolerance of the references of a map, divided by the tightest tolerance of the map."""
+"""Tolerance of a map's references, divided by the map's tightest tolerance."""
 
 SCALING_SIZES = {
     "radial": [(n, 1) for n in (16, 32, 64, 128, 256, 512)],
@@ -35,9 +36,9 @@ SCALING_SIZES = {
 """Sizes of each model as (cells, angles). The setting `levels` limits the number of sizes."""
 SCALING_STEPS = 16
 LARGE = 64
-"""Number of squares along a side from which a run takes as long as all coarser runs together."""
+"""From this number of squares along a side, a run takes as long as all coarser runs together."""
 SIZES_PER_JOB = 4
-"""Number of sizes, from the smallest, that one job measures. Each larger size has its own job."""
+"""This many of the smallest sizes share one job. Each larger size has its own job."""
 
 
 def points(study: Accuracy) -> dict[str, Point]:
@@ -99,7 +100,7 @@ def scaling(study: Accuracy, model: str) -> list[dict]:
 
 
 def pieces(study: Accuracy) -> tuple[list, list]:
-    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
+    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     places = list(points(study).values())
     long = [[request] for request in map(truth, places) if request is not None]
     for model in SCALING_SIZES:

@@ -1,5 +1,4 @@
-"""Build the dataset accuracy_cost, with errors and costs of trials, maps of models, and the cost of
-a step."""
+"""Build the dataset accuracy_cost: errors and costs of trials, model maps, and step costs."""
 
 from __future__ import annotations
 
@@ -54,8 +53,8 @@ POINT_COLUMNS: dict[str, tuple] = {
     "reference_error": (lambda *row: row[3][1], "error estimate of the reference"),
     "reference_source": (lambda *row: row[3][2], "source of the reference", str),
 }
-"""Columns of the table of points: (function, long_name, type). The function has the arguments name,
-title, Point and reference."""
+"""Columns of the table of points: (function, long_name, type). The arguments of the function are
+the name, the title, the Point and the reference."""
 TRIAL_COLUMNS: dict[str, tuple] = {
     name: (itemgetter(name), *about)
     for name, about in {
@@ -126,7 +125,7 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield lines of text: number of trials at each point, and error estimate of its reference."""
+    """Yield a line for each point: the number of trials, and the reference's error estimate."""
     for point in dataset["point"].values:
         own = dataset["trial_point"].values == point
         bad = int(own.sum() - dataset["converged"].values[own].sum())
@@ -189,7 +188,7 @@ def _trials(
                 "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,
             }
         )
-    # Errors below the error of the reference count as equal.
+    # Errors below the reference's error count as equal.
     error = [max(row["error"], floor) if row["converged"] else np.nan for row in rows]
     for cost in ("seconds", "effort"):
         front = on_front([row[cost] for row in rows], error)
@@ -229,7 +228,7 @@ CHEAPEST = (
 def _candidates(
     settings: Accuracy, point: Point, answers: Answers
 ) -> tuple[list[tuple[str, int, float]], np.ndarray]:
-    """Return model, cells, seconds and confirmed error of all trials at a point of a map."""
+    """Return the models, cells, seconds and confirmed errors of all trials at a map point."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
     trials, error = [], []
     for request in study.map_trials(settings, point):

@@ -30,8 +30,8 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
 def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
     """Return the index of the cheapest trial within the tolerance, or None if there is none.
 
-    Times are uncertain, so costs within a factor AS_CHEAP of the lowest one count as equal. The
-    first of such trials is returned.
+    Times are uncertain, so costs within a factor AS_CHEAP of the lowest cost count as equal. The
+    first of these trials is returned.
     """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     good = np.flatnonzero(np.isfinite(cost) & (error <= tolerance))
@@ -41,11 +41,12 @@ def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
 
 
 def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
-    """Return the confirmed errors: the largest error of a level and all finer levels of its model.
+    """Return confirmed errors: for each level, the largest error at this and all finer levels.
 
-    The error of a coarse run can be small by chance, where the error changes sign. The finest level
-    of a model cannot be confirmed, so its error is infinite. An exception is the model `exact`,
-    which converges to the reference. models: the model of each level, from coarse to fine.
+    Only levels of the same model are compared. A coarse run's error can be small by chance, where
+    the error changes sign. The finest level of a model cannot be confirmed, so its error is
+    infinite. The exception is the model `exact`, which converges to the reference. models: model of
+    each level, from coarse to fine.
     """
     out = np.asarray(error, float).copy()
     for model in dict.fromkeys(models):
@@ -57,9 +58,10 @@ def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
 
 
 def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
-    """Fit the exponent p of values ~ sizes^p to the logarithms of the larger half of the sizes.
+    """Fit the exponent p in values ~ sizes^p.
 
-    sizes, values: arrays of shape (n,). Returns NaN if fewer than two sizes have a positive value.
+    The fit is linear in the logarithms and uses the larger half of the sizes. sizes, values: arrays
+    of shape (n,). Returns NaN if fewer than two sizes have a positive value.
     """
     sizes, values = np.asarray(sizes, float), np.asarray(values, float)
     good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)

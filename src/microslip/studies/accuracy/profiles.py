@@ -1,4 +1,4 @@
-"""Performance profiles: cost of a model or method, divided by that of the best in its contest.
+"""Performance profiles: costs of models or methods, relative to the best one in a contest.
 
 E. D. Dolan and J. J. More, Math. Program. 91 (2002) 201-213, doi:10.1007/s101070100263. A case is a
 point and a tolerance. The cost of a competitor is the cost of its cheapest run within the
@@ -18,7 +18,7 @@ MODELS = "models"
 
 
 def contest_of(method: str) -> str:
-    """Return the contest of a method, which depends on the part of a run that the method replaces.
+    """Return a method's contest. It depends on the part of a run that the method replaces.
 
     Parameters
     ----------
@@ -108,9 +108,9 @@ def _least_costs(
 ) -> np.ndarray:
     """Return the smallest costs within each tolerance, shape (competitors, tolerances, points).
 
-    A cost is infinite if there is no such run. The error of a coarse run can be small by chance.
-    Therefore a run counts only if all finer runs of its competitor and model are also within the
-    tolerance.
+    A cost is infinite if no run is within the tolerance. The error of a coarse run can be small by
+    chance. Therefore a run counts only if all finer runs of its competitor and model are also
+    within the tolerance.
     """
     least = np.full((len(competitors), len(tolerances), len(points)), np.inf)
     largest: dict[tuple, float] = {}

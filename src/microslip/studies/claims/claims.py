@@ -1,7 +1,7 @@
-"""Requests for the runs by which the statements are judged.
+"""Requests for the runs that decide the verdicts on the statements.
 
-The module `parts` judges the results and gets the requests from the functions of this module. Most
-requests are points at the tolerance of the study. The others are single runs: the paper's own runs,
+The module `parts` builds its requests with these functions and judges the results. Most requests
+are points at the tolerance of the study. The others are single runs: the paper's own runs,
 transients, fields of tractions, and periods.
 """
 
@@ -14,7 +14,7 @@ from microslip.studies.ladders import exact_model
 PAPER_VELOCITY = 0.005
 """Smallest velocity in the paper's maps of the two motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Number of squares along a side in the paper, and of steps in a period of our run."""
+"""Number of squares along a side, as in the paper, and number of steps in a period of our run."""
 PAPER_TOLERANCE = 1e-3
 """Tolerance of the stresses in the paper."""
 
@@ -22,10 +22,10 @@ STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT_VELOCITY = 0.8
 STARTS = ("stress-free", "full-rotation", "full-slip")
 TRAVEL = 10.0
-"""Forward travel of a transient in units of u_lim, twice that in Figure 5 of the paper."""
+"""Forward travel of a transient in units of u_lim, twice as far as in the paper's Figure 5."""
 CELLS = {"fine": 32, "coarse": 16}
-"""Number of rings of transients and of steady tractions. The error is the difference between the
-fine and the coarse run."""
+"""Number of rings for transients and steady tractions. The error is the difference between the fine
+and the coarse run."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
 """Velocities of the runs for steady tractions. Up to 0.8 the centre of rotation is inside the
 contact."""
@@ -34,7 +34,7 @@ PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
 STIFF_EXPONENTS = (25, 50, 100)
-"""Exponents of the indenters from which a flat end, with a constant stiffness, is extrapolated."""
+"""Indenter exponents for extrapolation to a flat end. A flat end has a constant stiffness."""
 STIFF_AMPLITUDES, STIFF_RATIOS = (0.4, 0.8), (0.02, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 """Amplitudes of the indentation, and ratios of the velocity to the amplitude."""
 RUNS_PER_JOB = 2
@@ -56,7 +56,7 @@ def point(
 ) -> dict:
     """Return the request for a point. The velocity 0 requests the static limit.
 
-    cells: imposed number of squares along a side, by default chosen by the tolerance.
+    cells: imposed number of squares along a side. By default, it follows from the tolerance.
     """
     place = requests.Point(motion, velocity, amplitude)
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
@@ -106,7 +106,7 @@ def stiff(study: Claims, amplitude: float, velocity: float, exponent: int) -> di
 
 
 def stiff_points() -> list[tuple[float, float]]:
-    """Return pairs (amplitude, velocity) of the points with an oscillating indentation."""
+    """Return the (amplitude, velocity) pairs of the points with an oscillating indentation."""
     return [(a, a * ratio) for a in STIFF_AMPLITUDES for ratio in STIFF_RATIOS]
 
 
@@ -145,7 +145,7 @@ def sliding(study: Claims) -> list[float]:
 
 
 def periods(study: Claims) -> list[tuple[float, float]]:
-    """Return pairs (velocity, amplitude) of the periods near static friction."""
+    """Return the (velocity, amplitude) pairs of the periods near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
     return [(v, a) for v in slow[-2:] for a in limited(study, "bore")]
 
@@ -168,7 +168,7 @@ def steady(study: Claims) -> list[dict]:
 
 
 def pieces(study: Claims) -> tuple[list, list]:
-    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
+    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
     long = [of_paper[i : i + RUNS_PER_JOB] for i in range(0, len(of_paper), RUNS_PER_JOB)]

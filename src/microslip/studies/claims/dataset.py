@@ -139,8 +139,8 @@ def _parts(checks: dict[str, list[Check]]) -> dict:
 def _shown_by(row: list[Check]) -> str:
     """Return the name of the run that shows the verdict on a part.
 
-    This is the run of the check that fails most clearly. If no check fails, it is the run of the
-    check that holds most narrowly.
+    The run belongs to the check that fails most clearly or, if no check fails, to the check that
+    holds most narrowly.
     """
     check = verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
     return check.runs[0] if check else ""
@@ -249,9 +249,9 @@ def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
     The moments are those of stick_area.patches. Next to a turning point, the stick zone is a leaf
-    on one side of the contact, where |cos angle| >= tau/g; its points slip at the other turning
-    point only. In mid-stroke the stick zone is a circle, whose radius depends on the rotation since
-    the last turning point.
+    on one side of the contact, where |cos angle| >= tau/g. Points of the leaf slip only at the
+    other turning point. In mid-stroke the stick zone is a circle, whose radius depends on the
+    rotation since the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)
     radius = c * np.linspace(0.0, 1.0, BOUNDARY)

@@ -1,8 +1,8 @@
 """Checks that judge the parts of the paper's statements.
 
-Each part has a function (study, runs) -> checks. Most parts compare values of runs with a formula;
-`_judge` makes such functions from a source of values, the formula and the margin. The error of a
-margin is the error estimate of the values.
+Each part has a function of the study and the runs that returns checks. Most parts compare values of
+runs with a formula. For these, `_judge` builds the function from a source of values, a formula and
+a margin. The error of a margin is the value's error estimate.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ from microslip.theory import constant_stiffness, paper
 
 Checks = Callable[[Claims, Runs], Iterable[Check]]
 Margin = Callable[[float, float], float]
-"""Function of a computed value and its reference. The margin is positive if the part holds."""
+"""Function of a computed value and its reference that returns a margin. The margin is positive if
+the part holds."""
 Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
-"""Source of values. It yields the place, the value, the error estimate and the runs."""
+"""Source of values. It yields tuples of a place, a value, an error estimate and runs."""
 Amplitudes = Callable[[float], bool]
 """Function that returns True for the amplitudes that a part applies to."""
 
@@ -70,7 +71,7 @@ def within(limit: float) -> Margin:
 
 
 def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Checks:
-    """Return a function that checks values against a formula of the numbers of their place."""
+    """Return a function that checks each value against a formula at the value's place."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
         for place, value, error, behind in values(study, runs):
@@ -86,7 +87,7 @@ def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Check
 def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Values:
     """Return the source of friction at the points of requests.
 
-    names: names of the arguments of a point that describe its place.
+    names: entries of a request that describe the place of its point.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -111,7 +112,7 @@ def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
 
 
 def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Values:
-    """Return the source of friction at one velocity, at amplitudes with static friction.
+    """Return the source of friction at one velocity and at the amplitudes with static friction.
 
     velocity: by default the smallest velocity of the study.
     """
@@ -155,10 +156,10 @@ def _limit_on_rings() -> Values:
 
 
 def _end(quantity: str) -> Values:
-    """Return the source of the value of a quantity at the end of each transient.
+    """Return the source of a quantity's value at the end of each transient.
 
-    The error is the sum of two changes: that from half as many rings, and that over the last tenth
-    of the forward travel.
+    The error is the sum of two changes: the change from half as many rings, and the change over the
+    last tenth of the forward travel.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -173,7 +174,7 @@ def _end(quantity: str) -> Values:
 
 
 def _field(index: int) -> Values:
-    """Return the source of one number of `_tractions`.
+    """Return the source of one of the two numbers of `_tractions`.
 
     The error is the change from half as many rings.
     """
@@ -205,11 +206,11 @@ def _tractions(run: Run) -> tuple[float, float]:
 
 
 def _flat_end(study: Claims, runs: Runs) -> Iterator[tuple]:
-    """Source of friction under an oscillating indentation of a contact with constant stiffness.
+    """Yield friction under an oscillating indentation, for a contact with constant stiffness.
 
-    With the exponent n of the indenter, the friction differs from that of a flat end by a power
-    series in 1/n. The value has an error of third order. The error estimate is its difference from
-    the extrapolation of first order.
+    For an indenter with exponent n, the friction differs from that of a flat end by a power series
+    in 1/n. The extrapolated value has a third-order error. Its error estimate is the difference
+    from the first-order extrapolation.
     """
     for amplitude, velocity in claims.stiff_points():
         behind = [
@@ -254,9 +255,9 @@ def _sine_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
-    """Yield checks of the paper's runs.
+    """Yield checks of the paper's own runs.
 
-    The error of such a run is its distance from a run at the tolerance.
+    A run's error is the distance from a run at the study's tolerance.
     """
     for amplitude in claims.sliding(study):
         place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}
@@ -309,8 +310,9 @@ def _periods(
 ) -> Checks:
     """Return checks of periods. The error of a margin is the change from half as many rings.
 
-    judge: function (right, left, cell) that returns value, reference and margin; right, left: area
-    fractions that stick in each half, shape (steps,); cell: area fraction of the smallest cell.
+    judge: function of (right, left, cell) that returns a value, its reference and the margin.
+    right, left: fractions of the area that stick in each half, shape (steps,). cell: area fraction
+    of the smallest cell.
     """
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -328,7 +330,7 @@ def _periods(
 
 
 def _sticking(run: Run) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return the arguments of the function `judge` of `_periods`."""
+    """Return the arguments of `judge` in `_periods`."""
     right, left = (np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left"))
     return right, left, min(run.result["area"]) / np.pi
 
@@ -354,7 +356,7 @@ def _alternates(right: np.ndarray, left: np.ndarray, _: float) -> tuple[float, f
 
 
 def _below_one(amplitude: float) -> bool:
-    return amplitude < 1.0  # static friction vanishes at larger ones
+    return amplitude < 1.0  # static friction vanishes at larger amplitudes
 
 
 def _above_turning(amplitude: float) -> bool:

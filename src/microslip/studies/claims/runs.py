@@ -1,4 +1,4 @@
-"""Runs by which the verdicts are decided, and the command that repeats each run."""
+"""Runs that decide the verdicts, and the commands that repeat them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Run:
 
 
 class Runs(Answers):
-    """Answers that are Runs. `by_request` contains them in the order of their first requests."""
+    """Look up runs by request. `by_request` contains the runs in the order of first request."""
 
     def __init__(self, answer: Callable):
         super().__init__(answer)
@@ -42,7 +42,7 @@ def friction(run: Run) -> tuple[float, float]:
 
 
 def resolution(run: Run) -> tuple[int, ...]:
-    """Return (cells, angles, steps) of a run. Numbers that the run does not have are 0."""
+    """Return (cells, angles, steps) of a run. A missing number is 0."""
     used = run.request | {name: n for name, n in run.result.items() if name in ("cells", "angles")}
     steps = run.result.get("steps_per_period") or run.request.get("steps")
     return tuple(int(n or 0) for n in (used.get("cells"), used.get("angles"), steps))
@@ -83,11 +83,11 @@ _CALLS = {
         "microslip.adaptive.single_run run_trial(...)['mu_macro']",
     ),
 }
-"""Names of arguments in a request, and the call with these arguments, by kind of request."""
+"""For each kind of request: the arguments in the request, and the call that takes them."""
 
 
 def _literal(value: str | float) -> str:
-    """Return a value of a request as a Python literal. Texts of numbers get no quotes."""
+    """Return a value of a request as a Python literal. Numeric strings get no quotes."""
     try:
         float(value)
     except ValueError:

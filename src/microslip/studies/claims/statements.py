@@ -1,4 +1,4 @@
-"""The statements of the paper and one of M. Popov (2020) in plain words, and their criteria.
+"""The paper's statements and one by M. Popov (2020), in plain words, and their criteria.
 
 A part is one aspect of a statement that numbers can confirm or refute. The checks of each part are
 in `parts`.
@@ -22,8 +22,8 @@ ON_BOUND = 0.999
 ALIGNED = 4.0
 """Largest angle in degrees between traction and slip: the tolerance of the paper."""
 ALTERNATES = 0.5
-"""Smallest difference between the stick areas of the two halves that counts as alternation of the
-patches, as a fraction of the whole stick area."""
+"""The patches alternate if the stick areas of the two halves differ by at least this fraction of
+the whole stick area."""
 VANISHES = 1e-9
 """Largest mean force, divided by mu F_z, that counts as zero."""
 FAR = 3.0

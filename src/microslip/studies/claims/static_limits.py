@@ -31,7 +31,7 @@ FORMULAS = {
         "zone_printed": ("mu_static_stick_zone_printed", "Eq 33 as printed"),
     },
 }
-"""The paper's formulas of each motion: name -> (name in theory.catalogue, long_name)."""
+"""The paper's formulas for each motion. Each name maps to (name in theory.catalogue, long_name)."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 RADII = 201
@@ -104,7 +104,7 @@ def variables(study: Claims, runs: Runs) -> dict:
 
 
 def _curves(motion: str) -> dict:
-    """Return the static limit, the formulas on a fine axis, and their largest differences."""
+    """Return the static limit and the formulas on a fine axis, and their largest differences."""
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     dim = f"{motion}_curve_amplitude"
     exact = FORMS[motion][STATIC].function(amplitude)
@@ -156,13 +156,13 @@ SPLIT = {
     "from_resolution_error": "error of this part",
     "squares_shift": "difference of the limit on squares from the limit",
 }
-"""Variables with the amplitudes of a motion as their axis: long_name by name."""
+"""Variables along the amplitudes of a motion: long_name by name."""
 
 
 def _split(study: Claims, runs: Runs, motion: str) -> dict:
     """Return the difference between the paper's run and the static limit.
 
-    It is split into the parts that are due to the velocity and to the resolution.
+    The difference is split into a part due to the velocity and a part due to the resolution.
     """
     amplitudes = claims.limited(study, motion)
     rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]

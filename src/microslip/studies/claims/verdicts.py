@@ -1,9 +1,9 @@
 """Verdicts on statements, from the margins and errors of checks.
 
 A statement of the paper has parts, and a part is judged by checks. Each check has a margin with an
-error. A check holds if its margin is positive and larger than the error, and fails if the margin is
-negative and its absolute value is larger than the error; otherwise the check is open. A part holds
-if some checks hold and none fails. A statement holds if all its parts hold.
+error. A check holds if its margin is larger than the error. It fails if the margin is negative and
+its absolute value is larger than the error. Otherwise, the check is open. A part holds if some
+checks hold and none fails. A statement holds if all its parts hold.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def of_claim(parts: list) -> int:
     """Return the verdict on a statement from the verdicts on its parts.
 
     A statement holds in part if one of its parts holds in part, or if some parts hold and some do
-    not. In all other cases an undecided part leaves the statement undecided.
+    not. Otherwise, one undecided part leaves the statement undecided.
     """
     distinct = set(parts)
     if PARTLY in distinct or {WHOLLY, NOT} <= distinct:
@@ -75,13 +75,13 @@ def of_claim(parts: list) -> int:
 
 
 def decisive(checks: list, outcome: int) -> Check | None:
-    """Return the check with the largest margin of those with an outcome, or None without one."""
+    """Return the check with the largest margin among those with the outcome, or None."""
     decided = [check for check in checks if check.outcome == outcome]
     return max(decided, key=lambda check: abs(check.margin), default=None)
 
 
 def tightest(checks: list) -> Check | None:
-    """Return the check with the smallest margin of those that hold, or None if none holds."""
+    """Return the check that holds with the smallest margin, or None if no check holds."""
     decided = [check for check in checks if check.outcome == HOLDS]
     return min(decided, key=lambda check: check.margin, default=None)
 
@@ -90,7 +90,7 @@ def where(checks: list) -> str:
     """Return a text that lists where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
 
     Checks are grouped by the first number of their places. If some checks of a group hold and some
-    fail, the text lists the second numbers of those that fail.
+    fail, the text lists the second numbers of the failing checks.
     """
     if not checks or not checks[0].place:
         return ""
@@ -134,7 +134,7 @@ def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
 
 
 def _within(group: list[Check]) -> str:
-    """Return a text with the second numbers of the places at which checks of a group fail."""
+    """Return a text that lists the second numbers of the places where a group's checks fail."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:
         return "for some"

@@ -1,5 +1,4 @@
-"""Build the dataset propulsion, with a line for every motion from stall force to no-load
-velocity."""
+"""Build the dataset propulsion: for every motion, a line from stall force to no-load velocity."""
 
 from collections.abc import Callable, Iterator
 

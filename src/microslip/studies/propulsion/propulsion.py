@@ -19,7 +19,7 @@ def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
 
 
 def pieces(study: Propulsion) -> tuple[list, list]:
-    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
+    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     requests = [line(study, motion) for motion in study.motions.values()]
     distinct = [request for i, request in enumerate(requests) if request not in requests[:i]]
     return [], [distinct[i : i + LINES_PER_JOB] for i in range(0, len(distinct), LINES_PER_JOB)]

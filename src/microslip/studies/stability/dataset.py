@@ -16,7 +16,7 @@ OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
 GROUPS = {"axes": ("Quantities that are varied in the blocks of cases", ("axis",))}
-"""Groups of the dataset. The table of methods and cases is the root."""
+"""Groups of the dataset. The table of methods and cases is the root group."""
 
 RESULT_COLUMNS: dict[str, tuple] = {
     "mu_macro": ("mu_macro", MU_MACRO.description, float),
@@ -37,8 +37,8 @@ AXIS_COLUMNS: dict[str, tuple] = {
 }
 
 UNSOLVED = "a step was left unsolved"
-"""First words of the reason if a run reached the maximum number of iterations near the solution of
-a step."""
+"""Start of the reason given for a run that reached the iteration limit close to a step's
+solution."""
 
 
 def outcome(
@@ -117,7 +117,7 @@ def build(settings: Stability, answer: Callable) -> xr.Dataset:
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield lines of text with the number of cases with each outcome, for each method."""
+    """Yield a line of text for each method: the number of cases with each outcome."""
     for method, row in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
         counts = ((OUTCOMES[i], int((row == i).sum())) for i in range(1, len(OUTCOMES)))
         yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)

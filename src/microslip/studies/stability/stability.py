@@ -1,8 +1,8 @@
 """Cases of the stability study, in which all methods are tested.
 
-An axis varies one quantity of a base point into a range in which methods fail. The quantity belongs
-to the point, to the resolution, or to the method. A case is one value of this quantity. All probes
-have the same tolerance.
+An axis varies one quantity of a base point into a range where methods fail. The quantity belongs to
+the point, to the resolution, or to the method. A case is a value of this quantity. All probes have
+the same tolerance.
 """
 
 from dataclasses import dataclass
@@ -29,8 +29,8 @@ class Axis:
         Pairs of the value and a dict with entries of the request: motion, velocity, amplitude,
         poisson, cells or steps.
     parameters : tuple
-        Pairs of a method and the name of its parameter that is varied. If there are such pairs,
-        the axis applies only to these methods and, for comparison, to the shipped method.
+        Pairs of a method and the name of its varied parameter. If this is not empty, the axis
+        applies only to these methods and, for comparison, to the shipped method.
     """
 
     name: str
@@ -43,9 +43,9 @@ class Axis:
 def _varied(
     key: str | None, values: tuple[float, ...], **fixed: object
 ) -> tuple[tuple[float, dict], ...]:
-    """Return the cases in which the entry `key` has the values.
+    """Return one case for each value of the entry `key`.
 
-    If `key` is None, a parameter of the method has the values.
+    If `key` is None, the values are those of a method parameter.
     """
     return tuple((value, fixed if key is None else fixed | {key: value}) for value in values)
 
@@ -159,7 +159,7 @@ def reference(study: Stability, overrides: dict) -> dict:
 
 
 def pieces(study: Stability) -> tuple[list, list]:
-    """Group the requests by job.  Returns two lists of jobs, slow and fast; a job is a list."""
+    """Return the slow jobs and the fast jobs as two lists. A job is a list of requests."""
     blocks = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
     requested: set[str] = set()
     long: list[list[dict]] = []
