@@ -31,12 +31,12 @@ COMMANDS = {
     "fold": "one period of a motion from a long record, such as that of a vibrometer",
     "export": "an Iwan model or a friction table of a contact, for other programs",
 }
-"""Commands that have a separate module in this package, and their results."""
+"""Commands that have their own module in this package, each with a help text."""
 BORE = "Bore means spin: rotation about the contact normal."
 
 
 def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
-    """Parser of the command line.  Only the command `selected` has all of its options."""
+    """Return the parser of the command line.  Only the command `selected` gets its options."""
     parser = option_parser.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
@@ -115,7 +115,7 @@ FILE = (
     "are some of forward, lateral, angle, and load or indentation.  Its lines are equally spaced "
     "in time, from the first point of a period to the one before its end."
 )
-"""Description of the files of motions."""
+"""Help text about motion files."""
 F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
@@ -196,8 +196,8 @@ def main(arguments: list[str] | None = None) -> int:
     Parameters
     ----------
     arguments : list of str, optional
-        Words after the name of the program.  The default is the command line of this process.  In
-        this case, signals end the process, see microslip.app.terminal.
+        Words after the program name.  By default, they are those of this process.  Signals then end
+        the process (see microslip.app.terminal).
 
     Returns
     -------
@@ -254,7 +254,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _problem_of_motion(words: list[str]) -> InputError | None:
-    """The InputError if the words name a motion whose file cannot be used; otherwise None."""
+    """Return an InputError if the file of the named motion cannot be used, and None otherwise."""
     from microslip.motions.by_name import BROKEN
 
     name = words[0].partition(":")[0] if words else ""
@@ -263,7 +263,7 @@ def _problem_of_motion(words: list[str]) -> InputError | None:
 
 
 def _split_motion(words: list[str]) -> tuple[list[str], str]:
-    """Words of `point` with the bare name of the motion, and the motion with its numbers.
+    """Return the words with the bare name of the motion, and the motion with its numbers.
 
     The parser accepts only bare names, such as elliptic for elliptic:forward=0.5.  Words of other
     commands are unchanged.
@@ -277,8 +277,7 @@ def _split_motion(words: list[str]) -> tuple[list[str], str]:
 
 
 def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]:
-    """Name of the option for an argument of `solve`, and the text of the option on the command
-    line."""
+    """Return the option for an argument of `solve`, and its text on the command line."""
     if argument == "motion":
         return "MOTION", options.motion
     option = getattr(options, "spellings", {}).get(argument, f"--{argument.replace('_', '-')}")
@@ -286,7 +285,7 @@ def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]
 
 
 def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:
-    """The result for the options.  Raises InputError and CacheError, like
+    """Compute the result for the options.  Raises InputError and CacheError, like
     microslip.solve_stored."""
     texts = {name: getattr(options, name, None) for name in REALS}
     numbers: dict[str, Any] = {
@@ -314,8 +313,8 @@ def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] 
 
 
 def _bar() -> contextlib.AbstractContextManager[Any]:
-    """A progress line on standard error that counts the runs.  None if standard error is not a
-    terminal."""
+    """Context manager of a progress line that counts runs.  It yields None if standard error is not
+    a terminal."""
     if not sys.stderr.isatty():
         return contextlib.nullcontext()
     from tqdm import tqdm

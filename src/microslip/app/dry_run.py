@@ -29,7 +29,7 @@ SOLVED = re.compile(r"^\d+ points, (\d+) computed in ([\d.]+) s of CPU time", re
 def summary(
     jobs: Iterable[tuple[str, Batch | None]], folder: str | Path, cores: int, *, compiles: bool
 ) -> list[str]:
-    """Lines about the work of a run.
+    """Return the lines that describe the work of a run.
 
     jobs: group and batch of each job that solves points; the batch is None for a certified map.
     folder: folder of results, with the store and the logs of earlier batches.  cores: number of
@@ -65,7 +65,7 @@ def summary(
 
 
 def _mean_time(folder: Path, group: str) -> float | None:
-    """Mean CPU seconds of a request of a group, from the logs of its batches.  None without
+    """Mean CPU seconds per request in a group, from the logs of its batches, or None without
     logs."""
     logs = (folder / "logs" / "solve" / group).glob("*.log")
     texts = [path.read_text("utf-8", errors="replace") for path in logs]
@@ -79,7 +79,8 @@ def _noun(plural: str, count: int) -> str:
 
 
 def _words(seconds: float) -> str:
-    """A duration in one or two significant digits: "40 seconds", "3 minutes", "2.5 hours"."""
+    """Format a duration with one or two significant digits: "40 seconds", "3 minutes", "2.5
+    hours"."""
     if seconds < 90.0:
         return f"{max(10 * math.ceil(seconds / 10.0), 10)} seconds"
     if seconds < 5400.0:

@@ -42,7 +42,7 @@ TABLE_OPTIONS = {name: GROUPS["output"][name] for name in ("tolerance", "map")} 
     "output": ("FILE", "write a .csv file, or a .txt file for Modelica.Blocks.Tables")
 }
 NO_FRICTION = ("force", "reduction")
-"""Options of predict whose answer is not the friction."""
+"""Options of predict that are left out, because their answer is not the friction."""
 WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
 """Options that are also allowed without a contact in SI units."""
 COLUMNS = {
@@ -51,7 +51,7 @@ COLUMNS = {
     "friction_force": ("N", "mean friction force"),
     "friction_force_error": ("N", "error estimate of the friction force"),
 }
-"""Unit and long name of the columns of a friction table."""
+"""Unit and long name of each column in a friction table."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -168,7 +168,7 @@ def _table(options: argparse.Namespace) -> Answer:
 
 
 def _friction_table(dataset: xr.Dataset) -> xr.Dataset:
-    """The columns of a friction table; an axis has the name of its argument."""
+    """Return the columns of a friction table.  Each axis is named after its argument."""
     variables = {
         name: (tuple(dataset.dims), dataset[column].values, {"units": unit, "long_name": text})
         for name, (unit, text) in COLUMNS.items()

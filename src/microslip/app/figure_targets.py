@@ -21,7 +21,7 @@ TARGETS = {
     "explorer": "interactive page of the maps; a click on a point shows its period",
     "explorer_all": "the same page with all other sweeps of the configuration",
 }
-"""Targets of the workflow for users, and the products of each."""
+"""Targets of the workflow, each with a description of its products for users."""
 
 
 def _span_maps(*grids: Sweep) -> bool:
@@ -55,12 +55,12 @@ CONDITIONS: dict[str, tuple[Callable[..., bool], str]] = {
     "drives": (_share_a_point, "one amplitude, and for the last one velocity, of the first"),
     "pairs": (_have_one_amplitude, "equal amplitudes"),
 }
-"""Condition on the sweeps of a figure, and its text for a message."""
+"""Condition on a figure's sweeps, and a description of this condition for messages."""
 
 
 def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
-    """Figures for which the configuration has data, and the names of the datasets of each
-    figure."""
+    """Return the figures for which the configuration has data, each with the names of its
+    datasets."""
     figures = {
         figure: names
         for figure, names in drawing.FIGURES.items()
@@ -71,8 +71,8 @@ def drawable(configuration: Configuration) -> dict[str, tuple[str, ...]]:
 
 
 def why_no_figure(configuration: Configuration, figure: str) -> str | None:
-    """The reason why a configuration has no data for a figure, a key of drawing.FIGURES, or
-    None if it has."""
+    """Return the reason why a configuration lacks data for a figure, or None if it has the data.
+    Figures are keys of drawing.FIGURES."""
     names = drawing.FIGURES[figure]
     datasets = {*configuration.sweeps, *configuration.drives, *registry.DATASETS.values()}
     for name in names:
@@ -85,7 +85,7 @@ def why_no_figure(configuration: Configuration, figure: str) -> str | None:
 
 
 def heading_of(configuration: Configuration, dataset: str) -> str:
-    """Heading, in the report of a run, for the figures whose first dataset is this one."""
+    """Return the heading in a run's report for figures whose first dataset is `dataset`."""
     headings = {
         "The paper's figures": configuration.sweeps,
         "Other motions and pressures": configuration.extended,

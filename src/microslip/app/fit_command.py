@@ -135,11 +135,11 @@ def _interval(value: float | None, low: float | None, high: float | None, unit: 
 
 
 def _scaled(value: float | None, unit: str) -> str:
-    """Text of a value, with a suitable prefix of the unit."""
+    """Format a value with a suitable prefix of the unit."""
     name, size = prefixed(value, unit) if unit and value else (unit, 1.0)
     return f"{_digits((value or 0.0) / size, 4)} {name}".strip()
 
 
 def _digits(value: float, count: int) -> str:
-    """Text of a number with `count` significant digits, including zeros at the end."""
+    """Format a number with `count` significant digits, including trailing zeros."""
     return f"{value:#.{count}g}".rstrip(".") if value else "0"

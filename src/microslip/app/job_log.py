@@ -30,11 +30,11 @@ class _LogFile(logging.FileHandler):
 
 @contextmanager
 def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
-    """Context manager of a job.  It yields a logger that writes to the file `path`.
+    """Context manager for a job.  It yields a logger that writes to the file `path`.
 
     Messages of at least the level `shown` also go to standard error.  An error ends the process
-    with exit code 1.  The log contains the traceback.  For a CacheError, a SolverError or a full
-    disk, it contains only one line.
+    with exit code 1.  The log then contains the traceback, or only one line for a CacheError, a
+    SolverError or a full disk.
     """
     try:
         file = _LogFile(path, mode="w", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The command `microslip gc`: list and remove files of results that no configuration requests.
+"""The command `microslip gc`: list and remove result files that no configuration requests.
 
 After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
 stay in the folder, since another configuration may request them.  Only files that the workflow
@@ -32,9 +32,9 @@ PLACES = {".": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
 
 
 def requested(plan: Plan, folder: Path) -> set[str]:
-    """Paths of all files that a plan makes.  The paths are relative to the folder of results.
+    """Return the paths of all files that a plan makes, relative to the folder of results.
 
-    The batch of a certified map contains its points.  If the batch is missing or damaged, all
+    The points of a certified map are read from its batch.  If the batch is missing or damaged, all
     points of the motion count as requested.
     """
     certified = plan.configuration.certified
@@ -60,7 +60,7 @@ def _path_of(request: dict) -> str:
 
 
 def _named(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Kind and path of each file in a folder of results that has the name of a result."""
+    """Yield the kind and path of each file in a folder of results, if it is named like a result."""
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -78,9 +78,9 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
 
 
 def find_leftovers(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
-    """Files in a folder of results that none of the plans requests, by kind.
+    """Return the files that no plan requests, by kind.
 
-    Links, files behind links, and folders with the name of a file belong to the user and are not
+    Links, files behind links, and folders that are named like a file belong to the user and are not
     listed.
     """
     needed = {file for plan in plans for file in requested(plan, folder)}
@@ -138,8 +138,8 @@ def _loaded(path: str) -> Configuration:
 
 
 def _folder(configurations: list[Configuration]) -> Path:
-    """The folder of results that all configurations share.  Raises ConfigError if their folders
-    differ."""
+    """Return the folder of results that all configurations share.  Raises ConfigError if their
+    folders differ."""
     folders = {os.path.realpath(each.results): Path(each.results) for each in configurations}
     if len(folders) > 1:
         names = ", ".join(sorted(map(str, folders.values())))

@@ -1,4 +1,4 @@
-"""Tables as text files for Modelica.Blocks.Tables, which interpolate in one or two dimensions."""
+"""Text files of tables for Modelica.Blocks.Tables, which interpolates in one or two dimensions."""
 
 from __future__ import annotations
 
@@ -13,12 +13,11 @@ if TYPE_CHECKING:
 
 
 def text_of(dataset: xr.Dataset, comments: Sequence[str]) -> str:
-    """The variables of a dataset as tables.
+    """Return the variables of a dataset as tables.
 
-    Over one axis, there is one table `friction` for CombiTable1Ds, with the axis in its first
-    column.  Over more axes, each variable has a table for CombiTable2Ds: the first axis is u1 and
-    the second one is u2.  For each combination of the values of further axes there is a table whose
-    name ends in its number.
+    With one axis, there is one table `friction` for CombiTable1Ds, with the axis in its first
+    column.  With more axes, each variable has a table for CombiTable2Ds: the first axis is u1 and
+    the second one is u2.  Each combination of values on further axes has its own numbered table.
     """
     lines = ["#1", *(f"# {text}" for text in comments)]
     for name, note, rows in _tables(dataset):
@@ -28,7 +27,7 @@ def text_of(dataset: xr.Dataset, comments: Sequence[str]) -> str:
 
 
 def _tables(dataset: xr.Dataset) -> Iterator[tuple[str, str, np.ndarray]]:
-    """Name, comment and values of each table."""
+    """Yield the name, comment and values of each table."""
     first, *others = dataset.dims
     x = dataset[first].values
     if not others:
@@ -49,6 +48,6 @@ def _tables(dataset: xr.Dataset) -> Iterator[tuple[str, str, np.ndarray]]:
 
 
 def _title(values: xr.DataArray) -> str:
-    """Long name and unit of a variable."""
+    """Return the long name and the unit of a variable."""
     unit = values.attrs["units"]
     return values.attrs["long_name"] + (f" [{unit}]" if unit != "1" else "")

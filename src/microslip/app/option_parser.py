@@ -17,10 +17,10 @@ SYNONYMS = {
     "--speed": "--velocity",
     "--velocity": "--speed",
 }
-"""Names of quantities that differ between two commands."""
+"""Options that have another name in another command."""
 
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
-"""Pattern of the beginning of a word that is a negative number, not an option."""
+"""Pattern of the first characters of a negative number.  Options do not match it."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -40,8 +40,8 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
     def _refuse_strange_words(self, words: Sequence[str]) -> None:
-        """Refuse unknown words before argparse does.  Its message would name a missing argument
-        instead."""
+        """Refuse unknown words before argparse does, because argparse would report a missing
+        argument."""
         candidates = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
         named: dict[str, list[str]] = {}
@@ -59,9 +59,9 @@ class OneLineParser(argparse.ArgumentParser):
             self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices or ())}")
 
     def _refuse_second(self, name: str, names: list[str]) -> None:
-        """Refuse a repeated option, except flags and options with several values.
+        """Refuse a repeated option, unless it is a flag or collects several values.
 
-        names: names that the command line has used for the option so far.
+        names: spellings of this option on the command line so far.
         """
         action = self._option_string_actions[name]
         names.append(name)
@@ -85,19 +85,19 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _hint(name: str, candidates: Iterable[str]) -> str:
-    """'did you mean NAME? ' for the most similar candidate, or '' if there is none."""
+    """Return 'did you mean NAME? ' with the most similar candidate, or '' without a similar one."""
     synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in candidates]
     near = synonym or difflib.get_close_matches(name, candidates, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
 
 def option(argument: str) -> str:
-    """Option for a Python argument, such as --contact-radius for contact_radius."""
+    """Return the option for a Python argument, such as --contact-radius for contact_radius."""
     return f"--{argument.replace('_', '-')}"
 
 
 def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
-    """A message in which options replace Python arguments.
+    """Replace the Python arguments in a message by options.
 
     Only decimal, encoding and names of several words are replaced, since a name of one word may
     also be an ordinary word of the text.
@@ -110,7 +110,7 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class StoreSpelling(argparse.Action):
-    """Action that stores a value, and the name of the option on the command line."""
+    """Action that stores a value and the spelling of its option on the command line."""
 
     def __call__(
         self,
@@ -124,7 +124,7 @@ class StoreSpelling(argparse.Action):
 
 
 def joined(arguments: list[str]) -> list[str]:
-    """Arguments with each negative number joined to its option, as in --velocity=-1e-3.
+    """Join each negative number to its option, as in --velocity=-1e-3.
 
     Otherwise argparse would read the number as an option.
     """

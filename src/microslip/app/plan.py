@@ -1,12 +1,12 @@
 """Plan of a configuration: its batches of requests, its products, and the inputs of each product.
 
-The module does not import Snakemake.  Its import is fast, since every process of Snakemake parses
-the workflow.
+The module does not import Snakemake.  It must be fast to import, since every Snakemake process
+parses the workflow.
 
 A product is a dataset with its page ("bore"), a figure ("figures/fig6_bore_map") or a page of the
 explorer ("pages/explorer").  A group of batches is named after its sweep, study or certified map.
-The group "bore_histories" contains the single runs of a dataset, and "bore_periods" contains those
-of the explorer.
+The group "bore_histories" contains the single runs for a dataset, and "bore_periods" contains the
+single runs for the explorer.
 """
 
 from __future__ import annotations
@@ -30,8 +30,7 @@ from microslip.sweeps import batches, stamps
 from microslip.sweeps.batches import Batch, SourcesEdited
 
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
-"""Modules that make the dataset of a sweep and its page.  Modules that these import are not
-listed."""
+"""Modules that make a sweep's dataset and page.  Modules that they import are not listed."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "report/claims.html", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 PAGE_CODE = ("report/explorer", "sweeps/period_codec.py")
@@ -47,9 +46,9 @@ class Product(NamedTuple):
     files : list of str
         Paths relative to the folder of results.
     code : tuple of str
-        Modules that make the product.  Modules that these import are not listed.
+        Modules that make the product.  Modules that they import are not listed.
     datasets, groups : sequence of str
-        Names of the input datasets, and names of the groups of input batches.
+        Names of the input datasets and of the input groups of batches.
     settings : dict
         Settings that influence the product, as JSON values.
     """
@@ -68,9 +67,9 @@ class Plan:
     ----------
     configuration : Configuration
     studies : dict of str to str
-        Names of the studies, by the names of their datasets.
+        Name of the study that makes each dataset, by dataset name.
     figures : dict of str to tuple of str
-        Figures for which the configuration has data, and the names of the datasets of each figure.
+        Figures for which the configuration has data, each with the names of its datasets.
     products : dict of str to Product
         All products, by name.
     """
@@ -80,7 +79,7 @@ class Plan:
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
         self.figures = figure_targets.drawable(configuration)
         self.products = dict(self._products())
-        self.batches_in = cache(self._batches_in)  # not @cache, which would keep every plan
+        self.batches_in = cache(self._batches_in)  # not @cache, since it would keep every plan
         self.made_of = cache(self._made_of)
 
     # Batches
@@ -98,7 +97,7 @@ class Plan:
     def _batches_in(self, group: str) -> dict[str, Batch | None]:
         """Batches of a group by name, in the order of the requests.
 
-        A certified map has one batch with all of its points.  It is None, since the requests depend
+        A certified map has one batch with all points.  The batch is None, since its requests depend
         on the results.
         """
         configuration = self.configuration
@@ -123,7 +122,7 @@ class Plan:
         return {batch.name: batch for batch in blocks}
 
     def batch_files(self, *groups: str) -> list[str]:
-        """Paths of all batches of these groups, in the order of the groups."""
+        """Return the paths of all batches in these groups, in the order of the groups."""
         return [
             f"batches/{group}/{name}.jsonl" for group in groups for name in self.batches_in(group)
         ]
@@ -139,7 +138,7 @@ class Plan:
             elif name in self.studies:
                 settings = registry.settings(self.studies[name], configuration)
                 yield name, Product(files, STUDY_CODE, (), [self.studies[name]], settings)
-            else:  # batches of single runs come after those of points
+            else:  # single runs come after points
                 groups += [f"{name}_histories"] * (name in configuration.sweeps)
                 yield name, Product(files, DATASET_CODE, (), groups, configuration.of_sweep(name))
         for name, datasets in self.figures.items():
@@ -158,13 +157,13 @@ class Plan:
 
     @property
     def targets(self) -> list[str]:
-        """Names of all targets, which are those of TARGETS, all figures, and fig1 to fig6."""
+        """Names of all targets: the keys of TARGETS, all figures, and fig1 to fig6."""
         names = (*figure_targets.TARGETS, *drawing.FIGURES, *self.figures, *drawing.SHORT_NAMES)
         return list(dict.fromkeys(names))
 
     def products_of(self, target: str) -> list[str]:
-        """Products of a target.  Raises ConfigError if the configuration has no data for the
-        target."""
+        """Return the products of a target.  Raises ConfigError if the configuration has no data for
+        it."""
         configuration = self.configuration
         drift = [name for name, map_ in configuration.certified.items() if map_.force is not None]
         datasets = {
@@ -194,8 +193,8 @@ class Plan:
     # Fingerprints of the inputs of products
 
     def _made_of(self, product: str) -> str:
-        """Fingerprint of the code, settings and points of a product, but not of the division of
-        points into batches."""
+        """Fingerprint of a product's code, settings and points.  It does not depend on how points
+        are divided into batches."""
         _, modules, datasets, groups, settings = self.products[product]
         inputs = [self.made_of(dataset) for dataset in datasets]
         grids = self.configuration.grids
@@ -210,13 +209,13 @@ class Plan:
 def product_job(
     job: Any, product: str, shown: int = logging.WARNING
 ) -> Iterator[tuple[Plan, logging.Logger]]:
-    """Context manager of a job that makes a product.  It yields the plan and a logger.
+    """Context manager for a job that makes a product.  It yields the plan and a logger.
 
-    It renames damaged files of the product first, and writes the stamp last.  Raises SourcesEdited
-    if the fingerprint of the product has changed since it was planned.
+    It first renames damaged files of the product, and finally writes the stamp.  Raises
+    SourcesEdited if the product's fingerprint has changed since the job was planned.
 
-    job: the variable `snakemake` of the script, whose last output is the stamp; shown: lowest level
-    of messages on standard error.
+    job: the script's variable `snakemake`; its last output is the stamp.  shown: lowest level of
+    messages on standard error.
     """
     outputs, made_of = job.output[:-1], job.params.made_of
     with job_log(job.log[0], shown) as log:

@@ -22,7 +22,7 @@ DIGITS = 6
 
 
 def as_text(result: Result) -> str:
-    """The lines that are printed for a result."""
+    """Return the printed lines for a result."""
     if result.force is not None:
         assert result.velocity_error is not None  # set under a force
         lines = [f"velocity = {number_text(result.velocity, result.velocity_error, digits=DIGITS)}"]

@@ -94,16 +94,16 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "encoding": ("NAME", "with --table: encoding of the file, such as cp1252 (utf-8)"),
     },
 }
-"""Options by heading of the help.  Each option has a metavar and a help text."""
+"""Options by heading in the help text.  Each option has a metavar and a help text."""
 WITH = {"output": "--table or a range", "figure": "a range", "decimal": "--table"}
 WITH["encoding"] = "--table"
-"""Options that need another one."""
+"""Options that require another option."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
     "by mu times the mean load.",
 }
-"""Descriptions of groups of options."""
+"""Descriptions of option groups."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:

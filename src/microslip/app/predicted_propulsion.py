@@ -27,7 +27,10 @@ REFUSED |= dict.fromkeys(
 
 
 def line_of(motion: str, options: dict) -> RealPropulsionLine:
-    """The force-speed line of a motion, for options of predict by name.  Raises InputError."""
+    """Return the force-speed line of a motion.  Raises InputError.
+
+    options: options of predict, by name.
+    """
     from microslip.si.propulsion import predict_propulsion
 
     for name, reason in REFUSED.items():

@@ -1,4 +1,4 @@
-"""Predictions of many contacts: the lines of the file of --table, or the values of ranges."""
+"""Predictions of many contacts, from the lines of a --table file or from ranges."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ FORMAT = ("decimal", "encoding")
 """Options that describe the format of the file."""
 WIDTH = 13
 MOST_COMPLAINTS = 10
-"""Largest number of error messages of contacts without a prediction."""
+"""Largest number of error messages about contacts without a prediction."""
 MOST_LINES = 8
 """Largest number of lines in a figure."""
 STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
-"""Columns of a periodic motion.  They are empty for a contact that runs away."""
+"""Columns that are empty for a contact that runs away, because it has no periodic state."""
 PROBABILITIES = {
     "stays %": "probability_stays",
     "moves %": "probability_moves",
     "runs away %": "probability_runs_away",
 }
-"""Columns of the probabilities of the outcomes, by heading."""
+"""Columns with the probability of each outcome, by heading."""
 
 
 class _Cases(NamedTuple):
-    """The contacts of a table or of ranges, and how they are called in the output.
+    """The contacts from a table or from ranges, and their names in the output.
 
     Attributes
     ----------
@@ -72,17 +72,17 @@ class _Cases(NamedTuple):
 
 
 def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
-    """The predictions of a table or of ranges, as an Answer.
+    """Predict the contacts of a table or of ranges.
 
-    It is complete if all predictions converged.  Error messages of contacts without a prediction
-    are written to standard error.
+    The answer is complete if all predictions converged.  Error messages of contacts without a
+    prediction are written to standard error.
 
     Parameters
     ----------
     options : argparse.Namespace
         Options of predict.
     arguments : mapping
-        Values of the options on the command line, with the map of --map.
+        Values of the options on the command line, including the opened map of --map.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
 
 
 def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
-    """The contacts of a file, one on each line."""
+    """Return the contacts of a file with one contact per line."""
     from microslip.si.table import NAMES, as_dataset
     from microslip.si.tables import table_of
 
@@ -143,7 +143,7 @@ def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) ->
 
 
 def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
-    """The contacts of all combinations of the values of ranges."""
+    """Return one contact for each combination of values from the ranges."""
     from microslip.si.grid import grid_of
 
     grid = grid_of(options.motion, arguments)
@@ -162,7 +162,7 @@ def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases
 
 
 def _short(text: str) -> str:
-    """A quantity with at most four digits."""
+    """Format a quantity with at most four digits."""
     number, _, unit = text.partition(" ")
     return f"{float(number):.4g} {unit}".strip()
 
@@ -170,9 +170,9 @@ def _short(text: str) -> str:
 def _rows(
     cases: _Cases, answers: Sequence[Prediction | NoPrediction], headings: Collection[str]
 ) -> list[dict[str, Any]]:
-    """A dict for each contact, with its first values, its error message or None, and its columns.
+    """Return a dict for each contact: its first values, its error message or None, and its columns.
 
-    headings: names of arguments that messages do not replace by options.
+    headings: arguments that messages show by name, not as options.
     """
     rows = []
     for values, one in zip(zip(*cases.values.values(), strict=True), answers, strict=True):
@@ -185,7 +185,7 @@ def _rows(
 
 
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
-    """The error message of a contact, in which names of columns and options replace arguments.
+    """Format a contact's error message, with columns and options in place of Python arguments.
 
     An InputError about an empty cell or a missing column has no value.
     """
@@ -216,9 +216,9 @@ class _Quantity(NamedTuple):
     Attributes
     ----------
     columns : tuple of str
-        Columns of the value, of the error estimate and of the standard uncertainty.
+        Columns with the value, the error estimate and the standard uncertainty.
     headings : tuple of str
-        Headings of these columns.  A column that is not printed has an empty heading.
+        Headings of these columns.  An empty heading means that the column is not printed.
     sought : str or None
         Name of the quantity, if it is the result of a search.
     """
@@ -229,7 +229,7 @@ class _Quantity(NamedTuple):
 
 
 def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str:
-    """The printed table, with a row for each case and remarks below."""
+    """Return the printed table, with a row for each case and remarks below."""
     some = [one for one in answers if isinstance(one, Prediction)]
     quantities, verdict = _quantities(some), _verdict_headings(some)
     headings = [text for one in quantities for text in one.headings if text] + verdict
@@ -256,7 +256,7 @@ def _as_text(cases: _Cases, answers: Sequence[Prediction | NoPrediction]) -> str
 
 
 def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
-    """The quantities in the printed table of some predictions."""
+    """Return the quantities that the printed table shows for these predictions."""
     forced = any(one.force_N is not None for one in answers)
     spread = "spread" if any("mu_apparent_spread" in one.uncertainty for one in answers) else ""
     friction = ("mu_apparent", "mu_apparent_error", "mu_apparent_spread")
@@ -271,7 +271,7 @@ def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
         threshold = ("force_threshold_N", "force_threshold_error_N", "")
         shown.append(_Quantity(threshold, ("threshold N", "+- N", "")))
     for sought in dict.fromkeys(one.sought for one in answers):
-        if sought is not None:  # each line can search for another quantity
+        if sought is not None:  # each line can search for a different quantity
             results = [one for one in answers if one.sought == sought]
             amplitude = unit_of_amplitude(results[0].motion)
             unit = {"amplitude": amplitude, "speed": "m/s", "load": "N"}[sought]
@@ -285,7 +285,7 @@ def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
 
 
 def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
-    """Texts of the columns of one quantity, with the digits that its error estimate allows."""
+    """Format the columns of one quantity with the digits that its error estimate allows."""
     value, error, spread = (row.get(name) for name in quantity.columns)
     accelerates = row["outcome"] == "runs away" and quantity.columns[0] in STEADY
     texts = ["", "", ""]
@@ -299,7 +299,7 @@ def _cells(row: Mapping[str, Any], quantity: _Quantity) -> list[str]:
 
 
 def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
-    """Headings of the outcome under a force, and of the probabilities of the outcomes."""
+    """Return headings for the outcome under a force and for the probability of each outcome."""
     if all(one.force_N is None for one in answers):
         return []
     uncertain = any("probability_error" in one.uncertainty for one in answers)
@@ -307,8 +307,7 @@ def _verdict_headings(answers: Sequence[Prediction]) -> list[str]:
 
 
 def _verdict_cells(row: Mapping[str, Any]) -> list[str]:
-    """Texts of the outcome, of the probability of each outcome, and of the error of the
-    probabilities."""
+    """Format the outcome, the probability of each outcome, and the error of the probabilities."""
     error = row["probability_error"]
     chances = [row[column] for column in PROBABILITIES.values()]
     texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]

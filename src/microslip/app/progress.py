@@ -1,4 +1,4 @@
-"""The elapsed time of a calculation on standard error."""
+"""Display of a calculation's elapsed time on standard error."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from contextlib import contextmanager, suppress
 
 FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
 """Seconds until a terminal first shows the elapsed time, and seconds between updates.  Most
-calculations end before the first one."""
+calculations end before the time is shown."""
 BETWEEN_LINES_OF_A_FILE = 15.0
-"""Seconds between two lines about progress if standard error is not a terminal."""
+"""Seconds between two progress lines if standard error is not a terminal."""
 
 
 @contextmanager
 def elapsed_time(title: str) -> Iterator[None]:
-    """Context manager that shows the title and the elapsed time of a calculation on standard error.
+    """Context manager that shows a calculation's title and elapsed time on standard error.
 
     On a terminal, one line is updated.  In a file, a line is added every BETWEEN_LINES_OF_A_FILE
     seconds.

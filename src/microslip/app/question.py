@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ENDINGS = (".csv", ".nc")
-"""Endings of the names of output files."""
+"""File extensions of output files."""
 FIGURES = (".png", ".pdf")
-"""Endings of the names of figures."""
+"""File extensions of figures."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
 
@@ -35,7 +35,7 @@ class Answer(NamedTuple):
     plain : object
         The answer as JSON values.
     text : str
-        The answer in words.
+        The answer as text.
     complete : bool
         True for exit code 0.
     """
@@ -48,7 +48,10 @@ class Answer(NamedTuple):
 def add_options(
     parser: Any, options: Mapping[str, tuple[str, str]], required: Iterable[str] = ()
 ) -> None:
-    """Add options with a value to a parser or a group; options: metavar and help text by name."""
+    """Add options that take a value to a parser or a group.
+
+    options: metavar and help text of each option, by name.
+    """
     for name, (metavar, text) in options.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
@@ -68,7 +71,7 @@ def add_json(parser: Any) -> None:
 
 
 def typed_options(options: argparse.Namespace) -> dict[str, Any]:
-    """Values of the options on the command line, by the name of the argument."""
+    """Return the values of the options on the command line, by argument name."""
     return {name: getattr(options, name) for name in getattr(options, "spellings", {})}
 
 
@@ -117,7 +120,7 @@ def respond(
         return 2
     text = json.dumps(plain(result.plain)) if options.json else result.text
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    # The encoding may lack letters of units.
+    # The encoding may lack characters that units use.
     print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if result.complete else 1
 
@@ -125,7 +128,7 @@ def respond(
 def refuse_output(
     path: str | None, table: str | None = None, endings: tuple[str, ...] = ENDINGS
 ) -> None:
-    """Raise InputError if the output file cannot be written, or is the input table."""
+    """Raise InputError if the output file cannot be written, or if it is the input table."""
     if path is None:
         return
     file, allowed = Path(path), ""
@@ -140,8 +143,7 @@ def refuse_output(
 
 
 def refuse_figure(path: str | None) -> None:
-    """Raise InputError for a figure with an unknown ending, and for a figure without
-    matplotlib."""
+    """Raise InputError if the figure has an unknown file extension, or if matplotlib is missing."""
     if path is None:
         return
     if Path(path).suffix.lower() not in FIGURES:
@@ -151,7 +153,7 @@ def refuse_figure(path: str | None) -> None:
 
 
 def opened_map(path: str) -> xr.Dataset:
-    """The dataset of the option --map: a path that ends in .nc, or the name of a sweep.
+    """Open the dataset of the option --map, given as a .nc file or as the name of a sweep.
 
     Raises InputError and CacheError.
     """
@@ -166,7 +168,7 @@ def opened_map(path: str) -> xr.Dataset:
 
 
 def write_output(path: str, writers: Mapping[str, Callable[[Path], object]]) -> None:
-    """Write a file atomically with the writer for the ending of its name.
+    """Write a file atomically.  The file extension selects the writer.
 
     Raises InputError if the file cannot be written.
     """
@@ -180,7 +182,7 @@ def write_output(path: str, writers: Mapping[str, Callable[[Path], object]]) -> 
 
 
 def dataset_writers(dataset: xr.Dataset, frame: pd.DataFrame, **to_csv: Any) -> dict[str, Any]:
-    """Writers of a dataset: to a .csv file as a table, or to a .nc file."""
+    """Return writers for a dataset: a .csv writer for its table, and a .nc writer."""
     return {
         ".csv": lambda file: frame.to_csv(file, **to_csv),
         ".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4"),

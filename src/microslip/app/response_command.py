@@ -47,7 +47,7 @@ ERRORS = {
     "force_lateral": "force_error",
     "torque": "torque_error",
 }
-"""Columns with the error estimates of forces and torque."""
+"""Column with the error estimate of each force and of the torque."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
 """Columns of a path without units."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
@@ -113,8 +113,8 @@ def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
 
 
 def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
-    """The columns as CSV with six digits.  The reason precedes them if the response is not
-    converged."""
+    """Format the columns as CSV with six digits.  If the response is not converged, the reason
+    comes first."""
     reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
     forces = {}
     for name, error in ERRORS.items():
@@ -125,7 +125,7 @@ def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
 
 
 def _frame(dataset: xr.Dataset) -> pd.DataFrame:
-    """The columns of a response.  Units other than 1 are part of the headings."""
+    """Return the columns of a response.  Units other than 1 are part of the headings."""
     units = {name: one.attrs["units"] for name, one in dataset.items()}
     headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
     return dataset.to_dataframe().rename(columns=headings)

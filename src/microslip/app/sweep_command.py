@@ -1,5 +1,4 @@
-"""The command `microslip sweep`: run the workflow of this package by Snakemake in the current
-folder.
+"""The command `microslip sweep`: run this package's workflow with Snakemake in the current folder.
 
 For bad input, Snakemake prints a list of all its options or a traceback, and returns exit code 1.
 So the arguments and the configuration are checked here first.  Bad input then gives one line and
@@ -28,7 +27,7 @@ from microslip.report.figures import drawing
 
 PACKAGE = Path(__file__).parents[1]
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
-"""Arguments that set the number of parallel jobs, directly or by a profile."""
+"""Pattern of arguments that set the number of parallel jobs, directly or by a profile."""
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
 _LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
@@ -96,8 +95,10 @@ def _run(arguments: list[str]) -> int:
 
 
 def snakefile() -> Path:
-    """Path of the workflow of this package, which is in the folder `bundle` of an installed package
-    or at the top of a source tree.  Raises FileNotFoundError."""
+    """Return the path of this package's Snakefile.  Raises FileNotFoundError.
+
+    The file is in the folder `bundle` of an installed package, or at the top of a source tree.
+    """
     places = (PACKAGE / "bundle", PACKAGE.parents[1])
     for place in places:
         if (place / "Snakefile").is_file():
@@ -106,11 +107,10 @@ def snakefile() -> Path:
 
 
 def _spare_cache() -> None:
-    """Use a temporary folder for the internal files of Snakemake if the home folder cannot be
-    written to.
+    """Use a temporary folder for Snakemake's internal files if the home folder is not writable.
 
-    Snakemake makes a folder in the home folder at each start.  If this fails, it ends with a
-    traceback.
+    At each start Snakemake creates a folder in the home folder.  If this fails, Snakemake ends with
+    a traceback.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     try:
@@ -137,7 +137,7 @@ def _check(arguments: list[str]) -> None:
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
     known = [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES]
-    of_configuration = drawing.figure_of(""), drawing.CERTIFIED  # beginnings of further names
+    of_configuration = drawing.figure_of(""), drawing.CERTIFIED  # prefixes of further names
     for target in options.targets:
         is_file = bool({".", "/"} & set(target))
         if not (is_file or target in known or target.startswith(of_configuration)):
@@ -179,7 +179,8 @@ def _check_configuration(options: argparse.Namespace) -> None:
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace | None:
-    """The arguments as parsed by Snakemake.  None if Snakemake will print its own message."""
+    """Return the arguments as parsed by Snakemake, or None if Snakemake will print its own
+    message."""
     from snakemake.cli import parse_args
 
     messages = io.StringIO()

@@ -18,13 +18,14 @@ from typing import Any, NoReturn
 CANNOT_WRITE = 74
 """Exit code if the output cannot be written: EX_IOERR of sysexits.h."""
 CLOSED_PIPE = 141
-"""Exit code if the reader of the output is gone.  It is that of a program ended by SIGPIPE."""
+"""Exit code if the reader of the output has ended.  A program ended by SIGPIPE has the same
+code."""
 OF_SIGNAL = 128
-"""Exit code of a program ended by signal n, minus n."""
+"""Offset of the exit code: a program that is ended by signal n returns this number plus n."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
 GRACE = 0.4
-"""Seconds that Python has to stop by itself and to remove partial files."""
+"""Time limit in seconds for Python to stop by itself and to remove partial files."""
 
 
 def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
@@ -80,8 +81,9 @@ def _code_of(command: Callable[[], int]) -> int:
 def _open_closed_streams() -> None:
     """Open the standard streams that are closed, and buffer standard output until the end.
 
-    Otherwise a file opened later would get the number of a stream, and receive its output.  With
-    the buffer, the output is complete or missing, and only `_written` has to handle a full device.
+    Otherwise a file that is opened later would get the number of a closed stream and receive its
+    output.  With the buffer, the output is complete or missing, and only `_written` has to handle a
+    full device.
     """
     missing = sys.stdout is None
     for number, mode in ((0, os.O_RDONLY), (1, os.O_WRONLY), (2, os.O_WRONLY)):
@@ -103,8 +105,8 @@ def _open_closed_streams() -> None:
 
 
 def _written(code: int) -> int:
-    """Write the buffered output.  Returns the exit code, or another one if writing fails."""
-    buffered: Any = sys.stdout  # of _open_closed_streams
+    """Write the buffered output.  Returns `code`, or another exit code if writing fails."""
+    buffered: Any = sys.stdout  # set by _open_closed_streams
     output = buffered.buffer.getvalue()
     if not output:
         return code
