@@ -18,9 +18,9 @@ TOLERANCE = 1e-3
 """Default tolerance of the discretisation, and tolerance of the full contact in the comparison."""
 MOST_ELEMENTS = 10_000
 BEYOND_FULL_SLIP = 1.2
-"""Turning points of the loop of the comparison, in u_lim."""
+"""Turning points of the comparison's loop are at plus and minus this displacement, in u_lim."""
 ROWS = 13
-"""Number of rows of the first loading in the comparison; a branch of the loop has twice as many
+"""Number of rows in the first loading of the comparison.  A branch of the loop has twice as many
 intervals."""
 
 
@@ -66,7 +66,7 @@ def iwan(
     if poisson and not record.is_indenter:
         allowed = "allowed at nu > 0 is an axisymmetric indenter: hertz, power, punch"
         raise InputError("pressure", record.name, allowed)
-    shape = record if record.is_indenter else HERTZ  # an ellipse has the loading of a sphere
+    shape = record if record.is_indenter else HERTZ  # an ellipse has the loading curve of a sphere
     if elements is not None and tolerance is not None:
         raise InputError("elements", elements, "allowed only without a tolerance")
     if elements is not None:
@@ -80,10 +80,13 @@ def iwan(
 
 
 def _poisson_error(pressure: Pressure, poisson: float) -> float:
-    """Largest difference between the full contact and the exact model at nu = 0 on a first loading
-    and a loop between full slip in both directions."""
+    """Return the largest difference between the full contact and the exact model at nu = 0.
+
+    The path is a first loading and a loop between full slip in both directions.
+    """
     rise = np.linspace(0.0, BEYOND_FULL_SLIP, ROWS)
-    half = np.linspace(0.0, BEYOND_FULL_SLIP, 2 * ROWS - 1)[1:]  # of the displacement since a turn
+    # Half the displacement since a turning point.
+    half = np.linspace(0.0, BEYOND_FULL_SLIP, 2 * ROWS - 1)[1:]
     path = np.concatenate([rise, BEYOND_FULL_SLIP - 2.0 * half, 2.0 * half - BEYOND_FULL_SLIP])
     back = 1.0 - 2.0 * pressure.loading(half)
     forces = np.concatenate([pressure.loading(rise), back, -back])

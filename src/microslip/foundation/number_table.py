@@ -61,7 +61,7 @@ def read_numbers(
     allowed : str
         Description of the allowed heading, for messages.
     complete : bool
-        Whether all columns are needed.
+        True if all columns are required.
     least : mapping of float
         Smallest allowed number in a column, by the name of the column.
     decimal, encoding : str
@@ -100,7 +100,7 @@ def read_numbers(
 def _headings(
     where: int, heading: str, names: Sequence[str], allowed: str, complete: bool
 ) -> tuple[str, dict[str, str]]:
-    """The separator, and the unit of each column."""
+    """Return the separator and the unit of each column."""
     for separator in csv_text.SEPARATORS:
         words = csv_text.words(heading, separator)
         matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
@@ -112,8 +112,8 @@ def _headings(
 
 
 def number(where: int, name: str, word: str, least: float = -math.inf) -> float:
-    """Convert a word to a number.  Raises ValueError with the line number unless it is finite and
-    at least `least`."""
+    """Convert a word to a number.  Raises ValueError with the line number unless the value is
+    finite and at least `least`."""
     if not NUMBER.fullmatch(word):
         raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
     value = float(word)

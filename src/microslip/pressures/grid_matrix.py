@@ -27,7 +27,7 @@ ALLOWED = (
 def grid(
     content: bytes, pitch: str, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
-    """Return the coordinates and pressures of a matrix, shapes (n,), (m,) and (n, m), and their
+    """Read the coordinates and pressures of a matrix, shapes (n,), (m,) and (n, m), and their
     units.
 
     The forward coordinate increases from line to line, and the lateral coordinate from cell to
@@ -92,14 +92,14 @@ def grid(
 
 
 def _cells(line: str, decimal: str) -> list[str]:
-    """Cells of a line, except empty cells at its end."""
+    """Split a line into cells, without empty last cells."""
     separators = [";", "\t"] + [","] * (decimal == ".")
     separator = next((one for one in separators if one in line), None)
     return csv_text.words(line, separator) if separator else line.split()
 
 
 def _is_number(cell: str) -> bool:
-    """Whether a cell is a number with either decimal mark."""
+    """True if a cell is a number, with either decimal mark."""
     return cell == OUTSIDE or bool(NUMBER.fullmatch(csv_text.DECIMAL_COMMA.sub(r"\1.", cell)))
 
 

@@ -12,13 +12,13 @@ from microslip.estimate.estimate import Estimate
 from microslip.foundation.errors import InputError
 
 MAP = "map"
-"""Name of the model of a Result from a map."""
+"""Model name in a Result that comes from a map."""
 REFUSED = ("force", "drive_stiffness", "contacts", "wear_coefficient")
 """Arguments of predict that are not allowed with a map."""
 
 
 class FrictionMap:
-    """Friction from the dataset of a sweep, by its accessor, see datasets.query.
+    """Friction from the dataset of a sweep, through its accessor (see datasets.query).
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class FrictionMap:
     Raises
     ------
     InputError
-        If the dataset is not of this motion and pressure, or has a drive or several contacts.
+        If the dataset has another motion or pressure, a drive, or several contacts.
     """
 
     def __init__(self, dataset: Any, motion: str, pressure: str = "hertz"):
@@ -49,8 +49,8 @@ class FrictionMap:
     def at(
         self, velocity: Any, amplitude: Any, poisson: float | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Friction and its error bound at points; raises InputError about `nu`, and ValueError for
-        points outside the map."""
+        """Return friction and its error bound at points.  Raises InputError about `nu`, and
+        ValueError for points outside the map."""
         try:
             answer = self.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         except InputError as error:
@@ -62,10 +62,10 @@ class FrictionMap:
     def solve(
         self, velocity: float, amplitude: float | None, *, poisson: float, tolerance: float
     ) -> Result:
-        """A Result like that of microslip.solve.
+        """Return a Result, like microslip.solve.
 
-        It is not converged if the error bound is above the tolerance, or if the map does not
-        contain the point.
+        The result is not converged if the error bound is above the tolerance, or if the map does
+        not contain the point.
         """
         try:
             value, error = (float(one) for one in self.at(velocity, amplitude, poisson))

@@ -1,7 +1,7 @@
 """Predictions over ranges of quantities, such as a curve over the amplitude.
 
-A range is a text "0..2 um", with the number of values and `log` for equal ratios after commas:
-"0.1..10 mm/s, 21, log".
+A range is a text such as "0..2 um".  The number of values, and `log` for equal ratios, can follow
+after commas: "0.1..10 mm/s, 21, log".
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ ALLOWED = (
 
 
 def is_range(name: str, value: object) -> bool:
-    """True for the text of a range of a quantity."""
+    """Return True if the value of a quantity is a text with a range."""
     return name in QUANTITIES and isinstance(value, str) and DOTS in value
 
 
 def values_of(name: str, text: str) -> list[str]:
-    """The values of a range, as texts with the unit of the range.  Raises InputError."""
+    """Return the values of a range as texts with the unit of the range.  Raises InputError."""
     ends, *options = (part.strip() for part in text.split(","))
     log = "log" in options
     numbers = [option for option in options if option != "log"]
@@ -64,8 +64,19 @@ def values_of(name: str, text: str) -> list[str]:
 
 
 class Axis(NamedTuple):
-    """An axis of a grid: name of the argument, values as the user wrote them and in the SI unit,
-    and this unit."""
+    """An axis of a grid.
+
+    Attributes
+    ----------
+    name : str
+        Name of the argument.
+    texts : list
+        Values as the user wrote them.
+    values : list of float
+        Values in the SI unit.
+    unit : str
+        SI unit.
+    """
 
     name: str
     texts: list[Any]
@@ -96,11 +107,11 @@ class Grid:
 
     @property
     def combinations(self) -> list[tuple[float, ...]]:
-        """Values of the axes in SI units, for each combination."""
+        """Values of the axes in each combination, in SI units."""
         return list(product(*(axis.values for axis in self.axes.values())))
 
     def dataset(self, answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-        """The predictions over the axes, see `predict_grid`."""
+        """Return the predictions as a dataset over the axes, see `predict_grid`."""
         import xarray as xr
 
         flat = as_dataset(self.motion, self.table, answers)
@@ -123,10 +134,10 @@ class Grid:
 
 
 def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
-    """The Grid for arguments of predict, in which ranges and sequences are axes.
+    """Return the grid for arguments of predict.  Ranges and sequences become axes.
 
-    Raises InputError if a range is invalid, if there is none, or if there are too many
-    combinations.
+    Raises InputError if a range is invalid, if no argument is a range or a sequence, or if there
+    are too many combinations.
     """
     axes, shared = {}, dict(arguments)
     for name in [name for name in arguments if name in QUANTITIES]:
@@ -167,14 +178,14 @@ def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
     -------
     xarray.Dataset
         Every column of a Prediction, with units.  Each range is a dimension, in the order of the
-        arguments.  Its name is that of the argument with the SI unit: speed_m_s, load_N,
-        frequency_Hz; amplitude_si for the amplitude.  Missing values are NaN.  `error` is the error
-        message of a point without a prediction, else empty.
+        arguments.  The name of a dimension is the argument with its SI unit, such as speed_m_s,
+        load_N or frequency_Hz; for the amplitude it is amplitude_si.  Missing values are NaN.
+        `error` is the error message of a point without a prediction, and empty for other points.
 
     Raises
     ------
     InputError
-        If an argument is invalid for all points, or without any range.
+        If an argument is invalid for all points, or if there is no range.
     """
     grid = grid_of(motion, arguments)
     return grid.dataset(list(predictions(motion, grid.table, grid.shared)))
@@ -183,8 +194,8 @@ def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
 def interpolation_error(values: xr.DataArray) -> float:
     """Largest difference between a value and the linear interpolation of its neighbours.
 
-    The differences along all axes with three or more values are added.  Linear interpolation
-    between the values has an error of a quarter of it where they are smooth.
+    The largest differences along all axes with three or more values are added.  Where the values
+    are smooth, linear interpolation between them has an error of a quarter of this sum.
     """
     total = 0.0
     for name in values.dims:
@@ -196,5 +207,5 @@ def interpolation_error(values: xr.DataArray) -> float:
 
 
 def _coordinate(name: str, unit: str) -> str:
-    """Name of a coordinate: that of the column of a Prediction, or a name built likewise."""
+    """Return the name of a coordinate, in the form of the column names of a Prediction."""
     return "amplitude_si" if name == "amplitude" else "_".join([name, *re.findall(r"\w+", unit)])

@@ -1,8 +1,9 @@
 """One period of a motion from a long record, such as that of a laser vibrometer.
 
-A record contains many periods, noise, and a slow drift.  The moving mean over one period is the
-drift, since that of a periodic motion is constant.  The difference from the drift is averaged over
-all whole periods.  The scatter between the periods gives the standard error of the average.
+A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
+period, since the moving mean of a periodic motion is constant.  The difference from the drift is
+averaged over all whole periods.  The scatter between the periods gives the standard error of the
+average.
 """
 
 from __future__ import annotations
@@ -21,17 +22,18 @@ from microslip.motions.samples import FEWEST_SAMPLES, NORMAL, uneven_row
 FEWEST_PERIODS = 4
 """Smallest number of periods in a record.  Half a period is lost at each end."""
 ROWS, MOST_ROWS = 32, 10_000
-"""Default number of samples of the period, and the largest one.  More samples keep more harmonics,
-and more noise."""
+"""Default and largest number of samples in the period.  More samples keep more harmonics, and more
+noise."""
 REFINEMENTS = 3
-"""Number of corrections of the frequency.  Each one reduces its error to that of the phases."""
+"""Number of corrections of the frequency.  Each one reduces the frequency's error to that of the
+phases."""
 JITTER = 0.4
-"""Largest allowed distance of a time from equal spacing, divided by the spacing.  Exported times
-are rounded.  A missing sample shifts some times by at least half a spacing."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  Exported times
+are rounded.  In contrast, a missing sample shifts some times by at least half a spacing."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
-"""Smallest number of periods in the record in the search for the frequency."""
+"""Smallest number of periods per record in the search for the frequency."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +43,7 @@ class Fold:
     Attributes
     ----------
     frequency, frequency_error : float
-        Frequency, one over the unit of the times, and its standard error.
+        Frequency and its standard error.  The unit is one over the unit of the times.
     periods : int
         Number of averaged periods.
     columns : dict of str to np.ndarray, shape (rows,)
@@ -78,10 +80,10 @@ def fold(
     columns : mapping of array_like, shape (samples,)
         Columns forward, lateral, angle, load and indentation, in any units.
     frequency : float or None
-        Frequency to within half a period in the whole record.  It is refined.  By default, it is
-        that of the strongest component.
+        Approximate frequency, which is refined.  Over the whole record, its error must be less than
+        half a period.  The default is the frequency of the strongest component.
     rows : int
-        Number of samples of the period, an even number.  Harmonics up to the order rows / 2 - 1 are
+        Number of samples in the period, an even number.  Harmonics up to the order rows / 2 - 1 are
         kept.
 
     Returns
@@ -91,7 +93,7 @@ def fold(
     Raises
     ------
     InputError
-        If an argument is invalid, or if the record is shorter than FEWEST_PERIODS.
+        If an argument is invalid, or if the record has fewer than FEWEST_PERIODS periods.
     """
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
     step, values = _checked(time, columns)
@@ -124,7 +126,7 @@ def fold(
 
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np.ndarray]]:
-    """The time step and the columns as arrays."""
+    """Return the time step and the columns as arrays.  Raises InputError."""
     values = {}
     for name, one in {"time": time, **columns}.items():
         try:
@@ -148,7 +150,7 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np
 
 
 def _strongest(values: Mapping[str, np.ndarray]) -> float:
-    """Number of periods in the record of the strongest component, from its spectrum."""
+    """Return how many periods of the strongest component the record contains, from its spectrum."""
     power = 0.0
     for one in values.values():
         x = np.linspace(-1.0, 1.0, len(one))
@@ -191,8 +193,10 @@ def _harmonics(spline: Any, frequency: float, longest: float, step: float, rows:
 
 
 def _correction(harmonics: Mapping[str, np.ndarray]) -> tuple[float, float]:
-    """Relative correction of the frequency and its standard error, from the phases of the
-    strongest harmonic."""
+    """Return the relative correction of the frequency, and the standard error of the correction.
+
+    Both follow from the phases of the strongest harmonic.
+    """
     powers = {name: np.mean(np.abs(one) ** 2, axis=0) for name, one in harmonics.items()}
     shares = {name: one / (one.sum() or 1.0) for name, one in powers.items()}
     name = max(shares, key=lambda one: shares[one].max())

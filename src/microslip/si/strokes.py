@@ -38,7 +38,7 @@ class Stroke:
     name : str
         Name of the motion, with a digest of the file.
     columns : dict of str to np.ndarray, shape (rows,)
-        Columns of UNITS.  Displacements are relative to their mean over the period.
+        Columns with names from UNITS.  Displacements are relative to their mean over the period.
     frequency : float or None
         Frequency from the column `time`, Hz.
     """
@@ -53,25 +53,26 @@ class Stroke:
         return float(self.columns["load"].mean()) if "load" in self.columns else None
 
     def deviations(self, contact: TwoBodies) -> dict[str, np.ndarray]:
-        """Columns in the units of `microslip.Sampled`.  A load or an indentation is minus 1."""
+        """Return the columns in the units of `microslip.Sampled`, with 1 subtracted from load and
+        indentation."""
         units = scales(contact, self.columns)
         over = {name: values / units[name] for name, values in self.columns.items()}
         return {name: one - 1.0 if name in NORMAL else one for name, one in over.items()}
 
     def sampled(self, contact: TwoBodies, size: float) -> Sampled:
-        """The motion for microslip.solve, with deviations divided by `size`."""
+        """Return the motion for microslip.solve, with deviations divided by `size`."""
         over = {name: one / size for name, one in self.deviations(contact).items()}
         return Sampled.of_columns({n: one + 1.0 if n in NORMAL else one for n, one in over.items()})
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Largest displacement along the surface from the mean, m, and largest rotation, rad."""
+        """Largest tangential displacement from the mean, m, and largest rotation, rad."""
         forward, lateral, angle = self._plane
         return float(np.hypot(forward, lateral).max()), float(np.abs(angle).max())
 
     @property
     def pace(self) -> tuple[float, float]:
-        """Largest speed along the surface, m, and of the rotation, rad, divided by the angular
+        """Largest tangential speed, m, and largest angular speed, rad, both divided by the angular
         frequency."""
         order = 1j * np.arange(self._plane.shape[1] // 2 + 1)
         rates = np.fft.irfft(order * np.fft.rfft(self._plane), self._plane.shape[1])
@@ -85,7 +86,8 @@ class Stroke:
 
 
 def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, float]:
-    """Units of the columns of `microslip.response` and `microslip.Sampled`, in SI units."""
+    """Return the unit of each column in `microslip.response` and `microslip.Sampled`, in SI
+    units."""
     if "indentation" in columns and not math.isfinite(contact.indentation):
         allowed = "allowed is a load: the indentation under this pressure is not known"
         raise InputError("indentation", None, allowed)
@@ -99,7 +101,8 @@ def scales(contact: TwoBodies, columns: dict[str, np.ndarray]) -> dict[str, floa
 
 
 def _factors(table: NumberTable) -> dict[str, float]:
-    """Units of the columns, in SI units.  Raises ValueError for a missing or wrong unit."""
+    """Return the unit of each column, in SI units.  Raises ValueError for a missing or wrong
+    unit."""
     factors = {}
     for name, unit in table.units.items():
         si = UNITS.get(name, "s")
@@ -125,7 +128,7 @@ def _of_content(file: NamedFile, content: bytes) -> Stroke:
 
 
 EXAMPLES = {"m": "um", "rad": "mrad", "N": "N", "s": "ms"}
-"""An example of a unit of a column for each SI unit."""
+"""Example of a column's unit for each SI unit."""
 
 read_stroke = FileReader("motion", _of_content)
 """Function that returns the Stroke of a name such as "file:stroke.csv"."""
@@ -134,7 +137,7 @@ read_stroke = FileReader("motion", _of_content)
 def read_record(
     path: str, *, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
-    """Times, s, columns and units of a record for `microslip.fold`.
+    """Read a record for `microslip.fold`.  Returns the times in s, the columns, and their units.
 
     The columns are in the units of the file.
 

@@ -26,11 +26,10 @@ import numpy as np
 from microslip.theory.indenter_pressure import IndenterPressure
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
-"""Contact radii in the table from which the intervals are interpolated."""
+"""Contact radii in the table that is interpolated for the ends of the intervals."""
 LOOP_ERRORS = 3.0
-"""Largest error on loops, divided by the largest error on the first loading.  A branch of a loop is
-F(u_max) - 2 F(x) + 2 F(y), and each F has an error between 0 and the largest error on the first
-loading."""
+"""Largest error on loops, divided by the largest error e on the first loading.  A branch of a loop
+is F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to e."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +92,10 @@ class Iwan:
         return np.array(out)
 
     def scaled(self, force: float, displacement: float) -> Iwan:
-        """Return a copy in other units; force, displacement: the present units of force and
-        displacement, expressed in the new units."""
+        """Return a copy in other units.
+
+        force, displacement: the present units of force and displacement, in the new units.
+        """
         return Iwan(
             self.stiffness * (force / displacement),
             self.limit_force * force,
@@ -108,7 +109,7 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
 
     The intervals have nearly equal errors: an interval with the stiffness k and the width w of slip
     displacements has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end of
-    a punch is an interval of its own.
+    a punch is a separate interval.
     """
     parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
     measure = np.concatenate([[0.0], np.cumsum(parts)])
@@ -127,10 +128,10 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
 
 
 def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
-    """Iwan model at nu = 0 with about the smallest number of elements whose `error` is at most the
-    tolerance."""
+    """Iwan model at nu = 0 whose `error` is at most the tolerance, with nearly the fewest
+    elements."""
     model = with_elements(pressure, 1)
-    while model.error > tolerance:  # the error is proportional to the number of elements, power -2
+    while model.error > tolerance:  # the error is proportional to count^-2
         count = len(model.stiffness)
         model = with_elements(
             pressure, max(count + 1, int(count * np.sqrt(model.error / tolerance)))
