@@ -195,7 +195,7 @@ OPTIONS = [
     (
         "predict elliptic:forward_cycles=2,phase=0 --propulsion --forward-amplitude '0.4 um'",
         "--forward-amplitude = '0.4 um'",
-        "numbers behind the name of the motion",
+        "numbers after the name of the motion",
     ),
     ("fit transverse a-file --map m.csv", "--map = 'm.csv'", "a path that ends in .nc"),
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),

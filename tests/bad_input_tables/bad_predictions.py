@@ -154,7 +154,7 @@ SELF_PROPELLED = "elliptic:forward_cycles=2,phase=0"
 PROPELLED = {"motion": SELF_PROPELLED, "speed": None}
 PROPULSIONS = [
     (PROPELLED | {"motion": "transverse"}, "MOTION = 'transverse': allowed is a self-propelled"),
-    (PROPELLED | {"speed": "1 mm/s"}, "--speed = '1 mm/s': allowed is none with --propulsion"),
+    (PROPELLED | {"speed": "1 mm/s"}, "--speed = '1 mm/s': not allowed with --propulsion"),
     (PROPELLED | {"amplitude": None}, "--amplitude: needed"),
     (PROPELLED | {"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),

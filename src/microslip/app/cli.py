@@ -45,7 +45,7 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
         "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
         f"takes units.  {BORE}",
         epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the output cannot be written, "
-        "130 interrupted, 141 broken pipe.  sweep has those of Snakemake.",
+        "130 interrupted, 141 broken pipe.  sweep returns Snakemake's code.",
     )
     parser.add_argument("--version", action="version", version=f"microslip {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -54,8 +54,8 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force divided by mu F_z at one point, with an error "
-        "estimate.  mu_macro is a ratio: 1 without an effect of the vibration, 0 without "
-        "friction.  The apparent coefficient of friction is mu_apparent = mu mu_macro.  "
+        "estimate.  mu_macro is a ratio: 1 if the vibration has no effect, 0 if no friction "
+        "remains.  The apparent coefficient of friction is mu_apparent = mu mu_macro.  "
         f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
@@ -100,8 +100,8 @@ def _add_motions(parser: argparse.ArgumentParser) -> None:
         motion.add_argument(
             "--velocity",
             metavar="V",
-            help=f"{record.velocity_label}; 0: v -> 0; below 0 if self-propelled; omit it with "
-            "--force",
+            help=f"{record.velocity_label}; 0 means v -> 0; below 0 only if self-propelled; omit "
+            "it with --force",
         )
         if record.periodic:
             motion.add_argument(
@@ -111,9 +111,9 @@ def _add_motions(parser: argparse.ArgumentParser) -> None:
 
 
 FILE = (
-    "  The path of a CSV file follows the name after a colon, as in file:stroke.csv.  Its columns "
-    "are some of forward, lateral, angle, and load or indentation.  Its lines are equally spaced "
-    "in time, from the first point of a period to the one before its end."
+    "  The path of a CSV file follows the name after a colon, as in file:stroke.csv.  The file has "
+    "one or more of the columns forward, lateral, angle, and load or indentation.  Its rows are "
+    "equally spaced in time and cover one period, without the end point."
 )
 """Help text about motion files."""
 F_Z = "; F_z is the load without oscillation (the reference load)"
@@ -125,17 +125,18 @@ OPTIONS = {
     ),
     "stiffness": (
         "K",
-        f"of a spring whose far end has the velocity, divided by mu F_z / u_lim{F_Z}",
+        f"stiffness of a spring whose far end has the velocity, divided by mu F_z / u_lim{F_Z}",
     ),
     "mass": (
         "M",
-        f"of the body on the spring or force, divided by mu F_z / (u_lim omega^2){F_Z} (0)",
+        f"mass of a body on a spring or under a force, divided by mu F_z / (u_lim omega^2){F_Z} "
+        "(0)",
     ),
-    "damping": ("C", f"of a dashpot beside the spring, divided by mu F_z / (u_lim omega){F_Z} (0)"),
+    "damping": ("C", f"damping parallel to the spring, divided by mu F_z / (u_lim omega){F_Z} (0)"),
     "contacts": (
         "TEXT",
-        "several contacts of one body, such as 'phase=0;phase=180': for each, load (1, relative to "
-        "the others), phase in degrees (0) and amplitude (1, divided by A)",
+        "several contacts of one body, such as 'phase=0;phase=180'.  Each contact has a load "
+        "relative to the others (1), a phase in degrees (0) and an amplitude divided by A (1)",
     ),
     "pressure": (
         "NAME",
@@ -151,14 +152,14 @@ OPTIONS = {
     ),
     "tolerance": (
         "T",
-        "largest accepted error of mu_macro, absolute, or of the velocity under a force, relative "
-        "above 1 (1e-3); none: accept any error of imposed cells and steps",
+        "largest accepted absolute error of mu_macro, or under a force of the velocity, relative "
+        "above 1 (1e-3); none: accept any error, with imposed cells and steps",
     ),
-    "cells": ("N", "impose N rings, or N x N squares (even, from 4 on)"),
-    "steps": ("N", "impose N steps a period (even)"),
+    "cells": ("N", "impose N rings, or N x N squares (even, at least 4)"),
+    "steps": ("N", "impose N steps per period (even)"),
     "time-limit": (
         "SECONDS",
-        "stop after this time, checked between two marches; the result is then not stored",
+        "stop after this time, checked between two runs; the result is then not stored",
     ),
     "method": (
         "NAME",

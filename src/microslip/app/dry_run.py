@@ -60,7 +60,9 @@ def summary(
         lines.append("To solve: the points of certified maps. Their number depends on the results.")
     if compiles:
         time = _words(COMPILE / min(cores, 2))
-        lines.append(f"Compiling the solver comes first: about {time}, unless it was compiled.")
+        lines.append(
+            f"Compiling the solver comes first: about {time}, unless it is already compiled."
+        )
     return lines
 
 

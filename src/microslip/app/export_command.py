@@ -33,8 +33,8 @@ IWAN_OPTIONS = {
     "elements": ("N", "number of elements"),
     "tolerance": (
         "T",
-        "in place of --elements: largest error due to their number, divided by mu times the load "
-        "(1e-3)",
+        "in place of --elements: largest error due to the finite number of elements, divided by mu "
+        "times the load (1e-3)",
     ),
     "output": ("FILE", "write a .csv file"),
 }

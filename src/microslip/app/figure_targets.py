@@ -13,7 +13,7 @@ TARGETS = {
     "all": "the datasets and figures of the configuration's sweeps (default)",
     "extended": "datasets and figures of other motions and pressures (key extended)",
     "drives": "datasets and figures of contacts driven by a force or a spring (key drives)",
-    "certified": "maps with an error estimate everywhere, of the sweeps with the key adaptive",
+    "certified": "maps with an error estimate everywhere, for sweeps with the key adaptive",
     "accuracy": "accuracy and cost of all models and methods",
     "stability": "conditions under which methods fail",
     "claims": "check of the statements of the paper",
@@ -52,7 +52,10 @@ CONDITIONS: dict[str, tuple[Callable[..., bool], str]] = {
         _have_few_poissons,
         f"several velocities and amplitudes, and 2 to {drawing.MOST_POISSONS} Poisson's ratios",
     ),
-    "drives": (_share_a_point, "one amplitude, and for the last one velocity, of the first"),
+    "drives": (
+        _share_a_point,
+        "in all others one amplitude, and in the last one velocity, both from the first",
+    ),
     "pairs": (_have_one_amplitude, "equal amplitudes"),
 }
 """Condition on a figure's sweeps, and a description of this condition for messages."""

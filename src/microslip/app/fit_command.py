@@ -48,13 +48,13 @@ def fill(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "The coefficient of friction without vibration, and the displacement u_lim at "
         "which the whole contact slides, or the shear modulus, from friction measured "
-        "under vibration.  A row of the CSV file is a measurement.  Its heading names columns with "
-        "their units: some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; friction "
-        "[N] or mu; friction_error [N] or mu_error."
+        "under vibration.  Each row of the CSV file is a measurement.  The heading names the "
+        "columns and their units: friction [N] or mu; some of speed [mm/s], amplitude [um], "
+        "frequency [kHz], load [N]; and friction_error [N] or mu_error."
     )
     parser.epilog = (
-        "Exit codes: 0 both numbers determined, 1 mu alone, or unreadable lines were left out, "
-        "2 bad input, or rows that determine neither number."
+        "Exit codes: 0 both numbers determined; 1 only mu determined, or unreadable lines left "
+        "out; 2 bad input, or neither number determined."
     )
     motions = ", ".join(UNIT_OF_AMPLITUDE)
     parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")

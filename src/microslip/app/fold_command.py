@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from microslip.si.record import Fold
 
 OPTIONS = {
-    "output": ("FILE", "the CSV file of the period, for file:FILE as a motion"),
+    "output": ("FILE", "CSV file for the period, which is then the motion file:FILE"),
     "frequency": (
         "F",
-        "frequency of the motion, such as '200 Hz', which is refined (that of the strongest "
-        "component)",
+        "approximate frequency of the motion, such as '200 Hz', to be refined (that of the "
+        "strongest component)",
     ),
     "rows": (
         "N",
@@ -46,8 +46,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "One period of a motion from a record of many periods, such as that of a laser vibrometer. "
         "The slow drift is removed, and the periods are averaged.  The scatter between the periods "
-        "gives the standard error.  The columns of the record are time and some of forward, "
-        "lateral, angle, and load or indentation, each with its unit, as in time [s],lateral [um]."
+        "gives the standard error.  The columns of the record are time and one or more of "
+        "forward, lateral, angle, and load or indentation, each with its unit, as in "
+        "time [s],lateral [um]."
     )
     parser.add_argument("record", metavar="CSV", help="the record")
     add_options(parser, OPTIONS, required=("output",))

@@ -143,7 +143,7 @@ def _folder(configurations: list[Configuration]) -> Path:
     folders = {os.path.realpath(each.results): Path(each.results) for each in configurations}
     if len(folders) > 1:
         names = ", ".join(sorted(map(str, folders.values())))
-        raise ConfigError(f"results: {names} are several folders; allowed: configurations of one")
+        raise ConfigError(f"results: {names} are several folders; allowed: the same folder in all")
     return next(iter(folders.values()))
 
 
@@ -160,8 +160,8 @@ def _parser() -> OneLineParser:
         nargs="+",
         action="extend",  # a repeated option adds files, so that no results are lost
         metavar="FILE",
-        help="configurations whose results stay (config/config.yaml)",
+        help="configurations whose results are kept (config/config.yaml)",
     )
     parser.add_argument("--list", action="store_true", help="list every file")
-    parser.add_argument("--delete", action="store_true", help="remove them")
+    parser.add_argument("--delete", action="store_true", help="remove the listed files")
     return parser

@@ -49,8 +49,8 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "load": ("F", "normal load, such as '10 N'"),
         "contacts": (
             "TEXT",
-            "the contacts of one body, such as 'phase=0;phase=180'.  The load and the drive are "
-            "those of the body; load=... sets the fraction of each contact",
+            "the contacts of one body, such as 'phase=0;phase=180'.  The load and the drive act "
+            "on the body; load=... sets the fraction of each contact",
         ),
     },
     "motion": {
@@ -76,13 +76,13 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "force": ("P", "in place of the speed: a constant forward force, such as '1 N'"),
         "drive-stiffness": ("K", "stiffness of a spring between drive and body, such as '10 N/um'"),
         "mass": ("M", "mass of a body on a spring or under a force, such as '20 g'"),
-        "damping": ("C", "damping of a dashpot beside the spring, such as '5 N*s/m'"),
+        "damping": ("C", "damping of a dashpot parallel to the spring, such as '5 N*s/m'"),
     },
     "output": {
         "tolerance": (
             "T",
-            "largest accepted error: absolute, of the ratio mu_macro (1e-3; 1e-2 with "
-            "--propulsion); with --force relative, of the speed (1e-2)",
+            "largest accepted absolute error of mu_macro (1e-3; 1e-2 with --propulsion); with "
+            "--force, largest accepted relative error of the speed (1e-2)",
         ),
         "points": ("N", "with --propulsion: number of points on the line, both ends included (9)"),
         "map": (
@@ -138,7 +138,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "--table",
         metavar="CSV",
         help="predict one contact for each line of a file.  Its heading names options, as in "
-        "load [N],speed [mm/s],material; the other options hold for all lines",
+        "load [N],speed [mm/s],material; options on the command line apply to all lines",
     )
     group.add_argument(
         "--output",

@@ -15,13 +15,11 @@ REFUSED = dict.fromkeys(
     "the motion propels the body by itself",
 )
 REFUSED["rotation"] = "a self-propelled motion has no steady spin"
-REFUSED |= dict.fromkeys(
-    ("radius_across", "contact_radius", "pressure"), "the contact is that of a sphere"
-)
+REFUSED |= dict.fromkeys(("radius_across", "contact_radius", "pressure"), "the body is a sphere")
 REFUSED["map"] = "a map contains the friction at a speed"
 REFUSED |= dict.fromkeys(
     ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
-    "numbers behind the name of the motion set the components and their phases",
+    "numbers after the name of the motion set the components and their phases",
 )
 """Options of predict that --propulsion does not accept, and the reasons."""
 
@@ -35,7 +33,7 @@ def line_of(motion: str, options: dict) -> RealPropulsionLine:
 
     for name, reason in REFUSED.items():
         if name in options:
-            raise InputError(name, options[name], f"allowed is none with --propulsion: {reason}")
+            raise InputError(name, options[name], f"not allowed with --propulsion: {reason}")
     if "points" in options:
         options = options | {"points": read("points", options["points"], whole=True)}
     missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))

@@ -19,7 +19,7 @@ OPTIONS = {
     "model": ("NAME", "auto, rigid, radial, polar or cartesian (auto)"),
     "tolerance": ("T", "largest accepted error of a force, absolute (1e-3)"),
     "points": ("N", "number of points on the line, both ends included (9)"),
-    "time-limit": ("SECONDS", "time limit of the computation, checked between two marches"),
+    "time-limit": ("SECONDS", "time limit of the computation, checked between two runs"),
 }
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")
@@ -37,8 +37,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Some motions propel a body by themselves: a loop that is not symmetric under a shift by "
         "half a period, or a normal load that is larger on the way back.  The answer is the line "
         "from the stall force, which stops the body, to the no-load velocity.  Forces are divided "
-        "by mu times the mean normal load, powers by that force, u_lim and omega.  A heavy "
-        "body moves at a constant velocity; a negative one is backward."
+        "by mu times the mean normal load, powers by that force times u_lim omega.  The body "
+        "is heavy, so it moves at a constant velocity; a negative velocity is backward."
     )
     parser.add_argument(
         "motion",

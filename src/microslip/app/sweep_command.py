@@ -43,14 +43,14 @@ the paper are transverse, bore (spin: rotation about the contact normal) and con
     fig1 ... fig6   one figure of the paper with its datasets; other figures by their names, such as
                     stability_atlas
   --configfile FILE  the configuration; default: config/config.yaml if it exists, else the sweeps of
-                     the paper. All names after it are files, so targets come before it
+                     the paper. Put targets before it: all names after it are files
   --cores N          number of jobs at the same time, at least 1; default: all cores
   --dry-run          list the jobs without running them
   --report FILE      after a run: one page (.html or .zip) of figures, captions and provenance
   -h, --help         show this
 
 All other options are those of Snakemake, see snakemake --help. The exit code is that of Snakemake,
-and 2 for bad input. The defaults are in profiles/default, here or in the package.
+and 2 for bad input. Default options are in profiles/default, here or in the package.
 
   microslip sweep --cores 2
   microslip sweep --cores 2 --configfile mine.yaml --config points_per_job=10
