@@ -28,7 +28,7 @@ BATCH = re.compile(r"[0-9a-f]{20}\.jsonl")
 DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 PLACES = {".": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
-"""Folders that hold the files of a product, by the folder of its stamp."""
+"""Folders of a product's files, by the folder of the product's stamp."""
 
 
 def requested(plan: Plan, folder: Path) -> set[str]:

@@ -18,7 +18,7 @@ OWN_EQUATIONS = (
 )
 
 DIGITS = 6
-"""Significant digits of a number without an error."""
+"""Number of significant digits if there is no error estimate."""
 
 
 def as_text(result: Result) -> str:
