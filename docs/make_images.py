@@ -3,7 +3,7 @@
     python docs/make_images.py results [NAME ...]
 
 NAME: names of figures, without .png. By default all images that have a figure in the folder.
-A palette of 256 colours makes a file a quarter as large.
+A palette of 128 colours makes a file a quarter as large.
 """
 
 import sys
@@ -25,7 +25,7 @@ def main(results, *names):
                 size = [round(SCALE * side) for side in figure.size]
                 image = figure.convert("RGB").resize(size, Image.Resampling.LANCZOS)
             # An octree keeps rare colours, such as those of lines.
-            image = image.quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+            image = image.quantize(128, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
             image.save(IMAGES / path.name, optimize=True)
             print(f"{path.name}: {(IMAGES / path.name).stat().st_size / 1e3:.0f} kB")
         elif names:

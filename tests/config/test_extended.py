@@ -220,7 +220,7 @@ def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monke
     }
     result = load.from_mapping(mapping, folders=[tmp_path])
     name = motion_named(f"file:{tmp_path / 'stroke.csv'}").name
-    requests = [*sweep.PointRequests(result.extended["stroke"])]
+    requests = sweep.points_of(result.extended["stroke"]).requests
     assert {request["motion"] for request in requests} == {name}
     assert result.propulsion.motions["stroke"].motion == name
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])

@@ -302,6 +302,6 @@ def test_without_a_map_there_is_nothing_to_explore(tmp_path):
     assert (
         process.stderr.strip()
         .split("\n")[-1]
-        .startswith("Error in tiny.yaml: sweeps: the explorer")
+        .startswith("Error in tiny.yaml: sweeps: no map for the explorer")
     )
     assert "Traceback" not in process.stderr

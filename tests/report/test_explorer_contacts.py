@@ -129,7 +129,7 @@ def predicted(monkeypatch):
             else:
                 pair, reason = (float(answer.mu_macro), float(answer.mu_macro_error)), ""
             answer = dict(zip(("mu_macro", "mu_macro_error"), pair, strict=True))
-            rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
+            rest = {"amplitude": amplitude, "model": "other", "converged": False, "reason": reason}
             friction = Estimate(pair[0], {"model": pair[1]})
             return SimpleNamespace(**answer, friction=friction, **rest)
 

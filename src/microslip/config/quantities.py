@@ -43,7 +43,7 @@ class Quantity:
 
 MU_MACRO = Quantity(
     *("mu_macro", "friction ratio", "", "mu~macro", r"\tilde{\mu}_\mathrm{macro}"),
-    "mean forward friction force divided by mu F_z",
+    "mean forward force divided by mu F_z",
 )
 FORCE_FORWARD = Quantity(
     "force_forward", "forward force", "", "F_forward/(mu F_z)", r"F_\mathrm{forward}/(\mu F_z)"
