@@ -371,7 +371,7 @@ def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
     assert [" ".join(text.split()) for text in message] == [
         "forward velocity, v0 / (omega u_lim) [1]",
         "amplitude, y0 / u_lim [1]",
-        "mean forward friction force divided by mu F_z [1]",
+        "mean forward force divided by mu F_z [1]",
     ]
 
 

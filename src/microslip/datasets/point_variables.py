@@ -46,7 +46,7 @@ VELOCITY_VARIABLES = {
     "velocity_error": (float, "estimated error of velocity"),
 }
 """Additional variables of a sweep over forces, in which mu_macro equals the force."""
-TORQUE = "torque divided by its value at velocity 0"
+TORQUE = "torque relative to that at velocity 0"
 TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
     "mu_torque_error": (float, "estimated error of mu_torque"),
