@@ -258,7 +258,7 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
     Parameters
     ----------
     plain : TwoBodies
-        The bodies and the load.  Its radius is ignored.
+        The bodies and the load.  The radius is ignored.
     size : float
         Half the longer side of the contact, m.
     pressure : str

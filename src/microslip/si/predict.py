@@ -139,7 +139,7 @@ def predict(
     reduction : quantity, optional
         Requested reduction of friction, 0 to 1 or in per cent.  It replaces the amplitude, the
         speed or the load.  The answer is the smallest amplitude, the largest speed or the largest
-        load that gives this reduction.  It is not allowed with a force or a spring.
+        load that gives this reduction.  A reduction is not allowed with a force or a spring.
     drive_stiffness, mass, damping : quantity, optional
         Stiffness of a spring between the drive and the body, N/m; mass of the body, kg; damping of
         a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.

@@ -23,7 +23,7 @@ PREFIXES = (
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
 """Smallest printed value of u_lim; it determines the unit of all lengths in an answer.  The contact
-radius is some hundred times larger, so that its value is between 1 and a few thousand."""
+radius is a few hundred times larger, so its value is between 1 and a few thousand."""
 LEAST_SPEED = 0.1
 """Smallest printed value of the largest speed; it determines the unit of all speeds in an
 answer."""

@@ -1,7 +1,7 @@
 """A body on several contacts in SI units.
 
 All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The
-drive of the body is divided by the number of contacts.  Forces are multiplied by this number.
+body's drive is divided by the number of contacts.  Computed forces are multiplied by this number.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Carriers:
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and their text in a dict by argument.  Raises InputError.
+    """The Carriers, and a dict with the text of the argument `contacts`.  Raises InputError.
 
     alone: values of arguments that are allowed only for a single contact.
     """
