@@ -107,8 +107,8 @@ def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list
 
 
 def _begin(names: list[str]) -> None:
-    """Prepare a worker process: read files of motions and pressures, and end when the parent
-    process ends."""
+    """Prepare a worker process: store the paths of motion and pressure files, and make the process
+    end with its parent."""
     named_files.remember(names)
     Thread(target=_end_with_parent, daemon=True).start()
 

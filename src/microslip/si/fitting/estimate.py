@@ -169,7 +169,7 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
     last = best.theta
 
     def excess(value: float) -> float:
-        """Least sum of squares at a fixed value of the unknown, minus its value at the end of the
+        """Least sum of squares at a fixed value of the unknown, minus the largest sum inside the
         interval."""
         nonlocal last
         start = np.where(np.arange(2) == which, value, last)
