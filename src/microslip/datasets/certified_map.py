@@ -4,7 +4,7 @@
 
 A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
 interpolated by the polynomial through its points: 5 along the velocity and 5 along the amplitude.
-If Poisson's ratio is a direction of the map, there are 3 points along it. cell_error is an error
+If Poisson's ratio is a direction of the map, there are 3 points along it.  cell_error is an error
 bound for the cell.  A map of drift depends on force and amplitude, in the coordinates of
 sweeps.drift_coordinates, and its cells interpolate asinh(velocity).  Equal records give equal
 bytes.

@@ -219,7 +219,7 @@ class RealDrive:
     force : float or None
         Prescribed constant force, N.
     stiffness : float or None
-        Stiffness of a spring, N/m.  The far end of the spring moves at the speed of the motion.
+        Stiffness of a spring, N/m.  The far end of the spring moves at the forward speed.
     mass, damping : float or None
         Mass of the body, kg, and damping of a dashpot parallel to the spring, N s/m.
     """

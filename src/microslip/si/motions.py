@@ -32,7 +32,7 @@ PARTS = {
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""For each of these amplitudes: its name in a motion text for the solver, and its SI unit."""
+"""For each of these amplitudes: the name in a motion text for the solver, and the SI unit."""
 TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
 """Allowed arguments of the motions with several oscillations."""

@@ -3,8 +3,7 @@
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
 sequence, so that equal requests have equal draws.  Forces and amplitudes are tabulated as functions
 of one input at a time.  The changes in their logarithms are then added, which is exact for power
-laws such as those of Hertz's theory.  The static limit is solved at a few amplitudes and
-interpolated.
+laws, as in Hertz's theory.  The static limit is solved at a few amplitudes and interpolated.
 
 A draw outside the physical range is replaced by the closest physical value.  For example, a
 negative load becomes 0, and a Poisson's ratio above 0.5 becomes 0.5.

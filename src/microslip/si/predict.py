@@ -46,8 +46,8 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are NaN if the search has no solution, keyed by the unknown of the
-search."""
+"""Fields of a Prediction that are NaN if the search has no solution, keyed by the quantity that is
+searched."""
 
 
 def predict(
@@ -89,16 +89,16 @@ def predict(
     """Friction of a vibrated contact of two bodies, in SI units.
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the SI
-    unit.  A text can have a standard uncertainty, "10 N +- 5 %", except for the phase, densities,
-    hardnesses and the reduction.  Any other text raises InputError.
+    unit.  A text can include a standard uncertainty ("10 N +- 5 %"), except for the phase,
+    densities, hardnesses and the reduction.  Any other text raises InputError.
 
     Parameters
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere oscillates about the contact
-        normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal",
-        "file:FILE" with one period of samples with units, or another translation or rotation of
-        `microslip.solve`.
+        normal), "continuous-bore" (the sphere spins steadily), "elliptic", "transverse-bore",
+        "normal", "file:FILE" with one period of samples with units, or another translation or
+        rotation of `microslip.solve`.
     radius, load, mu : quantity
         Radius of the sphere, m; normal load, N; coefficient of friction without vibration.  For a
         file with a column `load`, the default load is the mean of this column.
@@ -106,7 +106,7 @@ def predict(
         Forward speed of sliding, m/s.  With a spring, it is the speed of the far end of the
         spring.
     force : quantity
-        Constant forward force, N.  It replaces the speed, which is then the answer.
+        Constant forward force, N.  It replaces the speed, which is then computed.
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
@@ -115,9 +115,10 @@ def predict(
         Second body: "rigid" (default), a material, or E and nu as in "70 GPa, 0.22" or (70e9,
         0.22).
     counter_radius : quantity, optional
-        Radius of the counterbody, m, negative if it is hollow.  By default, it is flat.
+        Radius of the counterbody, m, negative if it is hollow.  By default, the counterbody is
+        flat.
     radius_across : quantity, optional
-        Radius of curvature across the forward direction, m.  With it, the contact is an ellipse.
+        Radius of curvature across the forward direction, m.  The contact is then an ellipse.
     contact_radius, pressure : quantity, str, optional
         `contact_radius` is half the longer side of the contact, m; it replaces all radii.
         `pressure` is a pressure of microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".
@@ -147,8 +148,8 @@ def predict(
         Several contacts of equal shape under one body, as for microslip.solve: "phase=0;phase=180".
         The argument `load` is the total load.  It is divided in proportion to the `load` of each
         contact.  force, drive_stiffness, mass and damping apply to the body.  Amplitudes apply to a
-        contact whose `amplitude` is 1.  Results for one contact are those of a contact with the
-        mean load.  Warnings are those of the contact with the largest load.
+        contact whose `amplitude` is 1.  Results for one contact refer to a contact with the mean
+        load.  Warnings refer to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or a
         text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  Hardnesses and densities are
@@ -177,8 +178,8 @@ def predict(
     Raises
     ------
     InputError
-        If an input is missing, ambiguous or out of range, if the contact radius is above half the
-        radius of a body, or if no solution has the requested reduction.  InputError is a
+        If an input is missing, ambiguous or out of range.  Also if the contact radius exceeds half
+        the radius of a body, or if no solution has the requested reduction.  InputError is a
         ValueError.  The message names the argument, its value and the allowed values.
     """
     arguments = dict(locals())  # before any other local variable

@@ -37,7 +37,7 @@ _NAMES = """
     probability_runs_away probability_error
 """
 COLUMNS = tuple(_NAMES.split())
-"""Names of the columns of JSON and of tables, in order."""
+"""Names of the columns in JSON output and in tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "wear", "uncertainty")
@@ -144,7 +144,7 @@ class Wear:
     wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float
         Worn volume, m^3: the wear coefficient times the dissipated energy, divided by mu.
     wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float
-        Mean depth over the contact area, m.
+        Mean worn depth over the contact area, m.
     """
 
     wear_volume_per_cycle_m3: float
@@ -168,8 +168,8 @@ class Prediction:
         The motion, and the pressure as in microslip.solve.
     contacts : str or None
         The contacts of the body as in microslip.solve; None for a single contact.  For several
-        contacts, forces and powers belong to the body, and sizes and dimensionless groups belong to
-        a contact with the mean load.
+        contacts, forces and powers refer to the body.  Sizes and dimensionless groups refer to a
+        contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Contact radius and indentation, m, and largest pressure, Pa.
     u_lim_m : float
@@ -190,7 +190,7 @@ class Prediction:
         Coefficient of friction with vibration, mu times mu_macro; dimensionless.
     friction_force_N, friction_force_error_N, friction_force_still_N : float
         Mean forward force with vibration, its error estimate, and the force without vibration, N.
-        Both forces belong to the same mean load.
+        Both forces are for the same mean load.
     force_reduction : float
         1 - mu_macro, dimensionless; its error estimate is mu_macro_error.
     force_threshold_N, force_threshold_error_N : float or None

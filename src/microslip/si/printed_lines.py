@@ -42,7 +42,7 @@ EXCLUDED = 1e-3
 
 
 def line(title: str, text: str) -> str:
-    """A line with its title."""
+    """Format a line with its title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 
@@ -111,7 +111,7 @@ def not_converged(prediction: Any) -> list[str]:
 
 
 def runs_away(prediction: Any) -> str:
-    """Sentence about a contact that accelerates without limit."""
+    """A sentence about a contact that accelerates without limit."""
     if prediction.force < 1.0:
         return f"it {prediction.reason}"
     unit = force_unit(prediction.friction_force_still_N)

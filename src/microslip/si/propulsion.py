@@ -21,7 +21,7 @@ from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
-"""Default tolerance of a force divided by mu times the mean load."""
+"""Default tolerance of a force, relative to mu times the mean load."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,13 +130,13 @@ def predict_propulsion(
     Parameters
     ----------
     motion : str
-        A self-propelled motion, as for `microslip.propulsion`, without a rotation.
+        A self-propelled motion of `microslip.propulsion` without a rotation.
     amplitude : quantity
         Half stroke, m, of a component whose number in `motion` is 1.  For an oscillating normal
         load, `load` is the load without oscillation.  The load's amplitude is its number in
         `motion`, times `load`, times the amplitude divided by u_lim.
     tolerance : quantity
-        Largest accepted error of a force divided by mu times the mean load.
+        Largest accepted error of a force, relative to mu times the mean load.
     points : int
         Number of points on the line, including both ends.
 

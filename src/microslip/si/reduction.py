@@ -24,7 +24,8 @@ unknown."""
 
 
 class NotAttainedError(InputError):
-    """The requested reduction is outside the range of the search.  Only a solve can show this."""
+    """The requested reduction is outside the range of the search.  This can be detected only by a
+    solve."""
 
 
 class _NoAnswerError(Exception):
@@ -44,8 +45,8 @@ class _Line:
     size : callable
         Function size(place) -> quantity at this place, in its SI unit.
     every, none : str
-        Subjects of two error messages: `every` if the reduction is already too large at `low`, and
-        `none` if it is too small at all places.
+        Subjects of two error messages.  `every` is used if the reduction is already too large at
+        `low`, and `none` if the reduction is too small at all places.
     end : float or None
         Place with the least friction; None if this place is unknown.
     rate : float

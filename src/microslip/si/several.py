@@ -28,8 +28,8 @@ class Carriers:
     count : int
         Number of contacts.
     heaviest, widest : float
-        Largest load of a contact divided by the mean load, and largest amplitude of a contact
-        divided by the amplitude of the body.
+        Largest load of any contact divided by the mean load, and largest amplitude of any contact
+        divided by the body's amplitude.
     """
 
     text: str | None = None

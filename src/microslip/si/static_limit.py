@@ -36,7 +36,7 @@ def tolerance_of(request: Request, tolerance: float) -> float:
 
 
 def equals_static_limit(request: Request) -> bool | float | None:
-    """Whether the force threshold equals the static limit, or else the value of the threshold.
+    """Return True if the force threshold equals the static limit, else the value of the threshold.
 
     The threshold equals the static limit if the oscillation exerts no forward force, or if the
     forward forces of several contacts cancel.  Otherwise a contact without mass follows the
@@ -61,7 +61,7 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, divided by mu F_z.
 
     A contact without mass follows the forward oscillation.  Its threshold is the static limit of
-    the other components.  It is computed only under a force.
+    the other components.  This limit is computed only under a force.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def predict_table(
     Parameters
     ----------
     motion : str
-        Motion of all contacts, as for `microslip.predict`.
+        Motion of all contacts, see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
         Sequences of equal length, keyed by argument of predict, as in {"load": ["1 N", "10 N"]} or
         {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
@@ -79,7 +79,7 @@ def predict_table(
 def predictions(
     motion: str, table: Table, shared: Mapping[str, object]
 ) -> Iterator[Prediction | NoPrediction]:
-    """The prediction of each case in turn.
+    """Yield the prediction of each case in turn.
 
     All cases are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.  The arguments and errors are the same as for predict_table.

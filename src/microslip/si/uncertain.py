@@ -43,7 +43,7 @@ def without_uncertainty(
 ) -> tuple[dict[str, Any], list[UncertainInput]]:
     """Central values of the arguments of predict, and a list of the uncertain inputs.
 
-    Raises InputError for a text that is not a valid uncertainty.
+    Raises InputError for a text with an invalid uncertainty.
     """
     plain, uncertain = dict(arguments), []
     for name, quantity in QUANTITIES.items():

@@ -27,8 +27,8 @@ RUBBERY = 0.45
 """Smallest Poisson's ratio of a rubber.  A rubber does not yield but has internal losses, and its
 modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
-"""Order of magnitude of the work of adhesion of clean smooth surfaces due to van der Waals forces,
-N/m (J. N. Israelachvili, Intermolecular and Surface Forces)."""
+"""Typical work of adhesion between clean smooth surfaces due to van der Waals forces, N/m (J. N.
+Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
 """Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
@@ -66,7 +66,7 @@ class Rule(NamedTuple):
 
 
 MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
-"""Pattern of a measure in a sentence: its name, the number of its digits, and its SI unit."""
+"""Pattern of a measure in a sentence: the name, the number of digits, and the SI unit."""
 
 
 def _too_hard(side: str) -> Rule:

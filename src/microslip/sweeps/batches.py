@@ -230,13 +230,13 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Return the records for some requests and the statistics, see `gather`.  The records depend
-    only on the requests and the solver."""
+    """Return the records for the requests, and the statistics of the batch (see `gather`).  The
+    records depend only on the requests and the solver."""
     return gather(answer(request, store) for request in requests)
 
 
 def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
-    """Return the records in some answers, and the statistics of the batch.  The statistics are the
+    """Collect the records of some answers, and the statistics of the batch.  The statistics are the
     number of records, the number of computed records, the CPU time, and whether all records are
     final.
 
@@ -259,13 +259,13 @@ def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
-    """Iterate over the records in the files of batches; raises CacheError for a damaged file."""
+    """Iterate over the records in batch files.  Raises CacheError for a damaged file."""
     for path in paths:
         yield from read(path)
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """Return a function that maps a request to its record among these records."""
+    """Return a function that maps a request to its record in `records`."""
     by_key = {record["key"]: record for record in records}
     return lambda request: by_key[key_of(request)]
 

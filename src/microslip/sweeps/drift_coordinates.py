@@ -7,7 +7,7 @@ velocity becomes infinite as the force approaches 1.  For a rigid contact, it is
 to (1 - force)^(-1/2).
 
 The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).  Nodes
-are clustered at the amplitudes at which the threshold equals the largest force and at which it
+are clustered at two amplitudes: where the threshold equals the largest force, and where it
 vanishes.  Cells interpolate asinh(velocity).  The error of asinh is the absolute error of a small
 velocity, and the relative error of a large velocity.
 """
@@ -76,7 +76,8 @@ class DriftCoordinates(NamedTuple):
     def scaled(
         self, force: np.ndarray, amplitude: np.ndarray, least: np.ndarray | None = None
     ) -> np.ndarray:
-        """Scaled coordinates, shape (n, 2), of forces and amplitudes in the range, shape (n,).
+        """Scaled coordinates, shape (n, 2), for forces and amplitudes in the range, shape (n,)
+        each.
 
         least: force thresholds at the amplitudes.  If None, the thresholds are computed, which is
         slow.
@@ -119,9 +120,9 @@ def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
 
 
 def velocity_of(scaled: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocities >= 0 and their error bounds from arrays of asinh(velocity) and its errors.
+    """Convert arrays of asinh(velocity) and its errors to velocities >= 0 and their error bounds.
 
-    The bound of an unknown velocity is infinite.
+    The error bound of an unknown velocity is infinite.
     """
     velocity = np.sinh(np.maximum(scaled, 0.0))
     low = np.sinh(np.maximum(scaled - error, 0.0))

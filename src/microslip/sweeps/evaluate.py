@@ -31,9 +31,9 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
     """Compute the result of a request as a dict of values that JSON can represent.
 
     time_limit: time limit of a point, as in microslip.solve.  If the solver raises SolverError or
-    InputError, the point is a gap in the dataset: `converged` is False, `crashed` is True, and the
-    reason is the error message in one line.  Any other exception is an error of the code or the
-    machine and propagates.
+    InputError, the point is a gap in the dataset.  Then `converged` is False, `crashed` is True,
+    and `reason` is the error message in one line.  Any other exception is an error of the code or
+    the machine and propagates.
     """
     try:
         limits = {} if time_limit is None else {"time_limit": time_limit}

@@ -46,9 +46,8 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        For each node: friction and its error, or the scaled velocity under a force and its error.
-        The values are NaN and infinity if the point did not converge.  They depend only on the
-        records.
+        For each node: friction, or the scaled velocity under a force, and the error.  The values
+        are NaN and infinity if the point did not converge.  They depend only on the records.
     refinement : Refinement
         The cells.
     """

@@ -48,8 +48,8 @@ def solve_stored(
     """Read the friction at one point from a folder of results.  If it is missing, compute and store
     it.
 
-    The key of a result is a hash of the point, the tolerance and the code of the solver, so sweeps,
-    the command line and this function share results.  Numbers are rounded to 12 digits, as in
+    The key of a result is a hash of the point, the tolerance and the solver's code.  Sweeps, the
+    command line and this function therefore share results.  Numbers are rounded to 12 digits, as in
     sweeps.  The result is not stored if the solver failed or reached its time limit.
 
     Parameters

@@ -89,8 +89,8 @@ class Friction:
         """Friction and its error bound at any point.
 
         Between the nodes of a map, the error bound is the sum of the interpolation error and the
-        errors of the nodes (see `interpolation` and, between Poisson's ratios, `nodes`).  In a
-        certified map, it is the error bound of the cell (see `cells`).  Outside the tabulated
+        node errors.  See `interpolation` and, for interpolation between Poisson's ratios, `nodes`.
+        In a certified map, it is the error bound of the cell (see `cells`).  Outside the tabulated
         range, it is the distance to the farther end of a bracket (see `beyond`).  Next to a point
         that did not converge, mu_macro is NaN or its error bound is infinite.
 
@@ -103,9 +103,9 @@ class Friction:
         ----------
         velocity, amplitude : number, sequence or DataArray
             Dimensionless velocity and amplitude, at least 0.  continuous-bore has no amplitude.  A
-            sequence becomes a dimension of the result; DataArrays broadcast by their dimensions. If
-            an argument is in dask chunks, so is the result; the argument is then checked when the
-            result is computed.
+            sequence becomes a dimension of the result; DataArrays broadcast by their dimensions.
+            If an argument is in dask chunks, so is the result; the argument is then checked when
+            the result is computed.
         poisson : number, optional
             Poisson's ratio, within the range of the dataset.  It can be omitted if the dataset has
             only one Poisson's ratio.

@@ -6,9 +6,9 @@ bound on 1 - mu_macro.  At all computed points, friction also decreases with the
 
 At the edge of a map, the bracket is as narrow as the error estimate.  Away from the edge, the
 bracket widens.  The difference between friction and its limit is assumed to follow a power law with
-a local exponent between 0 and twice the asymptotic exponent.  The computed points have local
-exponents of 0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards
-no vibration.
+a local exponent between 0 and twice the asymptotic exponent.  The local exponents of the computed
+points are 0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards no
+vibration.
 
 For large amplitudes, friction tends to a limit (Eqs 6 and 29).  The sign of the difference from
 this limit depends on the velocity.  Beyond the map's largest amplitude, the bound on this
@@ -192,7 +192,8 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Return the largest differences between friction at the edge of a map and its limit.
+    """Return the largest differences between friction at the edge of a map and the limit of
+    friction.
 
     The limit is the limit for large amplitudes, and the edge is at the map's largest amplitude.
 

@@ -166,7 +166,7 @@ def _roots(
     search succeeded.
 
     left, right: ends of the brackets, shape (n,); arguments: additional arguments of the function,
-    shape (m,) each; chosen: mask, shape (m,), of the n arguments that belong to the brackets.
+    shape (m,) each; chosen: mask, shape (m,), that selects the arguments for the n brackets.
     """
     from scipy.optimize.elementwise import find_root
 

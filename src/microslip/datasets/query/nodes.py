@@ -66,7 +66,7 @@ class Nodes:
         value = np.tensordot(weights, self.values[index], 1)
         flat = self.values.reshape(len(self.poisson), -1)
         misses = axis.misses(flat).reshape(self.values.shape)
-        # the nodes around the cell, as along the other axes
+        # at the nodes around the cell, as along the other axes
         around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
         error = 4.0 * share * (1.0 - share) * largest_around(around)
         return value, self.errors[index].max(axis=0) + error

@@ -19,9 +19,9 @@ class Surface:
     """Values of a map on a fine grid that contains all computed points.
 
     The values equal those of `microslip.at`, except if the cubic leaves the range of the two
-    neighbouring points, as it can on coarse maps.  Such a value is clipped to this range, so that
-    figures show only computed extrema.  If a point of a cubic is unknown, the value is interpolated
-    linearly.
+    neighbouring points.  This happens on coarse maps.  Such a value is clipped to this range, so
+    that figures show only computed extrema.  If a point of a cubic is unknown, the value is
+    interpolated linearly.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Surface:
         """Return the values on the fine grid, masked in cells without reliable contours.
 
         A contour is reliable if the interpolation error is below half the distance between two
-        levels. The interpolation error is estimated by leaving points out.
+        levels.  The interpolation error is estimated by leaving points out.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Fit of the coefficient of friction of a contact, and of u_lim or G, to measured friction.
+"""Fit a contact's coefficient of friction, and u_lim or G, to measured friction.
 
 `measured` reads and checks the table.  `scales` converts the rows to dimensionless points for a
 pair of values of the unknowns.  `friction_models` computes the friction of the points.  `estimate`

@@ -191,7 +191,7 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
 
 
 def _first_step(best: Best, which: int, allowed: float) -> float:
-    """Half the width that the interval has for a linear model."""
+    """Half the width of the interval in a linear model."""
     curvature = best.slopes.T @ best.slopes
     if np.linalg.cond(curvature) > 1e12:
         return FIRST_STEP

@@ -135,5 +135,5 @@ class Modulus(Scale):
 
 
 SOFTEST, HARDEST = 1e2, 1e13
-"""Smallest and largest shear modulus, Pa.  The smallest is that of a weak gel, and the largest
-exceeds that of diamond."""
+"""Smallest and largest shear modulus, Pa.  A weak gel has the smallest modulus.  The largest
+modulus exceeds diamond's."""
