@@ -231,7 +231,7 @@ class RealDrive:
 
 
 def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Force, stiffness, mass and damping for microslip.solve, except those that are None.
+    """Force, stiffness, mass and damping for microslip.solve, without None values.
 
     The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by mu
     F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load without

@@ -307,8 +307,8 @@ def _log(value: float) -> float:
 
 
 def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
-    """Nodes along one input: ascending logarithms of its absolute value, and the states at the
-    nodes.
+    """Nodes along one input: ascending logarithms of the input's absolute value, and the states at
+    the nodes.
 
     If predict rejects a node, the last node is placed at the limit of the accepted values.
     """

@@ -179,8 +179,8 @@ class Request:
         Parameters
         ----------
         velocity : float or None
-            Dimensionless velocity; None under a force.  A velocity above the range of the solver
-            is replaced by the largest allowed one, at which the vibration has no effect.
+            Dimensionless velocity; None under a force.  A velocity above the range of the solver is
+            replaced by the largest allowed velocity, at which the vibration has no effect.
         tolerance : float
             Largest accepted error.
         amplitude, poisson : float, optional

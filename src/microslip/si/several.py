@@ -1,7 +1,7 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The
-body's drive is divided by the number of contacts.  Computed forces are multiplied by this number.
+All dimensionless groups refer to a contact with the mean load, see solver.body_problem.  The body's
+drive is divided by the number of contacts.  Computed forces are multiplied by this number.
 """
 
 from __future__ import annotations

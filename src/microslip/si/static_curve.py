@@ -23,8 +23,8 @@ CLOSEST = 64
 """One draw in 64 counts as close to the force.  Each refinement solves the static limit at the
 median amplitude of these draws."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Relative range of the amplitude, and standard deviation of Poisson's ratio, below which changes
-are rounding errors."""
+"""Values below which variations are treated as rounding errors: relative range of the amplitude,
+and standard deviation of Poisson's ratio."""
 
 
 def static_limits(

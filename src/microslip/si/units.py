@@ -77,7 +77,8 @@ class Unit:
 def registry() -> Any:
     """The pint.UnitRegistry of the accepted units.
 
-    It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" become equal floats.
+    The registry computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" become equal
+    floats.
     """
     import pint
 

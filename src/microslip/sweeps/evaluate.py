@@ -53,7 +53,7 @@ def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Call a function repeatedly.  Return its result and the CPU time of one call, in seconds.
 
     The first call is not timed, because it may compile code.  The time is the median of `repeats`
-    readings, or of fewer readings if they take longer than LONG_ENOUGH.  CPU time excludes other
+    readings, or of fewer if the readings take longer than LONG_ENOUGH.  CPU time excludes other
     processes.
     """
     result = run()

@@ -62,7 +62,7 @@ class Cell(NamedTuple):
         return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
 
     def halves(self, direction: int) -> tuple[Cell, Cell]:
-        """The two halves of the cell along a direction, which is an index."""
+        """The two halves of the cell along the direction with this index."""
         middle = 0.5 * (self.begin[direction] + self.end[direction])
         return (
             self._replace(end=_with(self.end, direction, middle)),
@@ -77,7 +77,7 @@ class Refinement:
     Attributes
     ----------
     cells : tuple of Cell
-        Cells that cover the map, including those with missing nodes.
+        Cells that cover the map, including cells with missing nodes.
     errors : tuple of float
         Error bound of each cell, due to the interpolation and to the errors of the nodes; infinite
         if unknown.

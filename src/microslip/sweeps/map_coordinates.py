@@ -194,7 +194,7 @@ class MapCoordinates(NamedTuple):
         return share**power if below else 1.0 - (1.0 - share) ** power
 
     def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """Return, for the lower and the upper end of a patch, whether nodes are clustered there.
+        """Return whether nodes are clustered at the lower end of a patch, and at the upper end.
 
         Nodes are clustered at kinks and, in a patch below a kink, at the amplitude 0.
         """

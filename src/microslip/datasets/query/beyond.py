@@ -11,8 +11,8 @@ points are 0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and
 vibration.
 
 For large amplitudes, friction tends to a limit (Eqs 6 and 29).  The sign of the difference from
-this limit depends on the velocity.  Beyond the map's largest amplitude, the bound on this
-difference is the largest absolute difference at that amplitude within a decade of velocities.
+this limit depends on the velocity.  Above the map's largest amplitude, this difference is bounded
+by the largest absolute difference along the map's upper edge, within a decade of velocities.
 """
 
 from __future__ import annotations

@@ -180,7 +180,7 @@ def _roots(
 def answer(
     name: str, shape: xr.DataArray, intervals: np.ndarray, outcome: np.ndarray, motion: str
 ) -> xr.Dataset:
-    """Convert intervals to a dataset with the dimensions of the request and `root`.
+    """Convert intervals to a dataset with the request's dimensions and the dimension `root`.
 
     Parameters
     ----------

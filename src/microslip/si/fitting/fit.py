@@ -26,7 +26,7 @@ from microslip.si.quantities import read
 
 SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
-"""Default value, and largest allowed value, of the accepted error of mu_macro in the solver."""
+"""Default and largest allowed tolerance of mu_macro in the solver."""
 CONFIDENCE = 0.95
 """Default confidence level of the intervals."""
 MOST_PASSES = 6

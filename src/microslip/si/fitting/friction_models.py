@@ -1,10 +1,10 @@
 """Compute the friction for the rows of a fit, from an existing map or from the solver and a coarse
 map.
 
-A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver computes a
-coarse map once, which gives the change of friction between two guesses.  It then solves the rows at
-the best guess so far, which corrects the coarse map at this guess.  At the end, the remaining error
-of the coarse map is of second order.
+A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver first
+computes a coarse map.  This map gives the change of friction between two guesses.  It then solves
+the rows at the best guess so far, which corrects the coarse map at this guess.  At the end, the
+remaining error of the coarse map is of second order.
 """
 
 from __future__ import annotations

@@ -142,8 +142,8 @@ def _numbers(
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
     """Columns in SI units, columns of labels, and messages about unreadable lines in a file.
 
-    Empty rows, and unreadable lines of a file, are omitted.  An unreadable value in another table
-    raises InputError.
+    Empty rows, and unreadable lines of a file, are omitted.  In a table that is not a file, an
+    unreadable value raises InputError.
     """
     names = [name for name in table.columns if name not in LABELS]
     unknown = [name for name in names if name not in COLUMNS]
