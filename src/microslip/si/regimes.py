@@ -8,7 +8,7 @@ velocity is nearly constant.  If the force needed to make the body follow the co
 compared with mu F_z, the force is nearly constant.  A vibration along the drive reverses the force,
 so the limits are ten times stricter.
 
-The limits were tested with some hundred random drives just within them, at amplitudes from 0.3 to
+The limits were tested with some hundred random drives just inside them, at amplitudes from 0.3 to
 10 and velocities from 0.01 to 3.  Friction differs by less than SAME from friction at constant
 velocity, or from friction with the softest and lightest drive.  The limit for a soft drive along
 the vibration is an estimate: the force changes by the stiffness times the amplitude.

@@ -57,7 +57,7 @@ class RealResponse:
         Displacement at which the whole contact slides (m), contact radius (m), load of the
         reference state (N), and coefficient of friction.
     tolerance : float
-        Largest accepted error of a force divided by mu times the load.
+        Largest accepted error of a force, relative to mu times the load.
     converged : bool
         Whether every error is within the tolerance.
     reason : str

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "map"}
-"""Allowed columns of a file.  Each one is an argument of predict, and needs no unit in its
+"""Allowed columns of a file.  Each column is an argument of predict, and needs no unit in the
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
 """Text columns.  Any other column is numeric if it has no value."""

@@ -155,10 +155,9 @@ class Friction:
         Parameters
         ----------
         velocity, amplitude : int or sequence
-            Number of coordinates over the range of the map, or the coordinates themselves.  If
-            numbers are specified, velocities have equal ratios and amplitudes have equal steps.
-            The amplitude is ignored for continuous-bore.  The velocity is ignored for a certified
-            map of the static limit.
+            Number of coordinates over the range of the map, or the coordinates themselves.  Numbers
+            give velocities in equal ratios and amplitudes in equal steps.  The amplitude is ignored
+            for continuous-bore.  The velocity is ignored for a certified map of the static limit.
         **settings
             Arguments `poisson` and `tolerance` of `at`.
 
