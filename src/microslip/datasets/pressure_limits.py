@@ -1,5 +1,4 @@
-"""Closed forms for pressures other than Hertz's pressure under a sphere, with the types of
-theory.catalogue.
+"""Closed forms for pressures other than Hertz's pressure under a sphere, as in datasets.catalogue.
 
 Some closed forms are valid for any pressure (Eqs 6 and 7), others for axisymmetric indenters.  Some
 closed forms of circular Hertz contacts are also valid for elliptic ones.

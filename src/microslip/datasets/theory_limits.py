@@ -1,6 +1,6 @@
 """Compute the limits from theory for the dataset of a sweep.
 
-Each closed form of theory.catalogue is stored twice: at the points of the sweep, for comparison,
+Each closed form of datasets.catalogue is stored twice: at the points of the sweep, for comparison,
 and on a fine axis, for drawing.
 """
 

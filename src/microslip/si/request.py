@@ -244,7 +244,7 @@ class Request:
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The Request for a mapping of all predict's arguments.  Raises InputError."""
+    """The Request for a mapping of all arguments of predict.  Raises InputError."""
     if speaks_of_file(motion):
         arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():

@@ -2,9 +2,9 @@
 map.
 
 A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver first
-computes a coarse map.  This map gives the change of friction between two guesses.  It then solves
-the rows at the best guess so far, which corrects the coarse map at this guess.  At the end, the
-remaining error of the coarse map is of second order.
+computes a coarse map.  This map gives the change of friction between two guesses.  Then the solver
+computes the rows at the best guess so far, which corrects the coarse map at this guess.  At the
+end, the remaining error of the coarse map is of second order.
 """
 
 from __future__ import annotations
