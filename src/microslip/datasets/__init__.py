@@ -1,1 +1,1 @@
-"""Datasets in xarray and netCDF, built from records, with limits from theory and interpolation."""
+"""Datasets in xarray and netCDF, built from records, with theoretical limits and interpolation."""

@@ -1,12 +1,13 @@
-"""The dataset of a certified map, with its points and the cells for interpolation between them.
+"""The dataset of a certified map, with its points and the cells used for interpolation.
 
     certified_transverse.nc     dims point, cell and node
 
-A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is the
-polynomial through its points: 5 along the velocity, 5 along the amplitude and, if Poisson's ratio
-is a direction of the map, 3 along Poisson's ratio.  cell_error bounds the error in the cell.  A map
-of drift depends on force and amplitude, in the coordinates of sweeps.drift_coordinates, and its
-cells interpolate asinh(velocity).  Equal records give equal bytes.
+A cell is a box in the scaled coordinates of sweeps.map_coordinates.  Friction in a cell is
+interpolated by the polynomial through its points: 5 along the velocity and 5 along the amplitude.
+If Poisson's ratio is a direction of the map, there are 3 points along it.  cell_error is an error
+bound for the cell.  A map of drift depends on force and amplitude, in the coordinates of
+sweeps.drift_coordinates, and its cells interpolate asinh(velocity).  Equal records give equal
+bytes.
 """
 
 from __future__ import annotations
@@ -31,14 +32,14 @@ from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 COORDINATES = "map_coordinates"
-"""Attribute with the coordinates of a map as JSON."""
+"""Attribute that contains the map's coordinates as JSON."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
     "force": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
-"""Names of the variables with the lower and upper ends of the cells, by direction."""
+"""For each direction: the variables that contain the lower and upper ends of the cells."""
 
 
 def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
@@ -49,7 +50,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     map_ : CertifiedMap
         The map of the configuration.
     records : iterable of dict
-        Records of all its points, in any order.
+        Records of all points, in any order.
 
     Raises
     ------
@@ -97,7 +98,7 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,
-        points=len(set(places)),  # points between slow and fast cells can occur twice
+        points=len(set(places)),  # a point between slow and fast cells can occur twice
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
@@ -107,13 +108,15 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
 
 
 def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
-    """Write the dataset to a netCDF-4 file atomically; raises CacheError if that fails."""
+    """Write the dataset to a netCDF-4 file atomically.  Raises CacheError if the file cannot be
+    written."""
     with writing_beside(path) as beside:
         netcdf.write(beside, dataset, {})
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
-    """Yield lines of text: number of points, error bound of the map, cells with a larger error."""
+    """Yield lines of text: the number of points, the error bound of the map, and the number of
+    cells with a larger error."""
     drifts = is_of_drift(dataset)
     values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
     failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
@@ -132,13 +135,14 @@ def is_of_drift(dataset: xr.Dataset) -> bool:
 
 
 def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
-    """Read the coordinates of a map; raises KeyError or ValueError if the dataset has none."""
+    """Read the coordinates of a map.  Raises KeyError or ValueError if the dataset has no
+    coordinates of this kind."""
     kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
     return kind.from_json(dataset.attrs[COORDINATES])
 
 
 def _point_variables(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
-    """Return the variables of the solved quantity and of its error."""
+    """Return the variables for the solved quantity and its error."""
     name, text = "mu_macro", MU_MACRO.description
     if map_.force is not None:
         name, text = "velocity", "mean forward velocity"

@@ -1,8 +1,8 @@
 """Write datasets to netCDF files with groups, and read them.
 
-The root of a file holds the variables with the axes of the sweep, so that it can be converted to
-one table and joined with other files.  Variables with other axes, such as curves and single runs,
-are in groups, which are opened by name:
+The root of a file contains the variables with the axes of the sweep.  The root can therefore be
+converted to one table and joined with other files.  Variables with other axes, such as curves and
+single runs, are in groups, which are opened by name:
 
     xr.open_dataset(path)                    # the root
     xr.open_dataset(path, group="history")   # one of its groups
@@ -33,12 +33,13 @@ def divide(dataset: xr.Dataset, groups: Groups) -> tuple[xr.Dataset, dict[str, x
         All variables.
     groups : mapping of str to (str, tuple of str)
         Title and dimensions of each group, by name.  A variable is assigned to the first group
-        that has all its dimensions.
+        whose dimensions include all dimensions of the variable.
 
     Returns
     -------
     root : xarray.Dataset
-        Variables that fit no group or have no dimension, with all attributes of the dataset.
+        Variables that fit no group or have no dimension.  The root has all attributes of the
+        dataset.
     parts : dict of xarray.Dataset
         Datasets of the groups, by name.  Empty groups are omitted.
     """
@@ -77,8 +78,8 @@ def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
-        # Texts are arrays of characters. With strings of variable length Python crashes when a file
-        # is opened again while it is open, since HDF5 loses their type.
+        # Texts are arrays of characters.  HDF5 loses the type of variable-length strings if a file
+        # is opened again while it is open, and Python then crashes.
         return {"dtype": "S1", "char_dim_name": characters_of(name)}
     return {}
 
@@ -95,7 +96,7 @@ def refuse_oversized(path: str | os.PathLike[str]) -> None:
     """Raise CacheError if a file declares more values than it has bytes.
 
     xarray reads coordinates into memory when it opens a file, so a damaged file could fill the
-    memory.  The data of a sweep hardly compress, so an intact file has more bytes than values.
+    memory.  Sweep data are hardly compressible, so an intact file has more bytes than values.
     """
     size = os.stat(path).st_size
     with netCDF4.Dataset(path) as file:
@@ -114,7 +115,7 @@ def refuse_oversized(path: str | os.PathLike[str]) -> None:
 
 
 def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
-    """Return the names of the groups of a file, in the order of the file."""
+    """Return the names of a file's groups, in the order of the file."""
     with netCDF4.Dataset(path) as file:
         return tuple(file.groups)
 
@@ -122,8 +123,8 @@ def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     """Read the root and all groups of a file into one dataset with the attributes of the root.
 
-    Raises CacheError if the file declares more values than it has bytes, and the errors of xarray
-    if it is not a netCDF file.
+    Raises CacheError if the file declares more values than it has bytes.  Raises the errors of
+    xarray if it is not a netCDF file.
     """
     refuse_oversized(path)
     with xr.open_dataset(path, engine="netcdf4") as file:

@@ -23,13 +23,14 @@ AXES: dict[type, tuple[str, ...]] = {
     PropulsionLine: ("velocity",),
     Period: ("phase", "point"),
 }
-"""Names of the axes of a dataset, by the class of the record."""
+"""Names of a dataset's axes, keyed by the class of the record."""
 OF_POINTS = ("forward_position", "lateral_position", "area", "bound", "dissipated_energy_density")
-"""Arrays of a Period whose only axis is `point`."""
+"""Arrays in a Period whose only axis is `point`."""
 
 
 def to_xarray(record: object) -> xr.Dataset:
-    """Convert a result to a dataset.  Numbers and arrays become variables, texts attributes.
+    """Convert a result to a dataset.  Numbers and arrays become variables, and texts become
+    attributes.
 
     Parameters
     ----------
@@ -39,9 +40,9 @@ def to_xarray(record: object) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The dimension of a History is `phase`, that of a PropulsionLine is `velocity`, and that of
-        a response is `row`.  A Period has the dimensions `phase` and `point`.  Other results have
-        no dimension.  Fields that are None are omitted.
+        The dimension is `phase` for a History, `velocity` for a PropulsionLine, and `row` for a
+        response.  A Period has the dimensions `phase` and `point`.  Other results have no
+        dimension.  Fields that are None are omitted.
 
     Raises
     ------
@@ -79,7 +80,7 @@ def to_xarray(record: object) -> xr.Dataset:
 
 
 def _axes_of(name: str, value: np.ndarray, axes: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names of the axes of the array of a field."""
+    """Return the axis names of the array in a field."""
     if value.ndim == 2:
         return axes
     return (axes[1],) if name in OF_POINTS and len(axes) == 2 else (axes[0],)

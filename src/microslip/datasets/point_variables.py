@@ -1,4 +1,4 @@
-"""Write the variables of the points of a sweep to its dataset, block by block.
+"""Write the variables of all points to the dataset of a sweep, block by block.
 
 At most BLOCK points are in memory at a time.
 """
@@ -60,8 +60,9 @@ CHANGES = {
     "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest nu"),
     "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
 }
-"""Changes of variables from the smallest Poisson's ratio, in a sweep over Poisson's ratios:
-name -> (variable, factor of its value at the smallest ratio in the sum, long_name)."""
+"""Changes relative to the smallest Poisson's ratio, in a sweep over Poisson's ratios: name ->
+(variable, factor, long_name).  The factor multiplies the variable's value at the smallest ratio
+before it is added."""
 DESCRIPTIONS = {
     "error_resolution": "part of mu_macro_error from cells, angles and time steps",
     "error_periodicity": "part of mu_macro_error from the distance to the periodic state",
@@ -83,15 +84,15 @@ DESCRIPTIONS = {
 MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 WIDTHS = {"model": 32, "reason": 256}
-"""Maximum number of bytes of a text variable.  Longer texts are cut, see `_text`."""
+"""Maximum number of bytes in a text variable.  Longer texts are truncated, see `_text`."""
 BLOCK = 4096
-"""Number of points in a block that is written at once, and in a chunk of a large dataset."""
+"""Number of points that are written at once, and number of points in a chunk of a large dataset."""
 Box = tuple[slice, ...]
 """A block of a grid: a slice for each axis."""
 
 
 def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) -> set[str]:
-    """Write the variables of the points of a sweep to an open file.
+    """Write the variables of all points in a sweep to an open file.
 
     Parameters
     ----------
@@ -144,9 +145,10 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
 
 
 def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
-    """Write CHANGES, the change of mu_macro from the smallest Poisson's ratio and its error.
+    """Write CHANGES: the change of mu_macro relative to the smallest Poisson's ratio, and its
+    error.
 
-    box: as for `_create`.
+    box: see `_create`.
     """
     file.set_auto_mask(False)
     for name, (source, sign, long_name) in CHANGES.items():
@@ -182,7 +184,7 @@ def _create(
     dims: tuple[str, ...],
     box: Box | None,
 ) -> None:
-    """Create an empty variable.  box: a block of the size of its chunks, or None for no chunks."""
+    """Create an empty variable.  box: a block of the chunk size, or None for no chunks."""
     stored: Any = {bool: np.int8, str: "S1"}.get(kind, kind)
     chunks = None if box is None else tuple(part.stop - part.start for part in box)
     more: dict[str, Any] = {}
@@ -205,7 +207,8 @@ def _create(
 
 
 def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
-    """Return the values of a variable in records.  Texts become bytes along an additional axis."""
+    """Return a variable's values from some records.  Texts become bytes along an additional
+    axis."""
     values = [record["result"].get(name) for record in block]
     filled = [MISSING[kind] if value is None else value for value in values]
     if kind is str:
@@ -215,7 +218,7 @@ def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
 
 
 def _text(value: str, width: int) -> bytes:
-    """Encode a text in at most `width` bytes.  A longer text is cut and ends with dots."""
+    """Encode a text in at most `width` bytes.  A longer text is truncated and ends with dots."""
     coded = value.encode()
     if len(coded) <= width:
         return coded

@@ -1,4 +1,4 @@
-"""Closed forms for pressures other than that of a sphere, with the types of theory.catalogue.
+"""Closed forms for pressures other than Hertz's pressure under a sphere, as in datasets.catalogue.
 
 Some closed forms are valid for any pressure (Eqs 6 and 7), others for axisymmetric indenters.  Some
 closed forms of circular Hertz contacts are also valid for elliptic ones.
@@ -24,7 +24,8 @@ ZONE = replace(
 
 
 def formulas_under(motion: str, name: str) -> dict:
-    """Return a dict of the closed forms by name, for the names of a motion and a pressure."""
+    """Return a dict of the closed forms by name.  motion, name: names of the motion and the
+    pressure."""
     pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
     if motion == "continuous-bore" and pressure.is_round:
         return _steady(pressure, of_sphere)
@@ -48,7 +49,8 @@ def formulas_under(motion: str, name: str) -> dict:
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
-    """Return two functions of the amplitude: static friction of the whole stick zone, and exact."""
+    """Return two functions of the amplitude: the static friction of the whole stick zone, and the
+    exact static friction."""
     if motion == "bore":
 
         def stick_radius(amplitude: float) -> float:

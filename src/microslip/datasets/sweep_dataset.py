@@ -1,9 +1,9 @@
 """Write the dataset of a sweep to a netCDF file.
 
-Every dataset follows the CF conventions.  It contains the limits from theory as variables, and its
-attributes record its provenance.  The root of a file contains the map; fine curves and single runs
-are in groups (see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes:
-a file does not depend on the time, the computer or the number of jobs.
+Every dataset follows the CF conventions.  Limits from theory are variables, and attributes record
+the provenance.  The root of a file contains the map.  Groups contain fine curves and single runs
+(see `netcdf`).  All quantities are dimensionless.  Equal results give equal bytes: a file does not
+depend on the time, the computer or the number of jobs.
 """
 
 import os
@@ -92,11 +92,11 @@ GROUPS = {
     "field": "Tractions in the whole contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
-"""Titles of the groups in the file of a sweep.  Each motion has only some of the groups."""
+"""Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
 
 
 def _root(sweep: Sweep) -> xr.Dataset:
-    """Return the dataset of the axes and the limits from theory, without the points."""
+    """Return a dataset with the axes and the limits from theory, without the points."""
     coords: dict[str, tuple] = {
         name: (name, np.array(values)) for name, values in _axes(sweep).items()
     }
@@ -109,7 +109,7 @@ def _root(sweep: Sweep) -> xr.Dataset:
 
 
 def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
-    """Return the datasets of the groups of a sweep, by the names in GROUPS."""
+    """Return the dataset of each group of a sweep, keyed by the names in GROUPS."""
     variables = theory_limits.curves(sweep) | _single_runs(sweep, histories)
     about = {"motion": solver_names(sweep)[0]}
     return {
@@ -149,17 +149,17 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
 def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
     """Write a dataset to a netCDF-4 file, atomically.
 
-    groups: groups of the file, as for `netcdf.divide`.  Equal datasets give equal bytes.  Raises
-    CacheError, with a message of one line, if the file cannot be written.
+    groups: groups of the file, see `netcdf.divide`.  Equal datasets give equal bytes.  Raises
+    CacheError with a one-line message if the file cannot be written.
     """
     with writing_beside(path) as beside:
         netcdf.write(beside, *netcdf.divide(dataset, groups or {}))
 
 
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
-    """Yield lines of text: the number of points, and a line for each point that did not converge.
+    """Yield lines of text: the number of points, and one line for each point that did not converge.
 
-    name: name of the sweep, by default that of the motion.
+    name: name of the sweep.  Default: the name of the motion.
     """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
@@ -189,7 +189,7 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     if sweep.amplitude is not None:
         axes.append((AMPLITUDE, motion.amplitude_label))
     for of_paper, formula in axes:
-        quantity = of_paper["transverse"]  # name and text are the same for all motions
+        quantity = of_paper["transverse"]  # names and texts are the same for all motions
         about = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
         if motion.name in of_paper:
             about["description"] = of_paper[motion.name].description
@@ -206,7 +206,7 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
 
 
 def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
-    """Return a dict of variables for each group of single runs, by the name of the group."""
+    """For each group of single runs, by name: return a dict of variables."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # `report` lists failed runs
     if sweep.motion == "transverse":

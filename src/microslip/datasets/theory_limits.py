@@ -1,6 +1,6 @@
-"""Limits from theory in the dataset of a sweep.
+"""Compute the limits from theory for the dataset of a sweep.
 
-Each closed form of theory.catalogue is stored twice: at the points of the sweep, for comparison,
+Each closed form of datasets.catalogue is stored twice: at the points of the sweep, for comparison,
 and on a fine axis, for drawing.
 """
 
@@ -16,7 +16,7 @@ CURVE_POINTS = 241
 
 
 def formulas(motion: str, pressure: str = "hertz") -> dict:
-    """Return the closed forms for the names of a motion and a pressure.
+    """Return the closed forms for a motion and a pressure, which are specified by name.
 
     The result is a dict of catalogue.ClosedForm by name.  It is empty if no closed form is known.
     """
@@ -28,7 +28,8 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Return the closed forms for a sweep.  With a drive they depend on the amplitude only."""
+    """Return the closed forms for a sweep.  With a drive, only those that depend on the amplitude
+    alone."""
     if sweep.contacts is not None:
         return {}  # closed forms are valid for one contact
     forms = formulas(*solver_names(sweep))
@@ -70,7 +71,7 @@ def curves(sweep: Sweep) -> dict:
     """Evaluate the closed forms on fine axes, for `velocity_curves` and `amplitude_curves`.
 
     Each closed form becomes a variable `<name>_curve` over `velocity_curve` or `amplitude_curve`.
-    A closed form that depends on both is evaluated at the largest amplitude.
+    A closed form that depends on velocity and amplitude is evaluated at the largest amplitude.
     """
     groups: dict[str, dict] = {}
     for name, form in _forms(sweep).items():
@@ -87,13 +88,13 @@ def curves(sweep: Sweep) -> dict:
 
 
 def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
-    """Return a fine axis over the range of an axis.
+    """Return a fine axis over the range of a coarse axis.
 
     Velocities have equal ratios and start at the smallest velocity above 0.
     """
     positive = axis[axis > 0.0]
     if dim == "velocity" and len(positive):
-        # Rounding to twelve digits, because the last digits of logarithms depend on the machine.
+        # Round to twelve digits, because the last digits of logarithms depend on the machine.
         spaced = np.geomspace(positive[0], axis[-1], CURVE_POINTS)
         return np.array([float(f"{v:.12g}") for v in spaced])
     return np.linspace(axis[0], axis[-1], CURVE_POINTS)

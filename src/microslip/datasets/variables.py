@@ -9,7 +9,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 ANCILLARY = "ancillary_variables"
-"""Attribute of a variable that contains the name of the variable with its error."""
+"""Attribute of a variable.  It contains the name of a second variable, which is the error of the
+first."""
 
 
 def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
@@ -42,7 +43,8 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """Return a variable of codes as a tuple for xarray.Dataset; codes are indices of `meanings`."""
+    """Return a variable of codes as a tuple for xarray.Dataset.  Codes are indices of
+    `meanings`."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 
 
@@ -54,7 +56,8 @@ def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
 
 
 def error_of(name: Hashable, names: Iterable[Hashable]) -> dict[str, str]:
-    """Return the attribute that links a variable to its error, or {} if `names` lacks the error."""
+    """Return the attribute that links a variable to its error, or {} if `names` does not contain
+    the error."""
     error = f"{name}_error"
     return {ANCILLARY: error} if error in names else {}
 

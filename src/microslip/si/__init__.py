@@ -9,9 +9,9 @@
     print(prediction.mu_apparent, prediction.force_reduction, prediction.warnings)
 
 `quantities` reads texts with units, and `inputs` reads the bodies, the contact, the motion and the
-drive.  `request` makes them dimensionless and calls the solver.  `reduction` searches for a missing
-amplitude, speed or load.  `static_limit` computes the force threshold.  `drive_result` computes the
-friction or the drift.  `predict` returns the answers as a record of `prediction`.  `uncertain` and
-`outcomes` add the uncertainty that follows from uncertain inputs.  `validity` contains the limits
-of the theory.
+drive.  `request` makes these inputs dimensionless and calls the solver.  `reduction` searches for a
+missing amplitude, speed or load.  `static_limit` computes the force threshold.  `drive_result`
+computes the friction or the drift.  `predict` returns the answers in a record defined by
+`prediction`.  `uncertain` and `outcomes` propagate the uncertainty of the inputs.  `validity`
+contains the limits of the theory.
 """

@@ -13,12 +13,11 @@ from microslip.theory.hertz import checked
 
 @dataclass(frozen=True)
 class TwoBodies:
-    """A sphere that is pressed on a flat or on a second sphere.  At least one of the bodies is
-    elastic.
+    """A sphere pressed against a flat or a second sphere.  At least one of the bodies is elastic.
 
-    The tangential problem of two half-spaces equals that of one half-space whose compliance is the
-    sum of both.  The G and Poisson's ratio of this half-space follow from the sums of 1/G and
-    nu/G.  The normal and the tangential problem are assumed to be uncoupled.
+    For tangential loads, two half-spaces are equivalent to one half-space whose compliance is the
+    sum of both compliances.  G and Poisson's ratio of the equivalent half-space follow from the
+    sums of 1/G and nu/G.  The normal and the tangential problem are assumed to be uncoupled.
 
     Attributes
     ----------
@@ -57,12 +56,12 @@ class TwoBodies:
             raise InputError("counterbody", "rigid", allowed)
 
     def with_load(self, load: float) -> TwoBodies:
-        """Copy of the contact under another load, N."""
+        """A copy of the contact under another load, N."""
         return replace(self, load=load)
 
     @property
     def contradictions(self) -> Sequence[str]:
-        """Sentences for inputs that disagree."""
+        """Messages about inputs that contradict each other."""
         return ()
 
     @property
@@ -83,7 +82,7 @@ class TwoBodies:
     def poisson(self) -> float:
         """Poisson's ratio of the equivalent half-space, sum(nu/G) / sum(1/G)."""
         compliances = [1.0 / body.shear_modulus for body in self.bodies]
-        total = sum(compliances)  # no rounding error for one elastic body
+        total = sum(compliances)  # c / total is exactly 1 for one elastic body
         return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property
@@ -121,8 +120,8 @@ class TwoBodies:
     def mismatch(self) -> float:
         """Dundurs' constant beta, dimensionless; 0 for equal bodies.
 
-        It is half the difference of (1 - 2 nu)/G between the bodies, divided by the sum of (1 -
-        nu)/G. It measures the sideways displacement that a pressure causes.
+        It is half the difference in (1 - 2 nu)/G between the bodies, divided by their sum of (1 -
+        nu)/G.  It is a measure of the tangential displacement caused by pressure.
         """
         first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
         both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)

@@ -31,16 +31,17 @@ class RealMotion:
     speed : float or None
         Forward speed, m/s; None if a force is prescribed.
     amplitude : float or None
-        Half stroke of the oscillation, m, or rad for a rotation; factor of a stroke from a file.
+        Half stroke of the oscillation, m, or rad for a rotation.  For a stroke from a file, the
+        factor that multiplies its samples.
     frequency : float or None
         Frequency of the oscillation, Hz.
     rotation : float or None
         Angular speed of a steady spin, rad/s.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : float or None
-        Properties of a motion with several oscillations: half strokes of the forward motion, m, of
-        the rotation, rad, and of the load, N, and the phase, rad.
+        For a motion with several oscillations: half strokes of the forward motion (m), the rotation
+        (rad) and the load (N), and the phase (rad).
     stroke : Stroke or None
-        Period from a file.
+        One period of the motion, if it is read from a file.
     """
 
     name: str
@@ -81,8 +82,8 @@ class RealMotion:
 
     @property
     def pace(self) -> tuple[float, float]:
-        """Largest speed of the oscillation along the surface, m, and of its rotation, rad, divided
-        by the angular frequency."""
+        """Largest tangential speed, m, and largest angular speed, rad, of the oscillation.  Both
+        are divided by the angular frequency."""
         return self.swing if self.stroke is None else self._times_factor(self.stroke.pace)
 
     def _times_factor(self, pair: tuple[float, float]) -> tuple[float, float]:
@@ -110,8 +111,8 @@ class RealMotion:
 
 
 def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Dimensionless amplitudes of a motion with several oscillations, by the solver's name.  Those
-    of a motion from a file are the largest deviations of its columns."""
+    """Dimensionless amplitudes of a motion with several oscillations, keyed by the solver's names.
+    For a motion from a file, they are the largest deviations in each column."""
     if motion.stroke is not None:
         factor, columns = motion.amplitude or 0.0, motion.stroke.deviations(contact)
         return {name: factor * float(abs(one).max()) for name, one in columns.items()}
@@ -128,8 +129,8 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
 
 
 def solver_motion(motion: RealMotion, contact: TwoBodies) -> str | Motion:
-    """The motion for microslip.solve, as text or as an object.  Several amplitudes are divided by
-    the largest one."""
+    """The motion for microslip.solve, as text or as an object.  If there are several amplitudes,
+    each is divided by the largest."""
     if not motion.several:
         return motion.name
     amplitudes = parts(motion, contact)
@@ -174,7 +175,7 @@ def _known_size(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
-    """Forward speed whose dimensionless velocity is 1, m/s.  It can underflow to 0."""
+    """Forward speed, m/s, at which the dimensionless velocity is 1.  It can underflow to 0."""
     if motion.steady:
         return motion.turn * contact.contact_radius
     omega = motion.turn
@@ -194,8 +195,8 @@ def _over(speed: float, unit: float) -> float:
 
 
 def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
-    """Mean normal load, N.  It is larger than the load if the bodies separate in each period, and
-    differs from it for some motions from files."""
+    """Mean normal load, N.  It is larger than `contact.load` if the bodies separate in each period.
+    For some motions from files, it also differs from `contact.load`."""
     if motion.stroke is None and (motion.load_amplitude or 0.0) <= contact.load:
         return contact.load
     record = solver_motion(motion, contact)
@@ -218,7 +219,7 @@ class RealDrive:
     force : float or None
         Prescribed constant force, N.
     stiffness : float or None
-        Stiffness of a spring, N/m.  The far end of the spring has the speed of the motion.
+        Stiffness of a spring, N/m.  The far end of the spring moves at the forward speed.
     mass, damping : float or None
         Mass of the body, kg, and damping of a dashpot parallel to the spring, N s/m.
     """
@@ -230,7 +231,7 @@ class RealDrive:
 
 
 def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Force, stiffness, mass and damping for microslip.solve, except those that are None.
+    """Force, stiffness, mass and damping for microslip.solve, without None values.
 
     The force is divided by mu times the mean load, the stiffness by mu F_z / u_lim, the mass by mu
     F_z / (u_lim omega^2), and the damping by mu F_z / (u_lim omega).  F_z is the load without
@@ -249,7 +250,7 @@ def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> di
 
 
 def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
-    """Upper bound of the slip speed, m/s: the slip speed of rigid bodies at the edge of the
+    """Upper bound on the slip speed, m/s: the slip speed of rigid bodies at the edge of the
     contact.
 
     It is NaN for a contact that runs away.

@@ -1,4 +1,4 @@
-"""The dimensionless answer for a contact at a speed, on a spring or under a force."""
+"""The dimensionless answer for a contact at a prescribed speed, on a spring or under a force."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from microslip.si.request import Request
 from microslip.si.static_limit import largest_force
 
 SLOWEST = 1e-3
-"""Dimensionless velocity below which the accepted error is constant instead of relative."""
+"""Dimensionless velocity below which the accepted error is absolute instead of relative."""
 MARGIN = 0.8
-"""Safety factor on the accepted error of a second run.  Its velocity can be smaller than that of
-the first one."""
+"""Safety factor on the accepted error of a second run, because the second velocity can be
+smaller."""
 
 
 def answer_of(request: Request, limit: Result | None, threshold: Estimate | None) -> Result:
     """Friction at the speed, or the velocity under the force.
 
-    If the force is below the threshold by more than the error of the threshold, the contact comes
-    to rest, and no drift is computed.  If the force is within this error of the threshold, the
-    result is not converged, since computing the small speed would take minutes.
+    If the force is below the threshold by more than the threshold's error, the contact comes to
+    rest, and no drift is computed.  If the force is within this error of the threshold, the result
+    is not converged, since computing the small speed would take minutes.
 
     Parameters
     ----------

@@ -15,8 +15,8 @@ from microslip.si.request import Request
 def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
     """Energy fields of a Prediction, for a converged answer.
 
-    They are the power of the drag, the torque of a steady spin, the power of the spin or of the
-    oscillation, and the wear if a wear coefficient is given.
+    They are the drag power, the torque of a steady spin, and the power of the spin or oscillation.
+    If a wear coefficient is given, they include the wear.
     """
     motion, still = request.motion, request.still
     speed, friction = motion.known_speed, answer.friction

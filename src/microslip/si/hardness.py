@@ -32,7 +32,7 @@ _OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re
 
 
 def read_hardness(name: str, value: Any) -> Quantity:
-    """Mean pressure under a hardness indent, Pa; raises InputError.
+    """Read a hardness as the mean pressure under the indenter, Pa.  Raises InputError.
 
     name: name of the argument; value: a pressure, or a text such as "200 HV" or "60 HRC".
     """

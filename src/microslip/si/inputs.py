@@ -1,4 +1,4 @@
-"""Inputs of a prediction: read and check the bodies, the contact, the motion and the drive."""
+"""Read and check the inputs of a prediction: the bodies, the contact, the motion and the drive."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from microslip.si.strokes import Stroke, read_stroke
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
-"""Largest accepted coefficient of friction.  Bodies in elastic contact have smaller ones."""
+"""Largest accepted coefficient of friction.  Real elastic contacts have smaller coefficients."""
 LARGEST_PHASE = 1e3
 """Largest accepted phase, rad."""
 OUT_OF_RANGE = "outside the range of floating-point numbers; allowed are sizes of real bodies"
@@ -63,13 +63,14 @@ QUANTITIES = {
     "reduction": Range("", high=1.0),
     "wear_coefficient": Range("m^2/N", low_open=False),
 }
-"""Arguments of predict that are quantities.  The amplitude of a rotation is an angle."""
+"""Units and ranges of the quantities among predict's arguments.  The amplitude of a rotation is an
+angle, in rad."""
 
 
 def read_argument(
     name: str, value: object, unit: str | None = None, title: str | None = None
 ) -> Quantity:
-    """Read and check a quantity of QUANTITIES; raises InputError.
+    """Read an argument listed in QUANTITIES and check its range.  Raises InputError.
 
     unit: SI unit that replaces the default; title: name of the argument in messages.
     """
@@ -180,7 +181,7 @@ def _numbers(body: Material) -> str:
 def read_contact(
     bodies: tuple[Body, Body], arguments: Arguments, *, load: object, contacts: int = 1
 ) -> tuple[TwoBodies, dict[str, str]]:
-    """The contact, and texts of its arguments by name.
+    """The contact, and a dict with the text of each argument.
 
     Parameters
     ----------
@@ -189,7 +190,7 @@ def read_contact(
     arguments : mapping
         Arguments of predict.  This function reads the shape and mu.
     load : quantity
-        Load of all contacts.
+        Total load of all contacts.
     contacts : int
         Number of contacts.  The returned contact has the mean load.
 
@@ -257,9 +258,9 @@ def _of_size(plain: TwoBodies, size: float, pressure: str, argument: object) -> 
     Parameters
     ----------
     plain : TwoBodies
-        The bodies and the load.  The radius has no effect.
+        The bodies and the load.  The radius is ignored.
     size : float
-        Half the longer side, m.
+        Half the longer side of the contact, m.
     pressure : str
         Name of the pressure.
     argument : object
@@ -327,8 +328,8 @@ def _check_hertzian(contact: TwoBodies, second: object, arguments: Arguments, lo
 
 
 def with_stroke(stroke: Stroke, arguments: Arguments) -> Arguments:
-    """The arguments, completed by the amplitude, the frequency and the load of a stroke from a
-    file.  Raises InputError for a frequency beside a column `time`."""
+    """Fill in a missing amplitude, frequency or load for a stroke from a file.  Raises InputError
+    if a frequency is specified although the file has a column `time`."""
     if stroke.frequency is not None and arguments["frequency"] is not None:
         allowed = "allowed only without a column time, which contains the frequency"
         raise InputError("frequency", arguments["frequency"], allowed)
@@ -339,10 +340,10 @@ def with_stroke(stroke: Stroke, arguments: Arguments) -> Arguments:
 def read_motion(
     motion: str, arguments: Arguments, sought: str | None
 ) -> tuple[RealMotion, dict[str, str]]:
-    """The motion, and texts of its arguments by name; raises InputError.
+    """The motion, and a dict with the text of each argument.  Raises InputError.
 
-    sought: name of the quantity that a search determines, which may be missing, or None.  The
-    speed may be missing, too.
+    sought: name of the quantity that a search determines, or None.  This quantity may be missing,
+    and so may the speed.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)
@@ -380,16 +381,16 @@ DRIVE_FIELDS = {
     "mass": "mass",
     "damping": "damping",
 }
-"""Arguments of predict that describe the drive, except the speed, and the fields of RealDrive that
-contain them."""
+"""Fields of RealDrive, keyed by the corresponding argument of predict.  The speed is not
+included."""
 
 
 def read_drive(
     motion: RealMotion, arguments: Arguments, sought: str | None
 ) -> tuple[RealDrive, dict[str, str]]:
-    """The drive, and texts of its arguments by name; raises InputError.
+    """The drive, and a dict with the text of each argument.  Raises InputError.
 
-    sought: name of the quantity that a search determines, which may be missing, or None.
+    sought: name of the quantity that a search determines, or None.  This quantity may be missing.
     """
     speed, force, spring = (arguments[name] for name in ("speed", "force", "drive_stiffness"))
     if speed is None and force is None and sought != "speed":

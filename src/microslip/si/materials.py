@@ -27,7 +27,7 @@ class Material:
     density : float or None
         Density, kg/m^3; None if unknown.
     hardness : float or None
-        Mean pressure under a hardness indent, Pa; None if unknown.
+        Mean pressure under a hardness indenter, Pa; None if unknown.
     source : str
         Source of the numbers.
 
@@ -68,7 +68,7 @@ class Material:
 
 RIGID = Material(math.inf, 0.0, source="by definition")
 TABLE = Path(__file__).with_name("materials.csv")
-"""File of the materials, in SI units.  An empty cell is an unknown property."""
+"""Table of the materials, in SI units.  An empty cell means that the property is unknown."""
 
 
 def _materials() -> dict[str, Material]:
@@ -83,11 +83,11 @@ def _materials() -> dict[str, Material]:
 
 MATERIALS = _materials() | {"rigid": RIGID}
 GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
-"""Names of materials by other names in lower case, for hints."""
+"""Material names keyed by aliases in lower case, for hints."""
 
 
 def material_named(name: object) -> Material:
-    """The Material of a name.  Raises InputError, with a hint, for an unknown name."""
+    """The Material called `name`.  Raises InputError, with a hint, if the name is unknown."""
     if isinstance(name, str) and name in MATERIALS:
         return MATERIALS[name]
     allowed = f"allowed is one of {', '.join(MATERIALS)}"

@@ -1,8 +1,8 @@
 """Motions in SI units: amplitudes, units and descriptions.
 
-A motion from a file of the user, or one with numbers such as "elliptic:forward=0.5", has a record
-that describes it.  The amplitude is a length if the motion does not rotate, and an angle if it
-only rotates.
+A motion from a user's file, or a motion with parameters such as "elliptic:forward=0.5", is
+described by a Motion record.  The amplitude is a length for a pure translation, and an angle for a
+pure rotation.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ PARTS = {
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""Names of these amplitudes in the text of a motion for the solver, and their SI units."""
+"""For each of these amplitudes: the name in a motion text for the solver, and the SI unit."""
 TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
 """Allowed arguments of the motions with several oscillations."""
@@ -46,16 +46,16 @@ MOTIONS = {
     "normal": "slides forward while its normal load oscillates, alone or with a motion",
     "continuous-bore": "slides forward and spins steadily about the contact normal",
 }
-"""Descriptions of the motions of the sphere."""
+"""Descriptions of the sphere's motions."""
 ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
 """Motions that vibrate along the drive, or have an oscillating load."""
 SAME = 1e-3
-"""Largest relative difference of two angles that count as equal.  One of them is sampled at 721
-phases."""
+"""Largest relative difference between two angles that count as equal.  One of these angles is
+sampled at 721 phases."""
 
 
 def check_motion(motion: object) -> None:
-    """Raise InputError unless a motion has amplitudes in SI units."""
+    """Raise InputError unless the amplitudes of a motion can be stated in SI units."""
     if speaks_of_file(motion):
         _stroke(motion)
     elif not isinstance(motion, str) or motion not in MOTIONS:
@@ -76,8 +76,7 @@ def is_steady(motion: str) -> bool:
 
 
 def has_several_amplitudes(motion: str) -> bool:
-    """True for a motion with several oscillations, and for one from a file, whose amplitude is a
-    factor."""
+    """True for a motion with several oscillations, and for a motion from a file."""
     return motion in COMBINED or speaks_of_file(motion)
 
 
@@ -100,7 +99,7 @@ def is_along_the_drive(motion: str) -> bool:
 
 
 def description(motion: str) -> str:
-    """Description of the motion of the sphere."""
+    """Describe the sphere's motion in words."""
     if speaks_of_file(motion):
         columns = _stroke(motion).columns
         rows = len(next(iter(columns.values())))
@@ -121,7 +120,7 @@ def _stroke(motion: str) -> Stroke:
 
 
 def _oscillation(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forward and lateral displacement and angle in a period, at amplitude 1."""
+    """Forward displacement, lateral displacement and angle over one period, at amplitude 1."""
     from microslip.motions.motion import LOOP
 
     return motion.displacement(LOOP, 0.0, 1.0, 0.0)

@@ -1,10 +1,9 @@
 """Uncertainty of the static limit and probability of each outcome under a force.
 
-The uncertain inputs are independent and normally distributed.  Their draws form a low-discrepancy
-sequence, so that equal requests have equal draws.  Forces and amplitudes are tabulated for changes
-of one input at a time.  The changes of their logarithms are added, which is exact for power laws,
-such as Hertz's theory.  The static limit is a function of the amplitude, and is solved at a few
-amplitudes.
+The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
+sequence, so that equal requests have equal draws.  Forces and amplitudes are tabulated as functions
+of one input at a time.  The changes in their logarithms are then added, which is exact for power
+laws, as in Hertz's theory.  The static limit is solved at a few amplitudes and interpolated.
 
 A draw outside the physical range is replaced by the closest physical value.  For example, a
 negative load becomes 0, and a Poisson's ratio above 0.5 becomes 0.5.
@@ -34,17 +33,16 @@ DEVIATIONS = np.linspace(-4.0, 4.0, 17)
 """Nodes of the table along one input, in standard deviations from its central value.  One draw in
 16000 is outside the table."""
 SMALLEST_SHARE = 1e-2
-"""Smallest tabulated value of a positive quantity, divided by its central value.  If 0 is not a
-physical value, this value replaces smaller draws."""
+"""Smallest tabulated value of a positive quantity, divided by its central value.  Smaller draws are
+replaced by this value if 0 is not a physical value."""
 BISECTIONS = 12
-"""Number of bisections for the limit of the accepted values.  The error of the limit is 2**-12 of
-half a standard deviation."""
+"""Number of bisections in the search for the limit of the accepted values.  Its error is 2**-12
+times half a standard deviation."""
 TOWARDS_ZERO = 2.0
-"""Largest ratio of neighbouring nodes below the central value.  The interpolation of logarithms is
-exact for power laws; other functions vary little over a factor of 2."""
+"""Largest ratio between neighbouring nodes below the central value.  The interpolation of
+logarithms is exact for power laws; other functions vary little over a factor of 2."""
 SAME_SHARE = 9
-"""Number of decimals to which shares of the amplitude are compared.  Later digits are rounding
-errors."""
+"""Number of decimals used to compare amplitude ratios.  Further digits are rounding errors."""
 INTERVAL = 0.025, 0.975
 """Probabilities of the quantiles at the ends of a 95 % interval."""
 DEVIATIONS_OF_INTERVAL = 1.959964
@@ -60,7 +58,7 @@ class UncertainInput:
     name, text : str
         Name of the argument, and its text as the user wrote it.
     low, high : float
-        The value minus and plus one standard deviation, in its SI unit.
+        The value minus and plus one standard deviation, in SI units.
     """
 
     name: str
@@ -78,21 +76,21 @@ class UncertainInput:
 
 
 Ends = Mapping[str, tuple[Prediction | None, Prediction | None]]
-"""Predictions at one standard deviation below and above the value of an input, by its name.  A
-prediction without a solution is None."""
+"""For each input, by name: predictions at one standard deviation below and above its value.  A
+prediction is None if it has no solution."""
 RequestAt = Callable[[Mapping[str, float]], Request]
 """Function request_at(changes) -> Request.  changes: values of arguments by name."""
 
 
 @dataclass(frozen=True)
 class _State:
-    """Quantities with closed forms for one set of inputs.
+    """Closed-form quantities for one set of inputs.
 
     Attributes
     ----------
     still, largest, force : float
         Friction without vibration, smallest force at which the contact runs away, and prescribed
-        force or None, N.
+        force, N.  The prescribed force can be None.
     amplitude : float or None
         Dimensionless amplitude.
     mu, poisson : float
@@ -113,7 +111,7 @@ class _State:
 def uncertainty_of_outcomes(
     prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
 ) -> dict[str, Any]:
-    """Columns of the uncertainty of the static limit, and of the probabilities of the outcomes.
+    """Columns for the uncertainty of the static limit and for the probabilities of the outcomes.
 
     prediction: the Prediction for the central values.
     """
@@ -167,17 +165,17 @@ def _error_of_draws(outcome: np.ndarray) -> float:
     """Error estimate of a probability.  outcome: array that is True for each draw with this
     outcome.
 
-    It is the difference between the two halves of the draws, and at least log(DRAWS) / DRAWS, the
-    order of the discrepancy of the sequence.
+    The estimate is the difference between the even and the odd draws.  It is at least log(DRAWS) /
+    DRAWS, the order of the sequence's discrepancy.
     """
     halves = [float(np.mean(outcome[first::2])) for first in (0, 1)]
     return max(abs(halves[0] - halves[1]), math.log(DRAWS) / DRAWS)
 
 
 def half_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
-    """Half the difference of a field of two predictions.
+    """Half the difference between two predictions in the field `name`.
 
-    It is infinite if one of them has no value, because there is no solution or the contact runs
+    It is infinite if one prediction has no value, because there is no solution or the contact runs
     away.
     """
     if low is None or high is None:
@@ -189,9 +187,9 @@ def half_difference(low: Prediction | None, high: Prediction | None, name: str) 
 def _normal_intervals(
     prediction: Prediction, ends: Iterable[tuple[Prediction | None, Prediction | None]]
 ) -> dict[str, Any]:
-    """Columns of the uncertainty of the result of a search, to first order in each input.
+    """Columns for the uncertainty of a search result, to first order in each input.
 
-    Draws are not used, since each one would need a separate search.
+    Draws are not used, because each draw would need a separate search.
     """
     fields: dict[str, Any] = {"interval_method": FIRST_ORDER}
     for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
@@ -212,7 +210,7 @@ def _ratio(threshold: np.ndarray, force: np.ndarray) -> np.ndarray:
 
 
 def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any]:
-    """Columns of the standard deviation and the 95 % interval.  Some draws can be infinite."""
+    """Columns for the standard deviation and the 95 % interval.  Draws can be infinite."""
     low, high = np.quantile(draws, INTERVAL, method="nearest")
     return {
         f"{name}_spread{unit}": math.inf if np.isinf(draws).any() else float(np.std(draws)),
@@ -252,14 +250,14 @@ def _state(request: Request) -> _State:
 
 
 class _Table:
-    """Quantities with closed forms at all draws, interpolated along one input at a time.
+    """Closed-form quantities at all draws, interpolated along one input at a time.
 
     Attributes
     ----------
     mu, still, largest, amplitude, poisson, force : np.ndarray, shape (DRAWS,)
         Fields of a _State at each draw.  The force is None if no force is prescribed.
     one_shape : bool
-        True if every state has the shape of the central one.
+        True if all states have the same `shape`.
     """
 
     def __init__(
@@ -309,10 +307,10 @@ def _log(value: float) -> float:
 
 
 def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
-    """Nodes along one input: logarithms of its absolute value, ascending, and the states at the
-    nodes.
+    """Nodes along one input: ascending logarithms of the input's absolute value, and the states at
+    the nodes.
 
-    If predict does not accept a node, the last node is at the limit of the accepted values.
+    If predict rejects a node, the last node is placed at the limit of the accepted values.
     """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))

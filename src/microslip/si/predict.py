@@ -46,8 +46,8 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are NaN if a search has no solution, by the quantity of the
-search."""
+"""Fields of a Prediction that are NaN if the search has no solution, keyed by the quantity that is
+searched."""
 
 
 def predict(
@@ -89,16 +89,16 @@ def predict(
     """Friction of a vibrated contact of two bodies, in SI units.
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the SI
-    unit.  A text can have a standard uncertainty, "10 N +- 5 %", except for the phase, densities,
-    hardnesses and the reduction.  A text with other characters raises InputError.
+    unit.  A text can include a standard uncertainty ("10 N +- 5 %"), except for the phase,
+    densities, hardnesses and the reduction.  Any other text raises InputError.
 
     Parameters
     ----------
     motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere oscillates about the contact
-        normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore", "normal",
-        "file:FILE" with one period of samples with units, or another translation or rotation of
-        `microslip.solve`.
+        normal), "continuous-bore" (the sphere spins steadily), "elliptic", "transverse-bore",
+        "normal", "file:FILE" with one period of samples with units, or another translation or
+        rotation of `microslip.solve`.
     radius, load, mu : quantity
         Radius of the sphere, m; normal load, N; coefficient of friction without vibration.  For a
         file with a column `load`, the default load is the mean of this column.
@@ -106,7 +106,7 @@ def predict(
         Forward speed of sliding, m/s.  With a spring, it is the speed of the far end of the
         spring.
     force : quantity
-        Constant forward force, N.  It replaces the speed, which is then the answer.
+        Constant forward force, N.  It replaces the speed, which is then computed.
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
@@ -115,51 +115,53 @@ def predict(
         Second body: "rigid" (default), a material, or E and nu as in "70 GPa, 0.22" or (70e9,
         0.22).
     counter_radius : quantity, optional
-        Radius of the counterbody, m, negative if it is hollow.  By default, it is flat.
+        Radius of the counterbody, m, negative if it is hollow.  By default, the counterbody is
+        flat.
     radius_across : quantity, optional
-        Radius of curvature across the forward direction, m.  With it, the contact is an ellipse.
+        Radius of curvature across the forward direction, m.  The contact is then an ellipse.
     contact_radius, pressure : quantity, str, optional
-        Half the longer side of the contact, m, which replaces all radii.  The pressure is one of
-        microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".  Default: "hertz".
+        `contact_radius` is half the longer side of the contact, m; it replaces all radii.
+        `pressure` is a pressure of microslip.solve, such as "ring:inner=0.5" or "file:pad.csv".
+        Default: "hertz".
     amplitude : quantity
         Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
         several oscillations it is the lateral half stroke.  For a file it is a factor, 1 by
         default.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
-        Properties of a motion with several oscillations: half strokes of the forward motion, m, of
-        the spin, rad, and of the load, N, and a phase, rad.  The phase applies to the forward
-        oscillation of elliptic, to the rotation of transverse-bore and to the displacement of
-        normal, which follow sin(omega t + phase).  The other oscillations follow sin(omega t).
+        For a motion with several oscillations: half strokes of the forward motion (m), the spin
+        (rad) and the load (N), and the phase (rad).  The phase applies to the forward oscillation
+        of "elliptic", the rotation of "transverse-bore" and the displacement of "normal".  These
+        oscillations follow sin(omega t + phase).  The other oscillations follow sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps) or angular (rad/s, deg/s, rpm, turn/s).  A
-        number is in Hz.  A file with a column `time` contains it.
+        number is in Hz.  For a file with a column `time`, the frequency follows from this column.
     rotation : quantity
         Angular speed of a continuous bore, in the units of a frequency.  A number is in rad/s.
     reduction : quantity, optional
         Requested reduction of friction, 0 to 1 or in per cent.  It replaces the amplitude, the
-        speed or the load.  The answer is the least amplitude, the largest speed or the largest
-        load with this reduction.  It is not allowed with a force or a spring.
+        speed or the load.  The answer is the smallest amplitude, the largest speed or the largest
+        load that gives this reduction.  A reduction is not allowed with a force or a spring.
     drive_stiffness, mass, damping : quantity, optional
         Stiffness of a spring between the drive and the body, N/m; mass of the body, kg; damping of
         a dashpot parallel to the spring, N s/m.  A mass is also allowed with a force.
     contacts : str, optional
-        Several contacts of a body, of equal shape, as for microslip.solve: "phase=0;phase=180".
-        `load` is the sum over all contacts.  It is divided among them in proportion to the `load`
-        of each contact.  force, drive_stiffness, mass and damping belong to the body.  Amplitudes
-        belong to a contact whose `amplitude` is 1.  Results for a single contact belong to a
-        contact with the mean load.  Warnings belong to the contact with the largest load.
+        Several contacts of equal shape under one body, as for microslip.solve: "phase=0;phase=180".
+        The argument `load` is the total load.  It is divided in proportion to the `load` of each
+        contact.  force, drive_stiffness, mass and damping apply to the body.  Amplitudes apply to a
+        contact whose `amplitude` is 1.  Results for one contact refer to a contact with the mean
+        load.  Warnings refer to the contact with the largest load.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or
-        a text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  They are used for warnings
-        only.
+        Hardness and density of the body and of the counterbody.  A hardness is a pressure, Pa, or a
+        text such as "700 HV" or "60 HRC".  A density is in kg/m^3.  Hardnesses and densities are
+        used for warnings only.
     wear_coefficient : quantity, optional
         Wear coefficient of Archard's law, m^2/N: worn volume of a body divided by load and sliding
         distance, such as "1e-5 mm^3/N/m".
     tolerance : quantity
-        Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it
-        is the largest accepted relative error of the speed, and the default is 1e-2.  For speeds
-        below a thousandth of the unit of speed, which is omega u_lim or that of the motion, the
-        error is relative to this thousandth.
+        Largest accepted absolute error of the ratio mu_macro.  Default: 1e-3.  Under a force, it is
+        the largest accepted relative error of the speed, and the default is 1e-2.  Below one
+        thousandth of the unit of speed, the error is relative to this thousandth.  The unit of
+        speed is omega u_lim, or a unit defined by the motion.
     power : bool
         True to also compute the power of the oscillation.
     map : xarray.Dataset, optional
@@ -176,11 +178,11 @@ def predict(
     Raises
     ------
     InputError
-        If an input is missing, ambiguous or out of range, if the contact radius is above half the
-        radius of a body, or if no solution has the requested reduction.  InputError is a
+        If an input is missing, ambiguous or out of range.  Also if the contact radius exceeds half
+        the radius of a body, or if no solution has the requested reduction.  InputError is a
         ValueError.  The message names the argument, its value and the allowed values.
     """
-    arguments = dict(locals())  # the arguments alone
+    arguments = dict(locals())  # before any other local variable
     return predict_arguments(arguments.pop("motion"), arguments)
 
 
@@ -189,8 +191,8 @@ NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters 
 
 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for arguments of predict by name, with its uncertainty if inputs are
-    uncertain."""
+    """The Prediction for a mapping of predict's arguments.  It includes the uncertainty if any
+    input is uncertain."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
     prediction = answer_request(request_of(motion, plain))
     if not uncertain:
@@ -254,8 +256,8 @@ def without_solution(request: Request, reason: str) -> Prediction:
 
 
 def _columns(name: str, one: Estimate | None, unit: float = 1.0, si: str = "") -> dict[str, Any]:
-    """Fields of a quantity and of its error.  unit: factor to SI units; si: end of the names of
-    the fields."""
+    """Fields for a quantity and its error.  unit: factor to SI units; si: suffix of the field
+    names."""
     value, error = (None, None) if one is None else (unit * one.value, unit * one.error)
     return {f"{name}{si}": value, f"{name}_error{si}": error}
 
@@ -288,7 +290,7 @@ def _common(request: Request, answer: Result, threshold: Estimate | None) -> dic
 
 
 def _oscillation(request: Request, answer: Result, limit: Result | None) -> dict[str, Any]:
-    """Fields of Oscillating, the part common to motions that oscillate."""
+    """Fields of the class Oscillating, which are common to all motions that oscillate."""
     motion, mu = request.motion, request.contact.mu
     fields: dict[str, Any] = {
         "amplitude_si": motion.amplitude if motion.stroke is None else None,
@@ -358,9 +360,9 @@ def _outcome(force: float, answer: Result) -> str | None:
 
 
 def _way_to_rest(request: Request) -> dict[str, Any]:
-    """Fields of the displacement of a contact that comes to rest, or the reason why it is unknown.
+    """Fields for the displacement until the contact rests, or the reason why it is unknown.
 
-    The displacement is not computed for a contact that is not round, which would take minutes.
+    The displacement is computed for round contacts only, because other contacts would take minutes.
     """
     contact, drive = request.contact, request.drive_groups
     if set(drive) != {"force"} or request.carriers.text is not None:

@@ -1,8 +1,8 @@
-"""Predictions for real contacts: a record for each kind of request, and their common part.
+"""Predictions for real contacts: a record class for each kind of request, and their base class.
 
 A contact at a prescribed speed has the record `Sliding`, or `SteadySpin` without an oscillation.  A
 contact under a force has the record `Rest`, `Drift` or `SpinDrift`.  `Prediction.to_dict` returns
-the columns of JSON and of tables, which are the same for all records.
+the columns used in JSON output and in tables.  The columns are the same for all records.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _NAMES = """
     probability_runs_away probability_error
 """
 COLUMNS = tuple(_NAMES.split())
-"""Names of the columns of JSON and of tables, in order."""
+"""Names of the columns in JSON output and in tables, in order."""
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "wear", "uncertainty")
@@ -48,7 +48,7 @@ UNITS = {
     **{"_Hz": "Hz", "_kg": "kg", "_rad": "rad", "_W": "W", "_J": "J", "_N": "N", "_m": "m"},
     **{"_s": "s", "_m3": "m3"},
 }
-"""Unit of a column, by the ending of its name.  The first matching end counts."""
+"""Units of columns, keyed by the suffix of the column name.  The first matching suffix counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
@@ -65,7 +65,7 @@ class DrivenBody:
     Attributes
     ----------
     drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
-        Stiffness of the spring, N/m, mass, kg, and damping, N s/m.  A missing part is None.
+        Stiffness of the spring (N/m), mass (kg) and damping (N s/m).  A missing part is None.
     stiffness, mass, damping : float or None
         Dimensionless stiffness, mass and damping, as in microslip.solve.
     regime : str
@@ -87,8 +87,7 @@ class DrivenBody:
 
 @dataclass(frozen=True)
 class Travel:
-    """Times to travel 1 mm and one contact radius under a force, s, and their error estimates,
-    s."""
+    """Times to travel 1 mm and one contact radius under a force, and their error estimates, s."""
 
     time_to_1_mm_s: float
     time_to_1_mm_error_s: float
@@ -98,7 +97,7 @@ class Travel:
 
 @dataclass(frozen=True)
 class Search:
-    """A search for the quantity with the requested reduction of friction.
+    """A search for the quantity that gives the requested reduction of friction.
 
     Attributes
     ----------
@@ -122,10 +121,10 @@ class Power:
         Mean power of the oscillation or of the spin, W.  None with a dashpot, which dissipates an
         unknown part of it.
     dissipated_power_W, dissipated_power_error_W : float
-        Mean power that friction dissipates, W.  Without a dashpot it is the power of the
-        oscillation and of the drag together.
+        Mean power dissipated by friction, W.  Without a dashpot, it is the sum of the oscillation's
+        power and the drag power.
     energy_per_cycle_J, energy_per_cycle_error_J : float
-        Energy that friction dissipates in a period or in a turn, J.
+        Energy dissipated by friction per period or per turn, J.
     """
 
     vibration_power_W: float | None
@@ -138,14 +137,14 @@ class Power:
 
 @dataclass(frozen=True)
 class Wear:
-    """Wear of a body in a period or in a turn, by Archard's law.
+    """Wear of a body per period or per turn, by Archard's law.
 
     Attributes
     ----------
     wear_volume_per_cycle_m3, wear_volume_per_cycle_error_m3 : float
         Worn volume, m^3: the wear coefficient times the dissipated energy, divided by mu.
     wear_depth_per_cycle_m, wear_depth_per_cycle_error_m : float
-        Mean depth over the contact area, m.
+        Mean worn depth over the contact area, m.
     """
 
     wear_volume_per_cycle_m3: float
@@ -169,8 +168,8 @@ class Prediction:
         The motion, and the pressure as in microslip.solve.
     contacts : str or None
         The contacts of the body as in microslip.solve; None for a single contact.  For several
-        contacts, forces and powers belong to the body, and sizes and dimensionless groups belong to
-        a contact with the mean load.
+        contacts, forces and powers refer to the body.  Sizes and dimensionless groups refer to a
+        contact with the mean load.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Contact radius and indentation, m, and largest pressure, Pa.
     u_lim_m : float
@@ -191,7 +190,7 @@ class Prediction:
         Coefficient of friction with vibration, mu times mu_macro; dimensionless.
     friction_force_N, friction_force_error_N, friction_force_still_N : float
         Mean forward force with vibration, its error estimate, and the force without vibration, N.
-        Both forces belong to the same mean load.
+        Both forces are for the same mean load.
     force_reduction : float
         1 - mu_macro, dimensionless; its error estimate is mu_macro_error.
     force_threshold_N, force_threshold_error_N : float or None
@@ -201,24 +200,23 @@ class Prediction:
     model : str
         Contact model, or "closed-form".
     converged, reason : bool, str
-        True if the error estimate is at most the tolerance; otherwise `reason` is set.  The error
-        is that of mu_macro, or of the speed under a force.
+        True if the error estimate of mu_macro, or of the speed under a force, is at most the
+        tolerance.  Otherwise, `reason` is set.
     warnings : tuple of str
         Assumptions of the theory that the contact violates.
     not_checked : tuple of str
-        Checks that need a missing property.
+        Checks that were skipped because a property is missing.
     power : Power or None
         Power of the spin or of the oscillation, and dissipated energy; None if the answer is not
         converged.
     wear : Wear or None
-        Wear in a cycle, if the user gave a wear coefficient.
+        Wear per cycle, if the user gave a wear coefficient.
     uncertainty : mapping
         Standard uncertainties, 95 % intervals and probabilities of the outcomes for uncertain
         inputs, by column.  The columns are NAME_spread, NAME_low and NAME_high, `interval_method`
         ("quantiles" of draws, or "first order"), `probability_stays`, `probability_moves`,
-        `probability_runs_away` and `probability_error`.  A standard uncertainty is infinite if
-        there is no answer for some inputs within their uncertainty.  Empty if every input is
-        exact.
+        `probability_runs_away` and `probability_error`.  A standard uncertainty is infinite if some
+        inputs within their uncertainty have no answer.  Empty if every input is exact.
     """
 
     understood: dict = field(compare=False)
@@ -280,7 +278,7 @@ class Prediction:
 
 @dataclass(frozen=True, kw_only=True)
 class Oscillating(Prediction):
-    """The part common to all motions that oscillate.
+    """Base class of predictions for motions that oscillate.
 
     Attributes
     ----------
@@ -288,7 +286,7 @@ class Oscillating(Prediction):
         Half stroke of the oscillation, m, or rad for a bore.  It is None if only other components
         oscillate.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
-        Further half strokes, and the phase, of a motion with several oscillations.
+        Other half strokes and the phase of a motion with several oscillations.
     frequency_Hz : float
         Cyclic frequency of the oscillation, Hz.
     amplitude : float
@@ -324,7 +322,7 @@ class Oscillating(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Sliding(Oscillating):
-    """Friction at a speed; `search` is set for a requested reduction."""
+    """Friction at a prescribed speed.  `search` is set if a reduction was requested."""
 
     search: Search | None = None
 
@@ -355,7 +353,7 @@ class SteadySpin(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Forced(Prediction):
-    """The part common to all contacts under a constant force.
+    """Base class of predictions for contacts under a constant force.
 
     Attributes
     ----------
@@ -384,7 +382,7 @@ class Forced(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Forced, Oscillating):
-    """A contact that moves under a force, or that may move within the error."""
+    """A contact under a force that moves, or that may move within the error estimate."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -415,7 +413,7 @@ class SpinDrift(Forced, SteadySpin):
 
 @dataclass(frozen=True)
 class NoPrediction:
-    """A case of a table without a prediction.
+    """A case in a table that has no prediction.
 
     Attributes
     ----------

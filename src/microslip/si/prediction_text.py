@@ -42,10 +42,10 @@ PROBABILITIES = {
     "probability_moves": "moves",
     "probability_runs_away": "runs away",
 }
-"""Names of the outcomes, by the columns of their probabilities."""
+"""Names of the outcomes, keyed by their probability columns."""
 LARGEST_NUMBER = 1e4
-"""Largest number with which the contact radius is printed in the unit of the other lengths.  A
-larger radius is printed in another unit."""
+"""Largest value of the contact radius that is printed in the unit of the other lengths.  A larger
+radius is printed in another unit."""
 ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
 """Names of the oscillation or spin, for motions other than a single vibration."""
 TIMES = (
@@ -56,7 +56,7 @@ REFERENCE_LOADS = (
     "stiffness, mass and damping are divided by mu times the load without oscillation (the "
     "reference load), force and mu_macro by mu times the mean load"
 )
-"""Remark on the dimensionless groups of a drive for an oscillating normal load."""
+"""Remark on a drive's dimensionless groups under an oscillating normal load."""
 ALONG_THE_DRIVE = (
     "it is not the force threshold, because the vibration is along the drive: at a prescribed "
     "speed it reverses the force, which reduces the mean; under a constant force a body without "
@@ -67,17 +67,17 @@ UNKNOWN_THRESHOLD = (
     "it is not the force threshold, because part of the vibration is along the drive; with --force "
     "the prediction says whether the contact moves"
 )
-"""Explanation for a static friction without a known force threshold."""
+"""Explanation printed with the static friction if the force threshold is unknown."""
 FROM_INPUTS = "from the uncertain inputs"
 FROM_LINEAR_MODEL = (
     f"{FROM_INPUTS} to first order: static friction is assumed to be linear in each of them"
 )
-"""Text for the method of an interval: quantiles, or first order."""
+"""Texts for the two methods of computing an interval: quantiles, and first order."""
 NO_SPREAD_OF_SPEED = "none of the speed: the contact can run away"
 """Text for a contact that runs away for some values of the inputs within their uncertainty."""
 STAYS_WITHIN_SPREADS = "none of the speed: the contact can move"
-"""Text for a contact that stays for inputs within one standard deviation, but can move for
-others."""
+"""Text for a contact that stays at rest for inputs within one standard deviation, but can move for
+other inputs."""
 OUTCOMES = {
     "moves": "it moves, cycle by cycle",
     "stays": "it stays: the force is below the threshold",
@@ -88,7 +88,7 @@ OUTCOMES = {
 
 
 def prediction_text(record: Any) -> str:
-    """All lines of a Prediction."""
+    """The printed text of a Prediction."""
     show, forced = _Texts(record).show, record.force_N is not None
     lines = [
         line(name.replace("_", " "), record.understood[name])
@@ -125,7 +125,7 @@ def prediction_text(record: Any) -> str:
 
 
 def _friction(record: Any, show: Show) -> list[str]:
-    """Lines of the friction at a speed."""
+    """Lines about the friction at a prescribed speed."""
     lines = show("mu_macro", "{mu_macro}: ratio of friction with {added} to friction without")
     coefficient = "coefficient of friction with {added}, instead of {understood[mu]}"
     lines += show("mu_apparent", f"{{mu_apparent}}: {coefficient}")
@@ -142,7 +142,7 @@ def _friction(record: Any, show: Show) -> list[str]:
 
 
 def _threshold(record: Any, show: Show) -> list[str]:
-    """Lines of the force threshold.  There are none if it is unknown."""
+    """Lines about the force threshold; empty if the threshold is unknown."""
     value, error = record.force_threshold_N, record.force_threshold_error_N
     if value is None or error is None:
         return []
@@ -167,7 +167,7 @@ def _moves_at_static_friction(record: Any) -> bool:
 
 
 def _outcome(record: Any, show: Show) -> list[str]:
-    """Lines of a contact under a force: its threshold, outcome and displacement."""
+    """Lines about a contact under a force: its threshold, outcome and displacement."""
     lines, factor, columns = _threshold(record, show), record.safety_factor, record.uncertainty
     safe = factor is not None and (factor > record.safety_factor_error or record.safety_factor_high)
     lines += show("safety factor", "{safety_factor}: threshold over force", bool(safe))
@@ -200,7 +200,7 @@ def _outcome(record: Any, show: Show) -> list[str]:
 
 
 def _spread(record: Any, show: Show) -> list[str]:
-    """The line of the standard uncertainties that follow from uncertain inputs."""
+    """The line with the standard uncertainties that result from uncertain inputs."""
     if not record.uncertainty:
         return []
     parts = ["{mu_apparent_spread} of mu_apparent", "{friction_force_spread_N} of the force"]
@@ -220,7 +220,7 @@ def _spread(record: Any, show: Show) -> list[str]:
 
 
 def _largest_speed(record: Any) -> float:
-    """The speed with its error, m/s."""
+    """Largest speed within the error estimate, m/s."""
     return abs(record.speed_m_s) + (getattr(record, "speed_error_m_s", None) or 0.0)
 
 
@@ -272,14 +272,14 @@ class _Texts(dict[str, Any]):
             self["sought_spread_text"] = number_text(spread / unit[1], 0.0, unit[0], digits=2)
 
     def show(self, title: str, template: str, when: bool = True) -> list[str]:
-        """The line of a template.  There is none if a column in the template is unknown."""
+        """The line for a template; empty if a column in the template is unknown."""
         try:
             return [line(title, template.format_map(self))] if when else []
         except KeyError:
             return []
 
     def __missing__(self, name: str) -> str:
-        """The text of a column or of an interval.  Raises KeyError if it is unknown."""
+        """The text of a column or of an interval.  Raises KeyError if the column is unknown."""
         end = next((end for end in ENDS if name.endswith(end)), "")
         stem = name.removesuffix(end)
         if stem.endswith("_interval"):

@@ -22,10 +22,11 @@ PREFIXES = (
 )
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
-"""Smallest value of u_lim in the unit of all lengths of an answer.  The contact radius is some
-hundred times larger, so that its value is between 1 and a few thousand."""
+"""Smallest printed value of u_lim; it determines the unit of all lengths in an answer.  The contact
+radius is a few hundred times larger, so its value is between 1 and a few thousand."""
 LEAST_SPEED = 0.1
-"""Smallest value of the largest speed in the unit of all speeds of an answer."""
+"""Smallest printed value of the largest speed; it determines the unit of all speeds in an
+answer."""
 NEWTONS = 1e-2, 1e4
 """Range of forces that are printed in a unit without a prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (
@@ -34,19 +35,19 @@ REFERENCE_LOADS_OF_DRIVING = (
 )
 """Remark on a force-speed line for an oscillating normal load."""
 QUANTILES, FIRST_ORDER = "quantiles", "first order"
-"""Methods for an interval: quantiles of draws for which the static friction is solved, or static
-friction that is assumed to be linear in each input."""
+"""Methods of computing an interval.  QUANTILES solves the static friction for the draws.
+FIRST_ORDER assumes that the static friction is linear in each input."""
 EXCLUDED = 1e-3
 """Probability below which an outcome counts as excluded."""
 
 
 def line(title: str, text: str) -> str:
-    """A line with its title."""
+    """Format a line with its title."""
     return f"{title:<{WIDTH - 1}} {text}"
 
 
 def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float]:
-    """The largest of `units`, (name, size), in which a value is at least `least`."""
+    """The largest unit (name, size) in `units` in which a value is at least `least`."""
     return next((one for one in units if abs(value) >= least * one[1]), units[-1])
 
 
@@ -58,16 +59,17 @@ def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
 
 
 def force_unit(newtons: float) -> tuple[str, float]:
-    """The unit of all forces of an answer."""
+    """The unit for all forces in an answer."""
     low, high = NEWTONS
     within = low <= abs(newtons) < high or not math.isfinite(newtons)
     return ("N", 1.0) if within else prefixed(newtons, "N")
 
 
 def probability_text(chance: float, error: float) -> str:
-    """A probability in percent with its error, or a bound if it is close to 0 or 1.
+    """Format a probability in per cent with its error, or as a bound if it is close to 0 or 1.
 
-    Close means a distance below EXCLUDED or below the error.  The bound includes the error.
+    Close means that the distance is below EXCLUDED or below the error.  The bound includes the
+    error.
     """
     distance = min(chance, 1.0 - chance)
     if distance >= max(EXCLUDED, error):
@@ -77,19 +79,18 @@ def probability_text(chance: float, error: float) -> str:
 
 
 def in_unit(value: float, error: float, unit: tuple[str, float]) -> str:
-    """Text of a quantity and its error in the unit (name, size).  Both arguments are in SI
-    units."""
+    """Format a quantity and its error in the unit (name, size).  Both values are in SI units."""
     name, size = unit
     return number_text(value / size, error / size, name)
 
 
 def length_unit(u_lim: float) -> tuple[str, float]:
-    """The unit of all lengths of an answer."""
+    """The unit for all lengths in an answer."""
     return unit_for(u_lim, LENGTHS, LEAST_LENGTH)
 
 
 def speed_unit(speed: float, u_lim: float) -> tuple[str, float]:
-    """The unit of all speeds of an answer.
+    """The unit for all speeds in an answer.
 
     speed: largest speed, m/s; u_lim: replaces a speed that is 0 or not finite.
     """
@@ -110,7 +111,7 @@ def not_converged(prediction: Any) -> list[str]:
 
 
 def runs_away(prediction: Any) -> str:
-    """Sentence about a contact that accelerates without limit."""
+    """A sentence about a contact that accelerates without limit."""
     if prediction.force < 1.0:
         return f"it {prediction.reason}"
     unit = force_unit(prediction.friction_force_still_N)

@@ -21,12 +21,12 @@ from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
-"""Default tolerance of a force divided by mu times the mean load."""
+"""Default tolerance of a force, relative to mu times the mean load."""
 
 
 @dataclass(frozen=True, eq=False)
 class RealPropulsionLine:
-    """The line from the stall force to the no-load speed of a real contact.
+    """The force-speed line of a real contact, from the stall force to the no-load speed.
 
     Every quantity has an error estimate.  Negative forces and speeds are backward.
 
@@ -47,8 +47,8 @@ class RealPropulsionLine:
     no_load_speed_m_s, no_load_speed_error_m_s : float
         Speed without an opposing force, m/s.
     holding_force_low_N, holding_force_low_error_N : float or None
-        Lowest force under which the body stays at rest, N.  It is negative if it points backward,
-        and None if the motion propels the contact.
+        Lowest force under which the body stays at rest, N.  A negative force points backward.  None
+        if the motion propels the contact.
     holding_force_high_N, holding_force_high_error_N : float or None
         Highest force under which the body stays at rest, N.
     speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
@@ -62,7 +62,8 @@ class RealPropulsionLine:
     converged, reason : bool, str
         True if all error estimates are within the tolerance; otherwise `reason` is set.
     warnings, not_checked : tuple of str
-        Assumptions that the contact violates, and checks that need a missing property.
+        Assumptions that the contact violates, and checks that were skipped because a property is
+        missing.
     """
 
     understood: dict = field(repr=False)
@@ -129,13 +130,13 @@ def predict_propulsion(
     Parameters
     ----------
     motion : str
-        A self-propelled motion, as for `microslip.propulsion`, without a rotation.
+        A self-propelled motion of `microslip.propulsion` without a rotation.
     amplitude : quantity
-        Half stroke, m, of a component of the motion whose number is 1.  For an oscillating normal
-        load, `load` is the load without oscillation.  The amplitude of the load is its number
-        times `load`, times the amplitude divided by u_lim.
+        Half stroke, m, of a component whose number in `motion` is 1.  For an oscillating normal
+        load, `load` is the load without oscillation.  The load's amplitude is its number in
+        `motion`, times `load`, times the amplitude divided by u_lim.
     tolerance : quantity
-        Largest accepted error of a force divided by mu times the mean load.
+        Largest accepted error of a force, relative to mu times the mean load.
     points : int
         Number of points on the line, including both ends.
 
@@ -197,14 +198,15 @@ def predict_propulsion(
 
 
 def _in_si(line: PropulsionLine, unit: float, name: str, *quantities: str) -> dict[str, Any]:
-    """Fields of quantities and their errors.  unit: factor to SI units; name: name of the unit."""
+    """Fields for quantities and their errors.  unit: factor to SI units; name: name of the unit."""
     stems = [part for quantity in quantities for part in (quantity, f"{quantity}_error")]
     values = {stem: getattr(line, stem) for stem in stems}
     return {f"{stem}_{name}": None if one is None else unit * one for stem, one in values.items()}
 
 
 def _holding_forces(line: PropulsionLine, newtons: float) -> tuple[dict[str, Any], str]:
-    """Fields of the holding forces, and the reason.  newtons: unit of the forces, N."""
+    """Fields for the holding forces, and the text of the field `reason`.  newtons: unit of the
+    forces, N."""
     names = [f"holding_force_{name}" for name in ("low", "high")]
     fields = _in_si(line, newtons, "N", *names)
     low, low_error, high, high_error = fields.values()

@@ -20,7 +20,7 @@ from microslip.si.printed_lines import (
 
 
 def propulsion_text(real: Any) -> str:
-    """All lines of a propulsion.RealPropulsionLine."""
+    """The printed text of a propulsion.RealPropulsionLine."""
     unit = length_unit(real.u_lim_m)
     force = force_unit(real.stall_force_N)
     lines = [line(name.replace("_", " "), text) for name, text in real.understood.items()]

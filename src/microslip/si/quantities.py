@@ -1,8 +1,8 @@
-"""Conversion of texts with units, such as "210 GPa", to values in SI units, by a strict grammar.
+"""Convert texts with units, such as "210 GPa", to values in SI units, by a strict grammar.
 
-A text is one number and one unit.  Python's float must accept the number, which has only the
-digits 0 to 9 and no underscores.  A Unicode minus is also accepted.  The module `units` reads the
-unit.  Every other text raises InputError.
+A text is one number and one unit.  The number must be one that Python's float accepts, with the
+digits 0 to 9 and without underscores.  A Unicode minus is also accepted.  The module `units` reads
+the unit.  Every other text raises InputError.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ HINTS = {
     ("Hz", PER_SECOND): AMBIGUOUS,
     ("rad/s", PER_SECOND): AMBIGUOUS,
 }
-"""Hints for a wrong unit, by the required SI unit and the root units of the wrong unit."""
+"""Hints for a wrong unit, keyed by the required SI unit and the root units of the wrong unit."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ class Quantity:
     si : float
         Value in the SI unit.
     text : str
-        The text of the user.  The SI value is added if the unit is of another kind, such as turns
-        for an angle, or revolutions per minute for a frequency.
+        The user's text.  The SI value is appended if the unit is of another kind, such as turns for
+        an angle, or revolutions per minute for a frequency.
     """
 
     si: float
@@ -103,12 +103,12 @@ def read(
     low, high : float
         Finite values with low < value <= high are allowed.
     low_open : bool
-        False to allow the value `low`.
+        False to allow `low` itself.
 
     Raises
     ------
     InputError
-        If the value is not such a quantity, or is out of range.
+        If the value is not a quantity in this unit, or is out of range.
     """
     try:
         quantity = _from_text(value, unit) if isinstance(value, str) else _from_object(value, unit)
@@ -164,7 +164,7 @@ def _from_text(text: str, unit: str) -> Quantity:
 
 
 def _with_unit(digits: str, rest: str, unit: str) -> tuple[float, str]:
-    """SI value of a number with a unit as text, and the text to add to that of the user."""
+    """SI value of a number with a unit, and the text to append to the user's text."""
     if not rest and Decimal(digits) == 0:  # 0 is the same in all units
         return 0.0, f" {unit}"
     if not rest:

@@ -1,4 +1,4 @@
-"""Search for the amplitude, the speed or the load that gives a prescribed reduction of friction."""
+"""Search for the amplitude, speed or load that gives a prescribed reduction of friction."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
 STRIDE = 0.05
-"""Step of the finite difference for the slope of friction, in the logarithm of the quantity."""
+"""Step of the finite difference for the slope of friction.  It is a step in the logarithm of the
+unknown."""
 
 
 class NotAttainedError(InputError):
-    """The requested reduction is outside the range of the search.  Only a solve can show this."""
+    """The requested reduction is outside the range of the search.  This can be detected only by a
+    solve."""
 
 
 class _NoAnswerError(Exception):
@@ -32,20 +34,19 @@ class _NoAnswerError(Exception):
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of requests along which friction decreases.  A place on the line is a real number.
+    """A family of requests along which friction decreases.  A place on this line is a real number.
 
     Attributes
     ----------
     at : callable
         Function at(place) -> Request.
     low, start, high : float
-        First place of the search, first candidate for the upper bound of the solution, and last
-        place.
+        First place of the search, first trial for the upper end of the bracket, and last place.
     size : callable
         Function size(place) -> quantity at this place, in its SI unit.
     every, none : str
-        Subjects of the messages if the reduction is too large at `low`, and if it is too small
-        everywhere.
+        Subjects of two error messages.  `every` is used if the reduction is already too large at
+        `low`, and `none` if the reduction is too small at all places.
     end : float or None
         Place with the least friction; None if this place is unknown.
     rate : float
@@ -64,7 +65,7 @@ class _Line:
 
 
 def reduce_friction(request: Request) -> tuple[Request, float]:
-    """Search for the least amplitude, the largest speed or the largest load that gives a reduction.
+    """Search for the smallest amplitude, largest speed or largest load that gives a reduction.
 
     Returns
     -------
@@ -75,7 +76,7 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
     Raises
     ------
     NotAttainedError
-        If the reduction is too small, or too large, in the whole range of the search.
+        If all places of the search give a smaller reduction, or all give a larger one.
     InputError
         If no search can determine the quantity.
     """
@@ -97,7 +98,7 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
         if not math.isfinite(friction):
             raise _NoAnswerError
         if last.motion.speed == 0.0 and friction <= error:
-            friction = 0.0  # the whole contact slides, and the rest is an error
+            friction = 0.0  # the whole contact slides; the remaining friction is an error
         reductions.append((100.0 * (1.0 - friction), 100.0 * error))
         return friction - (1.0 - share)
 

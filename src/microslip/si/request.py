@@ -52,7 +52,7 @@ apply to all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
 """Quantities that a search can determine."""
 ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
-"""Arguments of microslip.solve, and the corresponding arguments of predict."""
+"""Arguments of predict, keyed by the corresponding arguments of microslip.solve."""
 NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes of real machines"
 
 
@@ -74,7 +74,7 @@ class Request:
         Name of the quantity that a search determines, and the requested reduction of friction, 0 to
         1.
     tolerance : float
-        Accepted error of mu_macro, or relative error of the speed.
+        Accepted error of mu_macro, or accepted relative error of the speed under a force.
     understood : dict of str
         The arguments as the user wrote them, by name.
     """
@@ -91,7 +91,7 @@ class Request:
     understood: dict[str, str]
 
     def at(self, **changes: Any) -> Request:
-        """A copy with other fields of the motion, or with another `contact`."""
+        """A copy with changed fields of the motion, or with another `contact`."""
         contact = changes.pop("contact", self.contact)
         return replace(self, contact=contact, motion=replace(self.motion, **changes))
 
@@ -114,12 +114,12 @@ class Request:
 
     @property
     def speed_unit(self) -> float:
-        """Forward speed whose dimensionless velocity is 1, m/s."""
+        """Forward speed, m/s, at which the dimensionless velocity is 1."""
         return speed_unit(self.motion, self.contact)
 
     @cached_property
     def groups(self) -> tuple[float | None, float | None]:
-        """Velocity and amplitude for microslip.solve.  A missing one is None."""
+        """Velocity and amplitude for microslip.solve.  A missing value is None."""
         return groups(self.motion, self.contact)
 
     @cached_property
@@ -150,7 +150,7 @@ class Request:
     def problem(self) -> Problem:
         """The dimensionless Problem in the limit of vanishing speed.
 
-        Raises InputError for several contacts under a motion or a pressure that excludes them.
+        Raises InputError if the motion or the pressure does not allow several contacts.
         """
         settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
         return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
@@ -179,8 +179,8 @@ class Request:
         Parameters
         ----------
         velocity : float or None
-            Dimensionless velocity; None under a force.  A velocity above the range of the solver
-            is replaced by the largest allowed one, at which the vibration has no effect.
+            Dimensionless velocity; None under a force.  A velocity above the range of the solver is
+            replaced by the largest allowed velocity, at which the vibration has no effect.
         tolerance : float
             Largest accepted error.
         amplitude, poisson : float, optional
@@ -211,7 +211,8 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """A copy of the error that names the argument of predict instead of that of the solver."""
+        """A copy of the error that names the argument of predict instead of the solver's
+        argument."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
             return error
@@ -243,7 +244,7 @@ class Request:
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The Request for all arguments of predict by name.  Raises InputError."""
+    """The Request for a mapping of all arguments of predict.  Raises InputError."""
     if speaks_of_file(motion):
         arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():
@@ -291,15 +292,14 @@ def request_of(motion: str, arguments: Arguments) -> Request:
 
 def _is_sequence(value: object) -> bool:
     """True for an array, a list or a column of a table, with or without a unit."""
-    values = getattr(value, "magnitude", value)  # of a pint quantity
+    values = getattr(value, "magnitude", value)  # the array in a pint quantity
     if isinstance(values, str | bytes | Mapping):
         return False
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
 def _sought(motion: str, arguments: Arguments) -> str | None:
-    """Name of the quantity that a search determines, which is the missing one; None without a
-    reduction.
+    """Name of the missing quantity, which a search determines; None without a reduction.
 
     Raises InputError unless exactly one quantity is missing.
     """

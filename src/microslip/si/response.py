@@ -1,4 +1,6 @@
-"""Forces of a real contact that follows a measured path, given as columns with units.
+"""Forces of a real contact that follows a measured path.
+
+The path is a table of columns with units:
 
 forward [um],lateral [um],load [N]
 0,0,10
@@ -46,16 +48,16 @@ class RealResponse:
         Forces and torque.  They are positive in the direction of the displacement that they
         resist.
     force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
-        Error estimate of the forces, the larger one of both, and error estimate of the torque.
+        Error estimate of both forces (the larger of the two), and error estimate of the torque.
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
         Fraction of the area in contact that sticks, see adaptive.response.Response.
     u_lim_m, contact_radius_m, load_N, mu : float
-        Displacement at which the whole contact slides, m, contact radius, m, load of the reference
-        state, N, and coefficient of friction.
+        Displacement at which the whole contact slides (m), contact radius (m), load of the
+        reference state (N), and coefficient of friction.
     tolerance : float
-        Largest accepted error of a force divided by mu times the load.
+        Largest accepted error of a force, relative to mu times the load.
     converged : bool
         Whether every error is within the tolerance.
     reason : str
@@ -122,12 +124,12 @@ def predict_response(
         Columns `forward`, `lateral`, `angle`, and `load` or `indentation`, with units as in
         "forward [um]".  Columns without a unit are in SI units.
     tolerance : float
-        Largest accepted error of a force divided by mu times the load, and of the torque divided by
-        its value at full slip.
+        Largest accepted error of a force, relative to mu times the load, and of the torque,
+        relative to its value at full slip.
     decimal, encoding : str
         Decimal mark and encoding of a file.
     progress : callable or None
-        As for `microslip.response`.
+        Progress callback, see `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
         contact.  The load belongs to the reference state.
@@ -190,7 +192,8 @@ def contact_of(contact: Mapping[str, object]) -> TwoBodies:
 
 
 def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response:
-    """Call `microslip.response` with the columns of a table, which messages call `path`."""
+    """Call `microslip.response` with the columns of a table.  Error messages refer to the table as
+    `path`."""
     try:
         return response(**columns, **settings)
     except InputError as error:

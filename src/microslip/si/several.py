@@ -1,7 +1,7 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups belong to a contact with the mean load, see solver.body_problem.  The
-drive of the body is divided by the number of contacts.  Forces are multiplied by this number.
+All dimensionless groups refer to a contact with the mean load, see solver.body_problem.  The body's
+drive is divided by the number of contacts.  Computed forces are multiplied by this number.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class Carriers:
     count : int
         Number of contacts.
     heaviest, widest : float
-        Largest load of a contact divided by the mean load, and largest amplitude of a contact
-        divided by the amplitude of the body.
+        Largest load of any contact divided by the mean load, and largest amplitude of any contact
+        divided by the body's amplitude.
     """
 
     text: str | None = None
@@ -55,7 +55,7 @@ class Carriers:
 
 
 def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and their text in a dict by argument.  Raises InputError.
+    """The Carriers, and a dict with the text of the argument `contacts`.  Raises InputError.
 
     alone: values of arguments that are allowed only for a single contact.
     """

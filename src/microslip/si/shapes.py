@@ -15,10 +15,10 @@ from microslip.si.bodies import TwoBodies
 from microslip.si.printed_lines import prefixed
 
 ROUND = 1e-6
-"""Largest relative difference of two radii that count as equal."""
+"""Largest relative difference between two radii that count as equal."""
 AGREES = 0.01
-"""Largest relative difference of sizes and loads that agree, for rounding to two or three
-digits."""
+"""Largest relative difference between two sizes or loads that count as equal.  It allows for
+rounding to two or three digits."""
 DISAGREES = (
     "the {what} is {value}, but {measured} in the pressure file: only the shape of the pressure in "
     "the file is used"
@@ -75,9 +75,10 @@ class ShapedContact(TwoBodies):
 
     @property
     def contradictions(self) -> list[str]:
-        """Sentences for a size or a load that differs from that of a pressure file with units.
+        """Messages about a size or a load that differs from the value in a pressure file with
+        units.
 
-        A difference within the error of the reading of the file is accepted, see AGREES.
+        Differences within the file's reading error are accepted, see AGREES.
         """
         texts, readings = [], (self._record, *self._record.readings)
         inputs = (("contact radius", self.size, "size_m", "m"), ("load", self.load, "load_N", "N"))
@@ -148,7 +149,7 @@ def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
 def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
     """A contact with a prescribed size, m, and pressure.
 
-    Its radius is that of a sphere that has the same contact radius under the same load.
+    The field `radius` is the radius of a sphere with the same contact radius under the same load.
     """
     radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
     shared = (contact.first, contact.second, radius, contact.load, contact.mu)

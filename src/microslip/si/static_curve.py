@@ -14,17 +14,17 @@ from microslip.si.request import Request
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
 DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
-"""Solved amplitudes.  They are quantiles of the drawn amplitudes, given in standard deviations of
-a normal distribution.  The ends of a 95 % interval are at 1.96."""
+"""Amplitudes at which the static limit is solved: quantiles of the drawn amplitudes, in standard
+deviations of a normal distribution.  The ends of a 95 % interval are at 1.96."""
 REFINEMENTS = 3
-"""Number of further amplitudes solved where the static limit is close to the force, and number of
-bisections for the smallest amplitude whose static limit is 0."""
+"""Number of additional amplitudes at which the static limit is close to the force.  Also the number
+of bisections for the smallest amplitude with a static limit of 0."""
 CLOSEST = 64
-"""One draw in 64 counts as close to the force.  A refinement solves the median amplitude of these
-draws."""
+"""One draw in 64 counts as close to the force.  Each refinement solves the static limit at the
+median amplitude of these draws."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Relative range of the amplitude, and standard deviation of Poisson's ratio, below which changes
-are rounding errors."""
+"""Values below which variations are treated as rounding errors: relative range of the amplitude,
+and standard deviation of Poisson's ratio."""
 
 
 def static_limits(
@@ -34,7 +34,7 @@ def static_limits(
     poisson: np.ndarray,
     forces: tuple[np.ndarray, np.ndarray] | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """mu_static of many draws, to first order in Poisson's ratio, and its error estimate.
+    """mu_static for all draws, and its error estimate.  Poisson's ratio is included to first order.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def static_limits(
     amplitudes, poisson : np.ndarray, shape (draws,)
         Dimensionless amplitude and Poisson's ratio of each draw.
     forces : tuple of np.ndarray or None
-        Friction without vibration and the prescribed force of each draw, N.  More amplitudes are
-        solved where the two forces are close.
+        Friction without vibration and the prescribed force of each draw, N.  Additional amplitudes
+        are solved near the draws whose friction is close to the force.
 
     Returns
     -------

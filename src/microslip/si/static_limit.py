@@ -25,7 +25,7 @@ def static_limit(request: Request) -> Result | None:
     if request.motion.steady:
         return None
     tolerance = request.tolerance
-    if request.drive.force is not None:  # its tolerance is that of the speed
+    if request.drive.force is not None:  # request.tolerance applies to the speed here
         tolerance = min(tolerance, TOLERANCE)
     return request.solve(0.0, tolerance_of(request, tolerance))
 
@@ -36,7 +36,7 @@ def tolerance_of(request: Request, tolerance: float) -> float:
 
 
 def equals_static_limit(request: Request) -> bool | float | None:
-    """Whether the force threshold equals the static limit, or else the value of the threshold.
+    """Return True if the force threshold equals the static limit, else the value of the threshold.
 
     The threshold equals the static limit if the oscillation exerts no forward force, or if the
     forward forces of several contacts cancel.  Otherwise a contact without mass follows the
@@ -61,7 +61,7 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, divided by mu F_z.
 
     A contact without mass follows the forward oscillation.  Its threshold is the static limit of
-    the other components.  It is computed only under a force.
+    the other components.  This limit is computed only under a force.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
 def largest_force(request: Request) -> float:
     """Smallest constant force under which the contact runs away, divided by mu F_z.
 
-    It is 1 for a body with a mass.  Otherwise it is the least normal load of a period divided by
+    It is 1 for a body with a mass.  Otherwise it is the smallest normal load in a period divided by
     the mean load.
     """
     if request.drive.mass or request.motion.steady:

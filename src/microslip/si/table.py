@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "map"}
-"""Allowed columns of a file.  Each one is an argument of predict, and needs no unit in its
+"""Allowed columns of a file.  Each column is an argument of predict, and needs no unit in the
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
-"""Columns of texts.  Other columns without a value are columns of numbers."""
+"""Text columns.  Any other column is numeric if it has no value."""
 
 
 def predict_table(
@@ -41,11 +41,11 @@ def predict_table(
     Parameters
     ----------
     motion : str
-        Motion of all contacts, as for `microslip.predict`.
+        Motion of all contacts, see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length, by argument of predict, as in {"load": ["1 N", "10 N"]} or {"load
-        [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id, sample
-        or comment are copied to the dataset.
+        Sequences of equal length, keyed by argument of predict, as in {"load": ["1 N", "10 N"]} or
+        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
+        sample or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
@@ -61,8 +61,8 @@ def predict_table(
     Raises
     ------
     InputError
-        If the table is invalid or has no valid case.  Without a valid case, the error is that of
-        the first case, with its number.
+        If the table is invalid or has no valid case.  If no case is valid, the error of the first
+        case is raised, with the number of the case.
     """
     table = Table({}, [], {})
     if is_table(cases):
@@ -79,7 +79,7 @@ def predict_table(
 def predictions(
     motion: str, table: Table, shared: Mapping[str, object]
 ) -> Iterator[Prediction | NoPrediction]:
-    """The prediction of each case in turn.
+    """Yield the prediction of each case in turn.
 
     All cases are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.  The arguments and errors are the same as for predict_table.
@@ -118,7 +118,7 @@ def _prediction(motion: str, arguments: Mapping[str, object]) -> Prediction | No
 
 
 def _request(motion: str, arguments: Mapping[str, object]) -> Request:
-    """The checked Request of a case.  Raises the errors that need no solve."""
+    """The checked Request of a case.  Raises all errors that can be detected without a solve."""
     for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")

@@ -4,9 +4,9 @@ load [N],speed [mm/s],counterbody
 10,1,steel
 20,1,"70 GPa, 0.22"
 
-`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a
-load with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an
-unclosed quote and renames duplicate columns.  Its messages do not contain the line of a cell.
+`pandas.read_csv` accepts too much.  Under the heading "load [N],mu" it reads the line "1" as a load
+with an empty mu, and the line "1,5,0.3" as a load of 5.  It rejects the whole file for an unclosed
+quote and renames duplicate columns.  Its messages do not contain the line number of a cell.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from microslip.foundation.named_files import content_of
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """Pattern of a text that resembles a number.  `quantities.read` checks it later."""
 LABELS = ("label", "name", "id", "sample", "comment")
-"""Columns of texts that are copied to the output."""
+"""Text columns that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
-"""Columns of texts; all others are quantities."""
+"""Text columns; all others are quantities."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Table:
     Attributes
     ----------
     columns : dict of list
-        Values by name.  They are texts with units or other objects; an empty cell is None.
+        Values of each column.  They are texts with units or other objects; an empty cell is None.
     lines : list of int
         Line number of each row in the file, starting at 1.  The list is empty without a file.
     errors : dict of str
@@ -50,7 +50,7 @@ class Table:
 
     @property
     def labels(self) -> dict[str, list[Any]]:
-        """Columns of texts that are copied to the output."""
+        """Text columns that are copied to the output."""
         return {name: texts for name, texts in self.columns.items() if name in LABELS}
 
 
@@ -68,7 +68,7 @@ def table_of(
     decimal: str = ".",
     encoding: str = "utf-8",
 ) -> Table:
-    """Read the table in a file or in columns.
+    """Read a table from a file or from columns.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def table_of(
 def read_table(
     content: bytes, names: Mapping[str, bool], *, decimal: str = ".", encoding: str = "utf-8"
 ) -> Table:
-    """The table in the content of a file.
+    """Read a table from the content of a file.
 
     Commas, semicolons or tabs separate the columns.  A cell that contains the separator is in
     double quotes.  Cells under a heading with a unit are numbers in that unit.  Other cells are

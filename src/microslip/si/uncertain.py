@@ -1,7 +1,7 @@
 """Uncertain inputs: "0.3 +- 0.03", "10 N +- 5 %".
 
-The number after +- is a standard uncertainty.  It is propagated by two predictions, at one
-standard uncertainty below and above the value.  Half the difference of the predictions is the
+The number after +- is a standard uncertainty.  It is propagated by two predictions, at one standard
+uncertainty below and above the value.  Half the difference between the predictions is the
 contribution of the input.  The inputs are independent, so the total is the root of the sum of
 squares (JCGM 100, Guide to the Expression of Uncertainty in Measurement, 5.1).
 """
@@ -34,7 +34,7 @@ SPREADS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Columns of the standard uncertainty, by the attributes of a Prediction that they belong to."""
+"""Columns of the standard uncertainties, keyed by the corresponding attributes of a Prediction."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
@@ -43,7 +43,7 @@ def without_uncertainty(
 ) -> tuple[dict[str, Any], list[UncertainInput]]:
     """Central values of the arguments of predict, and a list of the uncertain inputs.
 
-    Raises InputError for a text that is not a valid uncertainty.
+    Raises InputError for a text with an invalid uncertainty.
     """
     plain, uncertain = dict(arguments), []
     for name, quantity in QUANTITIES.items():
@@ -95,7 +95,7 @@ def with_uncertainty(
     uncertain: list[UncertainInput],
     answer: Callable[[Request], Prediction],
 ) -> Prediction:
-    """The Prediction for the central values, with its uncertainty.
+    """Add the uncertainty to a Prediction for the central values.
 
     Parameters
     ----------

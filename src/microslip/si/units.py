@@ -1,4 +1,5 @@
-"""Reading of units by a strict grammar, with a short list of units and pint for their values."""
+"""Read units by a strict grammar.  A short list of units is accepted, and pint computes their
+values."""
 
 from __future__ import annotations
 
@@ -16,10 +17,10 @@ PREFIXES = ("", "p", "n", "µ", "m", "c", "d", "da", "h", "k", "M", "G", "T")
 MOST_FACTORS = 12
 """Largest number of factors in a unit, since pint parses long products by recursion."""
 PLURALS = frozenset({"lb", "oz"})
-"""Symbols with a plural.  After other symbols, an s could be read as a second without an operator,
-as in Pas for Pa*s."""
+"""Symbols with a plural.  After other symbols, an s could be mistaken for a second, as in Pas for
+Pa*s."""
 CYCLIC = ("hertz", "counts_per_second")
-"""Endings of the names of cyclic frequencies.  Here, 1 Hz is one turn per second, or 2 pi
+"""Suffixes of pint's names for cyclic frequencies.  Here, 1 Hz is one turn per second, or 2 pi
 rad/s."""
 
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
@@ -76,7 +77,8 @@ class Unit:
 def registry() -> Any:
     """The pint.UnitRegistry of the accepted units.
 
-    It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" become equal floats.
+    The registry computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" become equal
+    floats.
     """
     import pint
 
@@ -111,7 +113,7 @@ def factors(text: str) -> list[tuple[str, int]]:
 
 
 def read_unit(text: str) -> Unit:
-    """The unit of a text such as "kg/m^3".  Raises UnitError."""
+    """Read a unit from a text such as "kg/m^3".  Raises UnitError."""
     with localcontext(_EXACT):
         names = [("degree" if name == "°" else name, power) for name, power in factors(text)]
         for name, _ in names:
@@ -139,8 +141,8 @@ def pint_unit(quantity: Any) -> Unit:
 
 
 def _check_name(name: str) -> None:
-    """Raise UnitError unless a name is an accepted unit, with a prefix only if the unit accepts
-    one."""
+    """Raise UnitError unless a name is an accepted unit.  A prefix is allowed only if the unit
+    accepts one."""
     units = registry()
     metric = units.get_group("metric").members
     readings = units.parse_unit_name(name)
@@ -167,7 +169,7 @@ def _exponents(unit: Any) -> dict[str, Any]:
 
 @cache
 def si_unit(text: str) -> Unit:
-    """The SI unit of a text such as "kg/m^3".  The empty text is the unit of pure numbers."""
+    """The SI unit for a text such as "kg/m^3".  The empty text is the unit of pure numbers."""
     return read_unit(text) if text else Unit({}, {}, Decimal(1))
 
 
@@ -178,7 +180,7 @@ def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
 
 
 def split_number(text: str) -> tuple[str, str]:
-    """The number at the start of a text, as a text that float accepts, and the rest of the text."""
+    """Split a text into the number at its start, as a text that float accepts, and the rest."""
     text = text.strip()
     number = _NUMBER.match(text)
     if _NOT_FINITE.match(text):
@@ -192,7 +194,7 @@ def split_number(text: str) -> tuple[str, str]:
 
 
 def stopped(read_so_far: str, rest: str) -> str:
-    """A message with the place at which reading stopped, and a hint about the likely meaning."""
+    """A message that states where reading stopped, with a hint about the likely meaning."""
     hint = ", since decimals follow a point and thousands have no separator" if "," in rest else ""
     fraction = _FRACTION.fullmatch(rest)
     if fraction:

@@ -1,7 +1,7 @@
 """Warnings if a real contact violates an assumption of the theory.
 
-The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence
-for contacts beyond this limit.  The page of the explorer also evaluates the rules.
+The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence for
+contacts beyond this limit.  The explorer's web page also evaluates these rules.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from microslip.si.dimensionless import RealMotion, largest_slip_speed, mean_load
 from microslip.si.printed_lines import prefixed
 
 YIELDS_AT = 0.57
-"""Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  The
-pressure is 1.6 times the yield stress, the hardness 2.8 times (K. L. Johnson, Contact Mechanics,
-6.1 and 6.3)."""
+"""Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  At
+this onset, the pressure is 1.6 times the yield stress.  The hardness is 2.8 times the yield stress
+(K. L. Johnson, Contact Mechanics, 6.1 and 6.3)."""
 HARDEST = 0.1
 """Largest hardness of metals, ceramics and glasses, divided by Young's modulus.  The hardness is
 2.8 times the yield stress, which is at most a few per cent of the modulus."""
@@ -27,8 +27,8 @@ RUBBERY = 0.45
 """Smallest Poisson's ratio of a rubber.  A rubber does not yield but has internal losses, and its
 modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
-"""Order of magnitude of the work of adhesion of clean smooth surfaces due to van der Waals forces,
-N/m (J. N. Israelachvili, Intermolecular and Surface Forces)."""
+"""Typical work of adhesion between clean smooth surfaces due to van der Waals forces, N/m (J. N.
+Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
 """Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
@@ -37,19 +37,19 @@ Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
 """Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""Largest value of ratios that the theory neglects."""
+"""Largest value of a ratio that the theory can neglect."""
 STEEP = 0.2
-"""Contact radius a divided by the smaller radius of the bodies, or by the radius R of relative
-curvature, above which half-spaces are a poor approximation.  Hertz's theory assumes a << R1, R2 and
-a << R (K. L. Johnson, Contact Mechanics, 4.2)."""
+"""Ratio above which half-spaces are a poor approximation: contact radius a divided by the bodies'
+smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
+<< R (K. L. Johnson, Contact Mechanics, 4.2)."""
 SENSELESS = 0.5
-"""Contact radius divided by the smaller radius of the bodies, above which predict raises an error.
+"""Ratio above which predict raises an error: contact radius divided by the bodies' smaller radius.
 At this ratio, the surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than
 Hertz's parabola."""
 
 
 class Rule(NamedTuple):
-    """A condition that violates an assumption, and its warning.
+    """A condition under which an assumption is violated, and the warning.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Rule(NamedTuple):
 
 
 MEASURE = re.compile(r"\{(\w+):\.(\d+)g\}(?: (Pa|N|m)\b)?")
-"""Pattern of a measure in a sentence: its name, the number of its digits, and its SI unit."""
+"""Pattern of a measure in a sentence: the name, the number of digits, and the SI unit."""
 
 
 def _too_hard(side: str) -> Rule:
@@ -175,10 +175,10 @@ CHECKS = (
         ),
     ),
 )
-"""Groups of rules, in the order of the warnings.  Of each group, the first rule that applies gives
+"""Groups of rules, in the order of the warnings.  In each group, the first rule that applies gives
 the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
-"""Checks that need an optional property of a body, by the name of the property."""
+"""Checks that need an optional property of a body, keyed by the property's name."""
 MISSING = "{what} (the {name} of {whose} is missing)"
 SIDES = ("the body", "the counterbody")
 """Names of the two bodies in sentences."""
@@ -216,7 +216,7 @@ def _applies(rule: Rule, values: dict[str, float | None]) -> bool:
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
-    """Texts of the checks that a missing property prevents."""
+    """Texts for the checks that are skipped because a property is missing."""
     sides, texts = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
@@ -228,7 +228,7 @@ def unchecked(contact: TwoBodies) -> list[str]:
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
     """Measures of a contact by name.  A measure that is unknown or does not apply is None.
 
-    Pressures and the contact radius belong to the largest load of a period.
+    Pressures and the contact radius are those at the largest load in a period.
     """
     largest = contact.with_load(contact.load + (motion.load_amplitude or 0.0))
     bodies = _of_bodies(largest) | {"load": contact.load}
@@ -255,7 +255,7 @@ def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
     }
     for side, body in zip(("first", "second"), contact.bodies, strict=True):
         other = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
-        other = other or math.isinf(pressure)  # this has its own warning
+        other = other or math.isinf(pressure)  # an infinite pressure has its own warning
         values[f"{side}_young"] = None if other else body.young
         values[f"{side}_pressure"] = None if other else pressure / body.young
     return values

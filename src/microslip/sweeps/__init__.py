@@ -1,1 +1,1 @@
-"""Requests of sweeps, their results, and the store of results."""
+"""Requests and results of sweeps, and the store in which results are kept."""

@@ -1,9 +1,9 @@
 """Requests of a configuration, batches of requests, and the records of their results.
 
-A request is a plain dict of physical and numerical settings, with numbers as canonical strings.
-The name of the result of a request is a hash of the request and of the digest of the solver.  A job
-gets a batch of requests and computes only the results that are not yet in the store, regardless of
-which batch computed the others.
+A request is a plain dict of physical and numerical settings, with numbers as canonical strings.  A
+result is named by a hash of its request and of the solver's digest.  A job receives a batch of
+requests and computes only the results that are missing from the store.  It does not matter which
+batch computed the others.
 """
 
 import functools
@@ -29,7 +29,7 @@ from microslip.sweeps.store import Store, read
 log = logging.getLogger(__name__)
 
 RECORD_FORMAT = 1
-"""Version of the content of records.  Increase it after a change of the content outside the
+"""Version of the content of records.  Increase it if this content changes without a change of the
 solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
@@ -47,7 +47,7 @@ FOLDERS = {
     "patches": "patches",
     "propulsion": "propulsion_lines",
 }
-"""Folders of the store by kind of request.  Records of trials and scaling contain measured
+"""Folders of the store, keyed by kind of request.  Records of trials and scaling contain measured
 times."""
 
 
@@ -55,7 +55,7 @@ times."""
 
 
 class Batch(NamedTuple):
-    """Requests of a job: every combination of a row and a value of an axis.
+    """Requests of a job: all combinations of a row with a value on an axis.
 
     Attributes
     ----------
@@ -88,8 +88,8 @@ class Batch(NamedTuple):
 def points_of(sweep: Sweep) -> Batch:
     """Return the requests for all points of a sweep.
 
-    Their order is that of the dataset: drive, Poisson's ratio, amplitude, velocity (or force).  The
-    last of these changes fastest, and is the axis of the batch.
+    The requests are in the order of the dataset's dimensions: drive, Poisson's ratio, amplitude,
+    velocity (or force).  The last dimension changes fastest and is the axis of the batch.
     """
     motion, pressure = solver_names(sweep)
     common: dict = {
@@ -136,8 +136,7 @@ def history_requests(configuration: Configuration, name: str) -> list[dict]:
 
 
 def divide(points: Batch, size: int) -> list[Batch]:
-    """Divide points into batches of whole rows, or of parts of long rows, in the order of the
-    points.
+    """Divide points into batches, in order.  A batch contains whole rows, or parts of long rows.
 
     size: mean number of points in a batch.
     """
@@ -163,12 +162,12 @@ def cut(items: Sequence, mean: int) -> list[list]:
 
 
 def key_of(request: dict, digest: str | None = None) -> str:
-    """Return the name of the result of a request, a hash of the request and of the code.
+    """Return the name under which a request's result is stored, a hash of the request and the code.
 
-    The versions of NumPy, SciPy and Numba change results by rounding errors.  They are recorded in
-    each result, but they are not part of the name.
+    Results differ by rounding errors between versions of NumPy, SciPy and Numba.  These versions
+    are recorded in each result, but they are not part of the name.
 
-    digest: digest of the code that computes the result; by default that of the running code.
+    digest: digest of the code that computes the result.  Default: the digest of the running code.
     """
     digest = source_digest.of_request(request) if digest is None else digest
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
@@ -198,7 +197,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
     started = time.process_time()
     result = evaluate.computed(request, time_limit)
     seconds = time.process_time() - started
-    # Equal requests have equal records, so times are left out, except in measurements of time.
+    # Times are omitted so that equal requests have equal records, except in measurements of time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
     edited = source_digest.LOADED.edited()
     if edited:
@@ -211,7 +210,7 @@ def answer(request: dict, store: Store, time_limit: float | None = None) -> tupl
 class SourcesEdited(CacheError):
     """The code on disk differs from the running code.
 
-    A result could then come from either version of the code, so it is not stored.
+    A result could come from either version of the code, so the result is not stored.
 
     Attributes
     ----------
@@ -231,14 +230,15 @@ class SourcesEdited(CacheError):
 
 
 def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]:
-    """Return the records of the requests and their statistics, see `gather`.  The records depend
-    only on the requests and the solver."""
+    """Return the records for the requests, and the statistics of the batch (see `gather`).  The
+    records depend only on the requests and the solver."""
     return gather(answer(request, store) for request in requests)
 
 
 def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
-    """Return the records of some answers, and the statistics of the batch: the number of records,
-    how many were computed, the CPU time, and whether all are final.
+    """Collect the records of some answers, and the statistics of the batch.  The statistics are the
+    number of records, the number of computed records, the CPU time, and whether all records are
+    final.
 
     Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
     """
@@ -259,13 +259,13 @@ def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
 
 
 def records_in(paths: Iterable[str | Path]) -> Iterator[dict]:
-    """Iterate over the records in the files of batches; raises CacheError for a damaged file."""
+    """Iterate over the records in batch files.  Raises CacheError for a damaged file."""
     for path in paths:
         yield from read(path)
 
 
 def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
-    """Return a function that maps a request to its record among these records."""
+    """Return a function that maps a request to its record in `records`."""
     by_key = {record["key"]: record for record in records}
     return lambda request: by_key[key_of(request)]
 

@@ -1,15 +1,15 @@
 """Scaled coordinates of a map of drift: force and amplitude.
 
-The threshold of the force is the static limit at the amplitude.  Below the threshold a contact does
-not drift and no map is needed.  Above the threshold it drifts.  The drift velocity is about
-proportional to the power 3/2 of the force above the threshold, since friction approaches its static
-limit as the power 2/3 of the velocity.  As the force approaches 1 the velocity becomes infinite;
-the velocity of a rigid contact is then proportional to (1 - force)^(-1/2).
+The force threshold is the static limit at the amplitude.  Below the threshold, a contact does not
+drift and no map is needed.  Above it, the drift velocity is approximately proportional to (force -
+threshold)^(3/2), because friction approaches its static limit in proportion to velocity^(2/3).  The
+velocity becomes infinite as the force approaches 1.  For a rigid contact, it is then proportional
+to (1 - force)^(-1/2).
 
 The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).  Nodes
-are clustered at the amplitudes at which the threshold equals the largest force and at which it
-vanishes.  Cells interpolate asinh(velocity): its error is the absolute error of a small velocity
-and the relative error of a large one.
+are clustered at two amplitudes: where the threshold equals the largest force, and where it
+vanishes.  Cells interpolate asinh(velocity).  The error of asinh is the absolute error of a small
+velocity, and the relative error of a large velocity.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class DriftCoordinates(NamedTuple):
     Attributes
     ----------
     motion : str
-        Motion of the contact, whose static limit is the threshold.
+        Motion of the contact.  Its static limit is the force threshold.
     force : float
         Largest force, below 1.
     amplitude : tuple of float
@@ -76,9 +76,11 @@ class DriftCoordinates(NamedTuple):
     def scaled(
         self, force: np.ndarray, amplitude: np.ndarray, least: np.ndarray | None = None
     ) -> np.ndarray:
-        """Scaled coordinates, shape (n, 2), of forces and amplitudes in the range, shape (n,).
+        """Scaled coordinates, shape (n, 2), for forces and amplitudes in the range, shape (n,)
+        each.
 
-        least: thresholds at the amplitudes.  If None, they are computed, which is slow.
+        least: force thresholds at the amplitudes.  If None, the thresholds are computed, which is
+        slow.
         """
         force, amplitude = (np.asarray(part, float) for part in (force, amplitude))
         thresholds = threshold(self.motion, amplitude) if least is None else least
@@ -87,7 +89,7 @@ class DriftCoordinates(NamedTuple):
         return np.column_stack([share, self._rows.scaled(amplitude)])
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Force and amplitude at scaled coordinates."""
+        """Return the force and amplitude at scaled coordinates."""
         share, row = node
         (amplitude,) = self._rows.place((row,))
         least = min(float(threshold(self.motion, amplitude)), self.force)
@@ -97,7 +99,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def _rows(self) -> MapCoordinates:
-        """Coordinates of the amplitude, as in a map of the static limit."""
+        """Coordinates of the amplitude, equal to those in a map of the static limit."""
         low, high = self.amplitude
         first = first_amplitude(self.motion, self.force)
         kinks = kinks_of(self.motion).amplitudes
@@ -112,15 +114,15 @@ def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarr
 
 
 def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
-    """Return asinh of a velocity, which a map of drift interpolates, and its error bound."""
+    """Return asinh(velocity) and its error bound.  A map of drift interpolates this value."""
     low, middle, high = np.arcsinh([velocity - error, velocity, velocity + error]).tolist()
     return middle, max(high - middle, middle - low)
 
 
 def velocity_of(scaled: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocities >= 0 and their error bounds from arrays of asinh(velocity) and its errors.
+    """Convert arrays of asinh(velocity) and its errors to velocities >= 0 and their error bounds.
 
-    The bound of an unknown velocity is infinite.
+    The error bound of an unknown velocity is infinite.
     """
     velocity = np.sinh(np.maximum(scaled, 0.0))
     low = np.sinh(np.maximum(scaled - error, 0.0))

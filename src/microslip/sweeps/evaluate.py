@@ -1,7 +1,7 @@
-"""Computation of the result of a request as plain values for JSON.
+"""Compute the result of a request as plain values for JSON.
 
-microslip.sweeps.batches defines requests.  Functions in this module import the solver only when
-they need it.
+Requests are defined in microslip.sweeps.batches.  The functions in this module import the solver
+only when needed.
 """
 
 import logging
@@ -21,7 +21,8 @@ Answer = TypeVar("Answer")
 log = logging.getLogger(__name__)
 
 SHORTEST = 0.02
-"""Shortest measured CPU time, in seconds; shorter runs are repeated and measured together."""
+"""Shortest CPU time that is measured, in seconds.  Shorter runs are repeated and measured
+together."""
 LONG_ENOUGH = 2.0
 """Total CPU time of the readings, in seconds, after which no further reading is taken."""
 
@@ -30,9 +31,9 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
     """Compute the result of a request as a dict of values that JSON can represent.
 
     time_limit: time limit of a point, as in microslip.solve.  If the solver raises SolverError or
-    InputError, the point is a gap in the dataset: `converged` is False, `crashed` is True, and the
-    reason is the error message in one line.  Any other exception is an error of the code or the
-    machine and propagates.
+    InputError, the point is a gap in the dataset.  Then `converged` is False, `crashed` is True,
+    and `reason` is the error message in one line.  Any other exception is an error of the code or
+    the machine and propagates.
     """
     try:
         limits = {} if time_limit is None else {"time_limit": time_limit}
@@ -49,11 +50,11 @@ def is_final(result: dict) -> bool:
 
 
 def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
-    """Call a function repeatedly; return its result and the CPU seconds of a call.
+    """Call a function repeatedly.  Return its result and the CPU time of one call, in seconds.
 
-    The first call is not timed, since it may compile code.  The seconds are the median of `repeats`
-    readings, or fewer if they take longer than LONG_ENOUGH.  CPU time does not include the time of
-    other processes.
+    The first call is not timed, because it may compile code.  The time is the median of `repeats`
+    readings, or of fewer if the readings take longer than LONG_ENOUGH.  CPU time excludes other
+    processes.
     """
     result = run()
     readings: list[float] = []
@@ -106,7 +107,7 @@ def _trial(request: dict) -> dict:
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
     settings |= {"cells": request["cells"], "angles": request["angles"]}
-    settings["steps"] = request["steps"] or 2  # a steady motion ignores the number
+    settings["steps"] = request["steps"] or 2  # a steady motion ignores the number of steps
     settings["tolerance"] = float(request["tolerance"])
 
     def run() -> dict:
@@ -145,7 +146,7 @@ def _scaling(request: dict) -> dict:
 
 
 def _run(request: dict) -> dict:
-    """Run at one resolution without measuring times, so that equal requests have equal results."""
+    """Run at one resolution.  Times are not measured, so that equal requests have equal results."""
     from microslip.adaptive import single_run
 
     names = ("model", "method", "cells", "angles", "steps")
@@ -231,7 +232,8 @@ def _at(request: dict) -> dict:
 
 
 def _result_or_reason(look: Callable[[], dict]) -> dict:
-    """Call a function that requires a periodic state; return the reason if there is none."""
+    """Call a function that requires a periodic state.  Return the reason if there is no such
+    state."""
     from microslip.adaptive.period import NoPeriodicState
 
     try:

@@ -1,12 +1,12 @@
 """Adaptive refinement of a map into cells.
 
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
-velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is the polynomial
-through its nodes.  The surplus of a direction is computed from the largest differences of the
-highest order along it; it is the error of a polynomial of one degree less.  The error of the
-polynomial is estimated as a fraction of the surplus, which was calibrated on other points.  A cell
-whose error is too large is halved along the direction with the largest surplus.  The nodes of the
-cell are nodes of its halves as well.
+velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
+the polynomial through its nodes.  The surplus of a direction is computed from the largest
+differences of the highest order along this direction.  It equals the error of a polynomial of one
+degree less.  The error of the cell's polynomial is estimated as a fraction of the surplus; the
+fraction was calibrated on other points.  A cell whose error is too large is halved along the
+direction with the largest surplus.  Both halves reuse the nodes of the cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
 """
@@ -26,23 +26,22 @@ if TYPE_CHECKING:
     from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
-"""Error of the polynomial in a cell divided by the surplus; calibrated by
-benchmarks/certified.py."""
+"""Error of a cell's polynomial divided by the surplus; calibrated by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
 """Factor of third differences in the surplus, for cells in which fourth differences cancel by
 chance."""
 LOW_DEGREE = 2.0
-"""Factor of second differences in the surplus: polynomials of degree 2 have a larger error relative
-to the surplus."""
+"""Factor of second differences in the surplus.  Polynomials of degree 2 have a larger error
+relative to the surplus."""
 RESOLVED = 0.05
-"""A cell whose surplus exceeds this value is halved even if its error bound is small, because its
-error can then be a multiple of SHARE times the surplus."""
+"""Largest surplus of a cell that is not halved.  Above this value, the error can be a multiple of
+SHARE times the surplus, so the cell is halved even if its error bound is small."""
 SMALLEST = 2.0**-9
 """Smallest width of a cell, as a fraction of the width of a patch."""
 
 Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]
-"""Friction and its error by node.  Friction is NaN if the point did not converge."""
+"""Friction and its error, keyed by node.  Friction is NaN if the point did not converge."""
 
 
 class Cell(NamedTuple):
@@ -63,7 +62,7 @@ class Cell(NamedTuple):
         return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
 
     def halves(self, direction: int) -> tuple[Cell, Cell]:
-        """Halves of the cell along a direction, given by its index."""
+        """The two halves of the cell along the direction with this index."""
         middle = 0.5 * (self.begin[direction] + self.end[direction])
         return (
             self._replace(end=_with(self.end, direction, middle)),
@@ -78,10 +77,10 @@ class Refinement:
     Attributes
     ----------
     cells : tuple of Cell
-        Cells that cover the map, including those with missing nodes.
+        Cells that cover the map, including cells with missing nodes.
     errors : tuple of float
-        Error bound of each cell due to the interpolation and the errors of the nodes; infinite if
-        unknown.
+        Error bound of each cell, due to the interpolation and to the errors of the nodes; infinite
+        if unknown.
     missing : tuple of Node
         Nodes to be solved next, in ascending order; empty if the map is finished.
     """
@@ -135,8 +134,7 @@ def refine_cells(
 
 
 def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
-    """Surplus by direction, computed from values at nodes; it is the error of a polynomial of one
-    degree less."""
+    """Surplus along each direction, computed from the values at the nodes."""
     return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 
@@ -151,8 +149,8 @@ def _surplus(values: np.ndarray, axis: int) -> float:
 
 
 def _worst(cell: Cell, surpluses: tuple[float, ...]) -> int | None:
-    """Direction with the largest surplus; None for the smallest cells and if friction is
-    unknown."""
+    """Direction with the largest surplus.  None if the cell has the smallest size, or if friction
+    is unknown."""
     if not np.all(np.isfinite(surpluses)):
         return None
     wide = [

@@ -1,12 +1,12 @@
 """Scaled coordinates of a map of friction.
 
 The axes of a map are velocity and amplitude, and optionally Poisson's ratio; a map of the static
-limit has no velocity.  It is divided into patches at the known kinks of its motion (theory.kinks).
-Patches are boxes in scaled coordinates.  Below the kink of the velocity, the scaled velocity is
-proportional to the velocity to the power 1/3, which is half the power with which friction
-approaches its static limit.  There the range of amplitudes is divided at its kinks, and nodes are
-clustered at the kinks.  Above the kink of the velocity, the scaled velocity is logarithmic in the
-velocity.  Amplitudes without kinks are scaled by log(1 + 2 A).
+limit has no velocity.  A map is divided into patches at the known kinks of the motion
+(theory.kinks).  Patches are boxes in scaled coordinates.  Below the velocity of the kink, the
+scaled velocity is proportional to velocity^(1/3).  Friction approaches its static limit with twice
+this exponent.  In this range, amplitudes are divided at their kinks, and nodes are clustered at the
+kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Amplitudes without
+kinks are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from microslip.theory.kinks import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits of the coordinates of a node."""
 CLEAR = 2.0
-"""A kink of the velocity is a border only if it differs from both ends of the range by at least
-this factor."""
+"""Smallest ratio between a kink's velocity and either end of the range.  A kink closer to an end is
+not a border between patches."""
 SLOW_POWER = 1.0 / 3.0
 """Power of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
 """Scaled velocity just above the kink; just below the kink it is 1."""
 FAST_PATCHES = 2
-"""Number of patches along the velocity above the kink.  With fewer patches, friction may rise too
-steeply to be resolved by the nodes."""
+"""Number of patches along the velocity above the kink.  With fewer patches, the nodes may not
+resolve a steep rise of friction."""
 AT_KINKS = 2.0
-"""Power with which nodes are clustered at kinks of the amplitude."""
+"""Exponent that clusters nodes at kinks of the amplitude."""
 SPREAD = 2.0
 """Amplitudes without kinks are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
@@ -122,15 +122,15 @@ class MapCoordinates(NamedTuple):
         return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the point at scaled coordinates: its values by direction, rounded to DIGITS
-        digits."""
+        """Return the values of velocity, amplitude and Poisson's ratio at scaled coordinates,
+        rounded to DIGITS digits."""
         *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
         return tuple(round_digits(value) for value in (*flat, *deep))
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
-        """Velocity and amplitude at scaled coordinates."""
+        """Return the velocity and amplitude at scaled coordinates."""
         slow, fast = self.velocity
         if self._is_cut and x >= FAST:
             amplitude = _at_spread_share(y, self.amplitude)
@@ -173,7 +173,7 @@ class MapCoordinates(NamedTuple):
         return y
 
     def _amplitude_at(self, y: float) -> float:
-        """Amplitude at a scaled amplitude, the inverse of _rows."""
+        """Convert a scaled amplitude to an amplitude, the inverse of _rows."""
         row = min(int(y), len(self._borders) - 2)
         ends, share = self._borders[row : row + 2], y - row
         below, above = self._gathers_at(ends)
@@ -194,7 +194,7 @@ class MapCoordinates(NamedTuple):
         return share**power if below else 1.0 - (1.0 - share) ** power
 
     def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """Return, for the lower and the upper end of a patch, whether nodes are clustered there.
+        """Return whether nodes are clustered at the lower end of a patch, and at the upper end.
 
         Nodes are clustered at kinks and, in a patch below a kink, at the amplitude 0.
         """
@@ -203,7 +203,7 @@ class MapCoordinates(NamedTuple):
 
 
 def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
-    """Position of values between two ends, clipped to 0 to 1."""
+    """Relative position of values between two ends, clipped to 0 to 1."""
     return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 
@@ -212,13 +212,13 @@ def _between(share: float, ends: Ends) -> float:
 
 
 def _spread_share(amplitude: np.ndarray, ends: Ends) -> np.ndarray:
-    """Position of amplitudes between two ends in log(1 + SPREAD A), 0 to 1."""
+    """Relative position of amplitudes between two ends on the scale log(1 + SPREAD A), 0 to 1."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return _share(np.log1p(SPREAD * amplitude), (low, high))
 
 
 def _at_spread_share(share: float, ends: Ends) -> float:
-    """Amplitude at a position, the inverse of _spread_share."""
+    """Amplitude at a relative position, the inverse of _spread_share."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return np.expm1(_between(share, (low, high))) / SPREAD
 

@@ -1,4 +1,4 @@
-"""Computation of the points of a certified map, in rounds of refinement."""
+"""Compute the points of a certified map, in rounds of refinement."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Friction and its error by node, or the scaled velocity under a force and its error.  The
-        values are NaN and infinity if a point did not converge.  They depend only on the records.
+        For each node: friction, or the scaled velocity under a force, and the error.  The values
+        are NaN and infinity if the point did not converge.  They depend only on the records.
     refinement : Refinement
         The cells.
     """
@@ -63,7 +63,7 @@ def refine(
 def _request(
     map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
 ) -> dict:
-    """Request for a node, which equals the request of a sweep for the same point."""
+    """Request for a node.  It equals a sweep's request for the same point."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
     point: dict = {"velocity": (0.0,)}
     if "force" in place:
@@ -82,7 +82,7 @@ def _answer(request: dict, result: dict) -> tuple[float, float]:
 
 
 def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list[dict], dict]:
-    """Solve all points of a map in several processes, and show the progress on standard error.
+    """Solve all points of a map in several processes.  Progress is printed on standard error.
 
     Each point is stored as soon as it is solved.  Returns the records and their statistics, see
     batches.gather.
@@ -106,8 +106,8 @@ def solve_points(map_: CertifiedMap, store: Store, processes: int) -> tuple[list
 
 
 def _begin(names: list[str]) -> None:
-    """Prepare a worker process to read files of motions and pressures, and to end when its parent
-    process ends."""
+    """Prepare a worker process: store the paths of motion and pressure files, and make the process
+    end with its parent."""
     named_files.remember(names)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -1,8 +1,8 @@
 """Compact storage of a period of the periodic state.
 
 Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
-as fractions of the friction bound in steps of 1/127, the resolution of a drawing.  The density of
-the dissipated energy has 65,535 steps.  Forces have seven decimals.  Slip flags are exact.
+as fractions of the friction bound in steps of 1/127, which is sufficient for drawings.  The density
+of the dissipated energy has 65,535 steps.  Forces have seven decimals.  Slip flags are exact.
 """
 
 from __future__ import annotations
@@ -40,13 +40,20 @@ def packed(period: Period, angles: int) -> dict:
     -------
     dict
         radius, bound: lists over rings, (cells,).  The names in HISTORIES: lists over time, (steps
-        + 1,). tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in
-        steps of bound/127. slips: base64 of bits, (steps/2 + 1, angles, cells). densities: base64
-        of uint16, (angles, cells), density of the dissipated energy in steps of its largest value
-        divided by 65535. turned: True if the
-        other half of the disc is this half rotated by half a turn, as in translations; False if it
-        is the mirror image across the lateral axis. mu_macro, converged, reason: values of the
-        Period.
+        + 1,).
+
+        tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
+        bound/127.
+
+        slips: base64 of bits, (steps/2 + 1, angles, cells).
+
+        densities: base64 of uint16, (angles, cells), density of the dissipated energy in steps of
+        its largest value divided by 65535.
+
+        turned: True if the other half of the disc is this half rotated by half a turn, as in
+        translations.  False if it is the mirror image across the lateral axis.
+
+        mu_macro, converged, reason: values of the Period.
     """
     frames, half = (len(period.phase) + 1) // 2, period.bound.size // 2
     bound = period.bound[:half]
@@ -73,8 +80,8 @@ def packed(period: Period, angles: int) -> dict:
 def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
     """Unpack tractions and slips on half the disc over half the period.
 
-    Returns tractions in steps of bound/127, int8, (steps/2 + 1, 2, angles, cells), forward and
-    lateral, and slips, bool, (steps/2 + 1, angles, cells).
+    Returns two arrays.  Forward and lateral tractions are int8, (steps/2 + 1, 2, angles, cells), in
+    steps of bound/127.  Slips are bool, (steps/2 + 1, angles, cells).
     """
     frames = (len(result["phase"]) + 1) // 2
     shape = frames, result["angles"], len(result["radius"])
@@ -91,5 +98,5 @@ def text_of(values: np.ndarray) -> str:
 
 
 def values_of(text: str, kind: DTypeLike) -> np.ndarray:
-    """Decode the text of `text_of` to a flat array of type `kind`."""
+    """Decode a text from `text_of` to a flat array of type `kind`."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

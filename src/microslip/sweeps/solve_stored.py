@@ -1,4 +1,4 @@
-"""`microslip.solve` for one point, which uses the stored results of sweeps."""
+"""Solve one point with `microslip.solve`, or reuse the stored result of a sweep."""
 
 from __future__ import annotations
 
@@ -45,10 +45,11 @@ def solve_stored(
     steps: int | None = None,
     time_limit: float | None = None,
 ) -> Result:
-    """Read the friction at one point from a folder of results, or compute and store it there.
+    """Read the friction at one point from a folder of results.  If it is missing, compute and store
+    it.
 
-    The key of a result is a hash of the point, the tolerance and the code of the solver, so sweeps,
-    the command line and this function share results.  Numbers are rounded to 12 digits, as in
+    The key of a result is a hash of the point, the tolerance and the solver's code.  Sweeps, the
+    command line and this function therefore share results.  Numbers are rounded to 12 digits, as in
     sweeps.  The result is not stored if the solver failed or reached its time limit.
 
     Parameters
@@ -90,7 +91,7 @@ def solve_stored(
     if problem.drive is not None:
         refuse_drive(problem, chosen)
     if tolerance is None:
-        from microslip.adaptive.friction import refuse_choice  # only now: it loads compiled code
+        from microslip.adaptive.friction import refuse_choice  # here: it loads compiled code
 
         moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
         refuse_choice(moving, model, cells, steps)
@@ -127,6 +128,6 @@ def solve_stored(
 
 
 def _drives(**values: float | None) -> tuple:
-    """Convert a drive to the attribute `drives` of Sweep."""
+    """Convert a drive to a value of Sweep's attribute `drives`."""
     pairs = ((name, values[name]) for name in DRIVES)
     return tuple((name, (float(value),), False) for name, value in pairs if value is not None)

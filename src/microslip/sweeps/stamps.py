@@ -1,9 +1,8 @@
-"""Stamps of products: a fingerprint of the inputs of a dataset, page or figure, and the checksums
-of its files.
+"""Stamps that show whether the files of a product are up to date.
 
-The files of a product have plain names, which do not change with their content.  The stamp of a
-product, `.made/NAME.json` in the folder of results, shows whether its files are up to date.  A job
-writes the stamp last.
+A product is a dataset, page or figure.  Its stamp, `.made/NAME.json` in the folder of results,
+contains a fingerprint of the inputs and the checksums of the files.  The names of the files do not
+depend on their content.  A job writes the stamp last.
 """
 
 from __future__ import annotations
@@ -24,28 +23,28 @@ log = logging.getLogger(__name__)
 
 FOLDER = ".made"
 AGAIN = ".again"
-"""Name of a file in the folder of results that is newer than every outdated file."""
+"""Name of a marker file in the folder of results.  The file is newer than every outdated file."""
 WHEN = 1_000_000_000
-"""Modification time of AGAIN in seconds since 1970; it is in 2001.  Outdated files are dated one
+"""Modification time of AGAIN in seconds since 1970, a date in 2001.  Outdated files are dated one
 second earlier."""
 HDF5 = b"\x89HDF"
 """First bytes of a netCDF file, which is in HDF5 format."""
 
 
 def stamp_of(product: str) -> str:
-    """Path of the stamp of a product inside the folder of results."""
+    """Path of a product's stamp, relative to the folder of results."""
     return f"{FOLDER}/{product}.json"
 
 
 def write(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> None:
-    """Write a stamp; made_of: fingerprint of the inputs, see app.plan."""
+    """Write a stamp.  made_of: fingerprint of the inputs, see app.plan."""
     sums = {Path(file).name: _checksum(file) for file in outputs}
     files.write_atomically(Path(stamp), canonical_json({"made_of": made_of, "sums": sums}).encode())
 
 
 def read(stamp: str | Path) -> dict:
-    """Read the content of a stamp, made_of and sums.  The dict is empty if the stamp is missing or
-    damaged."""
+    """Read a stamp, with the keys `made_of` and `sums`.  The dict is empty if the stamp is missing
+    or damaged."""
     try:
         content = json.loads(Path(stamp).read_bytes())
     except (OSError, ValueError):
@@ -54,8 +53,8 @@ def read(stamp: str | Path) -> dict:
 
 
 def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool:
-    """True if all outputs exist with the checksums of the stamp, and the stamp has this
-    `made_of`."""
+    """True if the stamp has the fingerprint `made_of`, and all outputs exist with the stamp's
+    checksums."""
     content = read(stamp)
     if content.get("made_of") != made_of:
         return False
@@ -66,8 +65,8 @@ def fits(stamp: str | Path, made_of: str, outputs: Iterable[str | Path]) -> bool
 
 
 def is_damaged(dataset: Path) -> bool:
-    """True if a netCDF file differs from its stamp.  If there is no stamp, True if the file is not
-    in netCDF format.
+    """True if the checksum of a netCDF file differs from the stamp.  Without a stamp, True if the
+    file is not in netCDF format.
 
     Raises CacheError if the file cannot be read.
     """
@@ -82,9 +81,10 @@ def is_damaged(dataset: Path) -> bool:
 
 
 def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
-    """Rename the files of a product that differ from its stamp, before a job writes new ones.
+    """Rename a product's files if their checksums differ from the stamp, before a job writes new
+    files.
 
-    Such a file is damaged, or it comes from the user, who may still need it.
+    Such a file is damaged, or it was changed by the user and may still be needed.
     """
     for path in map(Path, outputs):
         if path.is_file() and _checksum(path) != _stamped(stamp, path):
@@ -94,11 +94,11 @@ def set_aside(stamp: str | Path, outputs: Iterable[str | Path]) -> None:
 
 
 def date(paths: Iterable[str | Path], right: bool) -> None:
-    """Set the date of outdated files (`right` is False) back to 2001.  For other files, replace a
-    date in the future by the current time.
+    """Correct the dates of files.  If `right` is False, the files are outdated and get a date in
+    2001.  Otherwise, a date in the future is replaced by the current time.
 
-    Snakemake runs a job again if its output file is older than the input AGAIN.  It rejects files
-    that are older than an input, even if the input is marked as ancient.
+    Snakemake runs a job again if its output file is older than the input AGAIN.  It also rejects
+    files that are older than any input, even if this input is marked as ancient.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -119,7 +119,7 @@ def write_again(path: str | Path, dated: bool) -> None:
 
 
 def _stamped(stamp: str | Path, path: Path) -> str | None:
-    """Checksum of a file according to a stamp; None if the stamp does not contain the file."""
+    """Checksum of a file according to a stamp.  None if the stamp does not list the file."""
     return read(stamp).get("sums", {}).get(path.name)
 
 

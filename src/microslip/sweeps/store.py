@@ -1,7 +1,7 @@
-"""Records on disk: one file for each result, and files with many results.
+"""Store records on disk, in one file for each result or in files with many results.
 
-A file contains records as lines of JSON, followed by their checksum.  It is written atomically.  A
-file with a wrong checksum counts as missing.
+A file contains records as lines of JSON, followed by their checksum.  Files are written atomically.
+A file with a wrong checksum counts as missing.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ NOT_FINAL = b" not final\n"
 
 
 def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None:
-    """Write all records, which are dicts of plain JSON values without NaN, to a file in one atomic
-    step.
+    """Write all records to a file in one atomic step.  Records are dicts of plain JSON values
+    without NaN.
 
     Raises CacheError if the file cannot be written.
     """
@@ -52,8 +52,8 @@ def is_final(path: str | Path) -> bool:
 
 
 def _checked(path: str | Path) -> tuple[bytes, bool] | None:
-    """Return the lines of a file without the checksum, and whether its records are final; None if
-    the file is damaged."""
+    """Return a file's lines without the checksum, and whether the records are final.  Return None
+    if the file is damaged."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:
@@ -65,21 +65,21 @@ def _checked(path: str | Path) -> tuple[bytes, bool] | None:
 
 
 class Store:
-    """Results in a folder, which several processes may read and write at the same time."""
+    """Results in a folder.  Several processes may read and write them at the same time."""
 
     def __init__(self, folder: str | Path):
-        """folder: folder of results, which is created with the first result."""
+        """folder: folder of results.  It is created when the first result is stored."""
         files.refuse_no_folder(folder)
         self.folder = Path(folder)
         self._tried = False
 
     def path(self, group: str, key: str) -> Path:
-        """Path of the result `key`; group: subfolder for a kind of request and a motion, see
+        """Path of the result `key`.  group: subfolder for a kind of request and a motion, see
         batches.group."""
         return self.folder / group / key[:2] / f"{key}.json"
 
     def read(self, group: str, key: str) -> dict | None:
-        """Read the record with the name `key`; returns None if the file is missing or damaged.
+        """Read the record `key`.  Return None if the file is missing or damaged.
 
         A damaged file is logged.  Raises CacheError if the operating system cannot read the file.
         """
@@ -101,7 +101,7 @@ class Store:
         write(self.path(group, key), [{**record, "key": key}])
 
     def try_writing(self) -> None:
-        """Raise CacheError if the folder cannot be written to.  This is checked only once, before
+        """Raise CacheError if the folder cannot be written to.  The check is made only once, before
         any computation."""
         if not self._tried:
             try:

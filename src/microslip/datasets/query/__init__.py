@@ -1,1 +1,1 @@
-"""Interpolation between the nodes of a map, and estimates outside its tabulated range."""
+"""Interpolation between the nodes of a map, and estimates outside the tabulated range."""

@@ -1,4 +1,4 @@
-"""The accessor `dataset.microslip`, which returns friction at any velocity and amplitude with an
+"""The accessor `dataset.microslip`.  It returns friction at any velocity and amplitude, with an
 error bound."""
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from microslip.foundation.named_files import speaks_of_file
 from microslip.motions.by_name import motion_named
 
 Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Friction, its error bound and its source as a code of SOURCES; shape (n,) each."""
+"""Friction, its error bound, and its source (an index into SOURCES), shape (n,) each."""
 
 
 def accessor(dataset: xr.Dataset) -> Friction | Drift:
@@ -51,12 +51,12 @@ def accessor(dataset: xr.Dataset) -> Friction | Drift:
 class Friction:
     """Friction at any velocity and amplitude of a motion, from the dataset of a sweep.
 
-    Raises ValueError if the dataset is not that of a sweep.
+    Raises ValueError if the dataset does not come from a sweep.
     """
 
     def __init__(self, dataset: xr.Dataset):
         name, periodic = dataset.attrs.get("motion"), True
-        if not speaks_of_file(name):  # the file, which has one period, need not be here
+        if not speaks_of_file(name):  # the motion's file need not exist here
             try:
                 motion = motion_named(name)
             except ValueError:
@@ -70,7 +70,8 @@ class Friction:
                 "velocity or a spring; use microslip.at of a certified map, sel or interp"
             )
         self._dataset = dataset
-        # The name is stored instead of the motion, which has lambdas that cannot be pickled.
+        # Only the name of the motion is stored, because the motion contains lambdas, which cannot
+        # be pickled.
         self._motion, self._periodic = name, periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._has_limits = beyond.has_limits(dataset)
@@ -85,41 +86,41 @@ class Friction:
         poisson: float | None = None,
         tolerance: float | None = None,
     ) -> xr.Dataset:
-        """Friction and a bound of its error at any point.
+        """Friction and its error bound at any point.
 
         Between the nodes of a map, the error bound is the sum of the interpolation error and the
-        errors of the nodes (see `interpolation` and, between Poisson's ratios, `nodes`).  In a
-        certified map it is the bound of the cell (see `cells`).  Outside the tabulated range it is
-        the larger distance to the two ends of a bracket (see `beyond`).  Next to a point that did
-        not converge, mu_macro is NaN or its error bound is infinite.
+        node errors.  See `interpolation` and, for interpolation between Poisson's ratios, `nodes`.
+        In a certified map, it is the error bound of the cell (see `cells`).  Outside the tabulated
+        range, it is the distance to the farther end of a bracket (see `beyond`).  Next to a point
+        that did not converge, mu_macro is NaN or its error bound is infinite.
 
-        The dataset can be a selection or a join of datasets, in memory or in chunks of dask.  It
-        must have mu_macro, mu_macro_error, their coordinates and the attributes.  If there is no
+        The dataset can be a selection or a join of datasets, in memory or in dask chunks.  It must
+        have mu_macro, mu_macro_error, their coordinates and the attributes.  If there is no
         variable `converged`, nodes with an error above the attribute `tolerance` count as not
         converged.
 
         Parameters
         ----------
         velocity, amplitude : number, sequence or DataArray
-            Dimensionless velocity and amplitude, at least 0.  continuous-bore has no amplitude.
-            A sequence becomes a dimension of the result; DataArrays broadcast by their dimensions.
-            If an argument is in chunks of dask, the result is in chunks, too, and the values of
-            the argument are checked when the result is computed.
+            Dimensionless velocity and amplitude, at least 0.  continuous-bore has no amplitude.  A
+            sequence becomes a dimension of the result; DataArrays broadcast by their dimensions.
+            If an argument is in dask chunks, so is the result; the argument is then checked when
+            the result is computed.
         poisson : number, optional
             Poisson's ratio, within the range of the dataset.  It can be omitted if the dataset has
             only one Poisson's ratio.
         tolerance : number, optional
-            Points with a larger error bound are computed by the solver.  Their results are stored
-            beside the dataset if it was opened by `open_map`.  If that folder is read-only, they
-            are stored until Python ends.
+            Points with a larger error bound are computed by the solver.  The results are stored
+            beside the dataset if it was opened by `open_map`.  If that folder is read-only, the
+            results are kept until Python ends.
 
         Returns
         -------
         xarray.Dataset
-            Variables mu_macro, mu_macro_error and source.  `source` is an index into SOURCES, which
-            the attribute flag_meanings lists.  If points outside the tabulated range have a larger
-            error bound than the map, the attribute `note` gives their number and recommends a
-            `tolerance`.
+            Variables mu_macro, mu_macro_error and source.  `source` is an index into SOURCES,
+            listed in the attribute flag_meanings.  If points outside the tabulated range have a
+            larger error bound than the map, the attribute `note` gives their number and recommends
+            a `tolerance`.
 
         Raises
         ------
@@ -149,15 +150,14 @@ class Friction:
     def on_grid(
         self, velocity: object = 49, amplitude: object = 49, **settings: float | None
     ) -> xr.Dataset:
-        """Friction and a bound of its error on a regular grid.
+        """Friction and its error bound on a regular grid.
 
         Parameters
         ----------
         velocity, amplitude : int or sequence
-            Number of coordinates over the range of the map, or the coordinates themselves.  A
-            number gives velocities in equal ratios and amplitudes in equal steps.  The amplitude
-            is ignored for continuous-bore, and the velocity for a certified map of the static
-            limit.
+            Number of coordinates over the range of the map, or the coordinates themselves.  Numbers
+            give velocities in equal ratios and amplitudes in equal steps.  The amplitude is ignored
+            for continuous-bore.  The velocity is ignored for a certified map of the static limit.
         **settings
             Arguments `poisson` and `tolerance` of `at`.
 
@@ -169,7 +169,7 @@ class Friction:
         Raises
         ------
         InputError
-            If a number of coordinates is below 2, or if `at` raises it.
+            If a number of coordinates is below 2, or if `at` raises InputError.
         """
         axes = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._periodic:
@@ -185,34 +185,34 @@ class Friction:
         poisson: float | None = None,
         within: tuple[float, float] | None = None,
     ) -> xr.Dataset:
-        """Find the amplitude or the velocity at which friction has a given value.
+        """Find the amplitude or the velocity at which friction has a requested value.
 
         Parameters
         ----------
         wanted : number, sequence or DataArray
             Value of mu_macro, at least 0.  A sequence becomes the dimension `wanted`.
         velocity, amplitude : number, sequence or DataArray
-            The known coordinate.  The other coordinate is searched.  continuous-bore has no
-            amplitude; leave out both to search its velocity.
+            The fixed coordinate.  The other coordinate is searched.  continuous-bore has no
+            amplitude; omit both arguments to search its velocity.
         poisson : number, optional
-            Poisson's ratio, as for `at`.
+            Poisson's ratio, see `at`.
         within : two numbers, optional
             Ends of the searched range.  Defaults to the range of the dataset.
 
         Returns
         -------
         xarray.Dataset
-            The dimension `root` counts the intervals in which friction equals the value to within
-            its error.  The ends of the intervals have the name of the searched coordinate with
-            the suffixes `_low` and `_high`.  The variable without a suffix is the coordinate at
-            which the map has exactly this value (NaN if there is none in the interval).  `bounded`
-            is True if both ends are inside the searched range.  `outcome` is an index into
-            OUTCOMES, without the dimension `root`.
+            The dimension `root` counts the intervals in which friction equals the requested value
+            to within the error of friction.  The ends of the intervals are variables named after
+            the searched coordinate, with the suffixes `_low` and `_high`.  The variable without a
+            suffix is the coordinate at which the map has exactly the requested value, or NaN if the
+            interval has no such coordinate.  `bounded` is True if both ends are inside the searched
+            range.  `outcome` is an index into OUTCOMES, without the dimension `root`.
 
         Raises
         ------
         InputError
-            If both or neither of velocity and amplitude are given, or if `at` raises it.
+            If both velocity and amplitude are given, or neither, or if `at` raises InputError.
         """
         others = {"velocity": velocity, "amplitude": amplitude}
         others = {name: value for name, value in others.items() if value is not None}
@@ -240,7 +240,8 @@ class Friction:
     # The map
 
     def _coordinates(self, velocity: object, amplitude: object) -> dict[str, xr.DataArray]:
-        """Return labelled coordinates.  The amplitude is the first one, as in the datasets."""
+        """Return labelled coordinates.  The amplitude is the first coordinate, as in the
+        datasets."""
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
@@ -276,10 +277,10 @@ class Friction:
         return value, error, source
 
     def _nodes(self, poisson: float | None) -> Nodes | CellNodes:
-        """Return the nodes of the map.  They are read again only if the dataset has changed.
+        """Return the nodes of the map.  The nodes are read again only if the dataset has changed.
 
         Reading the nodes takes ten times as long as interpolating.  A dataset can be changed in
-        place, so changes are detected by a digest of all its data.
+        place, so changes are detected by a digest of all data.
         """
         digest = (_digest(self._dataset), poisson)
         if digest[0] is None or self._read is None or self._read[0] != digest:
@@ -375,7 +376,7 @@ class Friction:
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
         # Friction outside the map is estimated from the nearest point on the edge of the map. For
-        # amplitudes above the map, this is the point at the edge with the same limit for large
+        # amplitudes above the map, this is the point on the edge that has the same limit for large
         # amplitudes.
         wide = amplitude > widest
         below = np.where(
@@ -415,7 +416,7 @@ class Friction:
     def _solve(
         self, answer: Answer, point: tuple[np.ndarray, ...], nu: float, tolerance: float
     ) -> None:
-        """Replace results with an error above the tolerance by those of the solver, in place."""
+        """Replace results with an error above the tolerance by the solver's results, in place."""
         value, error, source = answer
         path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
@@ -432,11 +433,11 @@ class Friction:
 
 
 READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
-"""Variables of a map of nodes that the digest includes, besides those that begin with "cell_"."""
+"""Variables that are included in the digest of a map, besides variables that begin with "cell_"."""
 
 
 def _digest(dataset: xr.Dataset) -> bytes | None:
-    """Return a digest of the attributes and variables of a map, or None for chunks of dask."""
+    """Return a digest of a map's attributes and variables, or None for dask chunks."""
     digest = hashlib.sha256(repr(sorted(dataset.attrs.items())).encode())
     for name, part in dataset.variables.items():
         if name in READ or str(name).startswith("cell_"):

@@ -1,4 +1,4 @@
-"""Variables and sources of a result from a map."""
+"""Variables of a result from a map, and the sources of friction."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ def dataset_of(
     parts : tuple of xarray.DataArray
         Values of the variables.
     about : dict of dict
-        Attributes of each variable, by its name and in the order of `parts`.
+        Attributes of each variable, by name and in the order of `parts`.
     motion : str
         Name of the motion, stored as an attribute of the dataset.
     poisson : tuple or xarray.DataArray
-        Poisson's ratio.  It becomes a coordinate, unless it is already a dimension of the parts.
+        Poisson's ratio.  It becomes a coordinate unless it is already a dimension of `parts`.
     """
     for part, attrs in zip(parts, about.values(), strict=True):
         part.attrs = dict(attrs)

@@ -1,17 +1,18 @@
 """Friction outside the tabulated range, from brackets between the map and proved limits.
 
-These properties are proved: friction is 1 without vibration; it tends to the static limit for
-vanishing velocity; it never decreases with the velocity (bounds.py); and the energy balance bounds
-1 - mu_macro.  All computed points show that friction decreases with the amplitude.
+Four properties are proved.  Friction is 1 without vibration.  It tends to the static limit for
+vanishing velocity.  It never decreases with the velocity (bounds.py).  The energy balance gives a
+bound on 1 - mu_macro.  At all computed points, friction also decreases with the amplitude.
 
-At the edge of a map the bracket is as narrow as the error estimate.  Away from the edge it widens.
-The difference between friction and its limit is assumed to follow a power law with a local
-exponent between 0 and twice the asymptotic exponent.  The computed points have local exponents of
-0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards no vibration.
+At the edge of a map, the bracket is as narrow as the error estimate.  Away from the edge, the
+bracket widens.  The difference between friction and its limit is assumed to follow a power law with
+a local exponent between 0 and twice the asymptotic exponent.  The local exponents of the computed
+points are 0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards no
+vibration.
 
-For large amplitudes friction tends to a limit (Eqs 6 and 29).  The sign of the difference from this
-limit depends on the velocity.  The bound of the difference at larger amplitudes is the largest
-absolute difference at the upper edge of the map within a decade of velocities.
+For large amplitudes, friction tends to a limit (Eqs 6 and 29).  The sign of the difference from
+this limit depends on the velocity.  Above the map's largest amplitude, this difference is bounded
+by the largest absolute difference along the map's upper edge, within a decade of velocities.
 """
 
 from __future__ import annotations
@@ -30,17 +31,17 @@ ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
 """Friction minus its static limit is proportional to the velocity to this power."""
 FAST_EXPONENT = 2.0
-"""1 - mu_macro in fast sliding is proportional to 1 / velocity to this power (Eqs 6 and 29)."""
+"""In fast sliding, 1 - mu_macro is proportional to 1 / velocity^FAST_EXPONENT (Eqs 6 and 29)."""
 NARROW_EXPONENT = 1.0
-"""Power law of 1 - mu_macro for small amplitudes: the exponent of the amplitude."""
+"""For small amplitudes, 1 - mu_macro is proportional to the amplitude to this power."""
 WIDE_EXPONENT = 1.0
-"""For large amplitudes, friction minus its limit is proportional to 1 / amplitude to this power."""
+"""For large amplitudes, friction minus its limit is proportional to 1 / amplitude^WIDE_EXPONENT."""
 STEEPEST = 2.0
 """Largest local exponent of a power law, divided by the asymptotic exponent."""
 POISSON_DROP = 0.1
-"""Bound of the decrease of transverse static friction with Poisson's ratio nu, divided by
-(nu / (2 - nu))^2.  solve("transverse", 0, A, poisson=nu) gives at most 0.067, near A = 0.9, for nu
-from 0.1 to 0.5."""
+"""Bound on the decrease of transverse static friction from Poisson's ratio 0 to nu, divided by (nu
+/ (2 - nu))^2.  solve("transverse", 0, A, poisson=nu) gives at most 0.067, near A = 0.9, for nu from
+0.1 to 0.5."""
 
 
 class Estimate(NamedTuple):
@@ -58,14 +59,14 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """Proved limits and bounds of a motion, as functions of arrays.
+    """Proved limits and bounds for a motion, as functions of arrays.
 
     Attributes
     ----------
     static_at_nu_0 : callable
         Function of the amplitude: limit for vanishing velocity at Poisson's ratio 0.
     poisson_drop : float
-        Largest decrease of that limit with Poisson's ratio nu, divided by (nu / (2 - nu))^2.
+        Largest decrease of this limit from Poisson's ratio 0 to nu, divided by (nu / (2 - nu))^2.
     large : callable
         Function of velocity and amplitude: limit for large amplitudes.
     same_limit : callable
@@ -151,8 +152,8 @@ def faster(
 ) -> tuple:
     """Estimate friction at velocities above the highest velocity of a map.
 
-    edge: friction at the highest velocity and the same amplitudes, NaN where the map has no value.
-    Returns values and errors, shape (n,) each.
+    edge: friction at the highest velocity and the same amplitudes; NaN if the map has no value
+    there.  Returns values and errors, shape (n,) each.
     """
     low = 1.0 - limits.drop(velocity, amplitude)
     low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)  # never falls with the velocity
@@ -191,16 +192,17 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Return the largest differences between friction at the edge of a map and its limit.
+    """Return the largest differences between friction at the edge of a map and the limit of
+    friction.
 
-    The limit is that for large amplitudes, and the edge is that at the largest amplitude.
+    The limit is the limit for large amplitudes, and the edge is at the map's largest amplitude.
 
     Parameters
     ----------
     nodes, values, errors : numpy.ndarray, shape (m,)
-        Velocities, friction and its errors along the largest amplitude of the map.
+        Velocities, friction, and errors of friction along the map's largest amplitude.
     velocity : numpy.ndarray, shape (n,)
-        Velocities of the request.  For each of them, all nodes within a decade are used.
+        Requested velocities.  For each velocity, all nodes within a decade are used.
     widest : float
         Largest amplitude of the map.
 
@@ -209,7 +211,7 @@ def distances(
     numpy.ndarray, shape (n,)
     """
     if not velocity.size:
-        return velocity  # the limit of the bore is expensive
+        return velocity  # avoids the bore's limit, which is expensive
     off = np.abs(values - limits.large(nodes, np.full_like(nodes, widest))) + errors
     away = np.abs(np.log10(np.clip(velocity, nodes[0], nodes[-1])[:, None] / nodes))
     near = (away <= 1.0) | (away == away.min(axis=1, keepdims=True))
@@ -236,7 +238,7 @@ def within_the_balance(
     velocity: np.ndarray,
     amplitude: np.ndarray,
 ) -> tuple:
-    """Clip values and errors to the bounds from the energy balance. NaN is not changed."""
+    """Clip values and errors to the bounds from the energy balance.  NaN stays NaN."""
     low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
     value = np.clip(value, low, 1.0)
     reach = np.maximum(1.0 - value, value - low) + ROUNDING
@@ -244,6 +246,6 @@ def within_the_balance(
 
 
 def _within(low: np.ndarray, high: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Clip an estimate to its bracket, and return it with the larger distance from the two ends."""
+    """Clip an estimate to its bracket.  Return the estimate and its distance to the farther end."""
     value = np.clip(guess, low, high)
     return value, np.maximum(high - value, value - low) + ROUNDING

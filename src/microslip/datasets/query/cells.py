@@ -16,7 +16,7 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
-"""Number of velocities at which friction is evaluated along the largest amplitude."""
+"""Number of velocities along the largest amplitude at which friction is evaluated."""
 
 
 def is_certified(dataset: xr.Dataset) -> bool:
@@ -40,12 +40,13 @@ class CellTable:
     borders : numpy.ndarray, shape (k, directions, 2)
         Lower and upper ends of the cells, in scaled coordinates.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
-        Friction at the nodes of each cell.  The axes are the cells, velocity, amplitude and, if it
-        is a direction, Poisson's ratio.  A map of drift has asinh(velocity) instead of friction.
+        Friction at the nodes of each cell.  The axes are the cells, velocity and amplitude.
+        Poisson's ratio is the last axis if it is a direction of the map.  A map of drift has
+        asinh(velocity) instead of friction.
     bounds : numpy.ndarray, shape (k,)
-        Bound of the error in each cell.
+        Error bound for each cell.
     poisson : float, optional
-        Poisson's ratio at which the map is evaluated, if that is one of its directions.
+        Poisson's ratio at which the map is evaluated, if Poisson's ratio is a direction of the map.
     """
 
     coordinates: MapCoordinates | DriftCoordinates
@@ -72,7 +73,7 @@ class CellTable:
 
     @cached_property
     def columns(self) -> Axis:
-        """Velocities over the range of the map in equal ratios.  A static limit has only 0."""
+        """Velocities in equal ratios over the range of the map.  For a static limit, only 0."""
         if not self._velocity:
             return Axis(np.zeros(1))
         slow, fast = self._velocity
@@ -118,7 +119,8 @@ def _polynomial(nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
     for share in shares.T:
         degree = len(value) - 1
         weights = lagrange(np.arange(degree + 1.0)[None], degree * share)
-        # The sum is term by term, so that rounding at a point does not depend on the other points.
+        # The terms are summed one by one, so that rounding at a point does not depend on the other
+        # points.
         value = sum(w * part for w, part in zip(weights.T, value, strict=True))
     return value
 
@@ -134,9 +136,9 @@ class CellNodes:
     Attributes
     ----------
     poisson : numpy.ndarray, shape (1,) or (2,)
-        The only Poisson's ratio, or the smallest and the largest one.
+        The only Poisson's ratio, or the smallest and the largest Poisson's ratio.
     values, errors : numpy.ndarray, shape (n,)
-        mu_macro at the points and its errors.  Unknown values are NaN, with an infinite error.
+        mu_macro and its errors at the points.  Unknown values are NaN, with an infinite error.
     cells : CellTable
         Friction in the cells.
     """
@@ -147,7 +149,7 @@ class CellNodes:
     cells: CellTable
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """Return the map at a Poisson's ratio, or None if there is none.
+        """Return the map at a Poisson's ratio, or None if there is no such map.
 
         The map is for velocities above 0 or, if `still` is True, for the velocity 0.
         """
@@ -159,7 +161,7 @@ class CellNodes:
 def cells_of(dataset: xr.Dataset) -> CellNodes:
     """Read the dataset of a certified map.
 
-    Raises InputError with the name of the variable if one is missing.
+    Raises InputError with the name of a missing variable.
     """
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]

@@ -1,4 +1,4 @@
-"""Convert the coordinates of a request to labelled arrays of finite numbers that are at least 0."""
+"""Convert the coordinates of a request to labelled arrays of finite, non-negative numbers."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from microslip.theory import hertz
 
 ALLOWED = "allowed is a finite number >= 0, or several"
 DIGITS = 6
-"""Number of significant digits to which evenly spaced coordinates are rounded."""
+"""Number of significant digits of evenly spaced coordinates."""
 
 
 def coordinate_array(name: str, value: object) -> xr.DataArray:
-    """Convert an argument to a DataArray of numbers that are at least 0.
+    """Convert an argument to a DataArray of non-negative numbers.
 
-    A sequence becomes the dimension `name`.  Values in chunks of dask are not checked.
+    A sequence becomes the dimension `name`.  Values in dask chunks are not checked.
     """
     array = value if isinstance(value, xr.DataArray) else _array(name, value)
     if array.dtype.kind not in "iuf":
@@ -48,17 +48,17 @@ def evaluate(
 ) -> tuple[xr.DataArray, ...]:
     """Evaluate a function at labelled coordinates, which broadcast by their dimensions.
 
-    If one of the coordinates is in chunks of dask, the results are in chunks, too.  They are
-    then computed and checked when their values are read.
+    If one of the coordinates is in dask chunks, so are the results.  The results are then computed
+    and checked when their values are read.
 
     Parameters
     ----------
     function : callable
-        Function of the coordinates, which are float arrays of shape (n,) passed by name.  It
-        returns arrays of shape (n,).
+        Function of the coordinates.  Each coordinate is passed by name, as a float array of shape
+        (n,).  The function returns arrays of shape (n,).
     coordinates : dict of xarray.DataArray
-        Coordinates as returned by `coordinate_array`.  The first one is the slowest dimension of
-        the results.
+        Coordinates returned by `coordinate_array`.  The first coordinate is the slowest dimension
+        of the results.
     types : tuple of type
         Types of the results.
     """
@@ -84,7 +84,8 @@ def evaluate(
 
 
 def _array(name: str, value: Any) -> np.ndarray:
-    """Convert an argument to an array, which has the type float if all values are plain numbers.
+    """Convert an argument to an array.  The array has the type float if all values are plain
+    numbers.
 
     NumPy would convert texts, times, masked values and quantities without a warning.
     """
@@ -113,8 +114,8 @@ def grid_axes(dataset: xr.Dataset, request: dict[str, Any]) -> dict[str, Any]:
     dataset : xarray.Dataset
         Dataset with the coordinates.
     request : dict
-        For each axis, by name, the number of coordinates or the coordinates themselves.  Velocities
-        get equal ratios, other axes equal steps.
+        For each axis, by name: the number of coordinates, or the coordinates themselves.
+        Velocities have equal ratios, and other axes have equal steps.
 
     Raises
     ------

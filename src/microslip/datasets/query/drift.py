@@ -17,9 +17,9 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.theory.drift_threshold import threshold
 
 STATES = ("stays", "drifts", "undecided", "runs away")
-"""States of a contact, by their code in the variable `state`.
+"""States of a contact, in the order of the codes in the variable `state`.
 
-A state is undecided if the force equals the threshold to within the error of the threshold.
+A state is undecided if the force equals the threshold to within the threshold's error.
 """
 (STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
 DRIFT = {
@@ -30,7 +30,7 @@ DRIFT = {
 }
 """Attributes of the variables of a result."""
 THRESHOLD_ERROR = 1e-12
-"""Rounding error of the closed forms for the threshold of the force."""
+"""Rounding error of the closed forms for the force threshold."""
 
 
 class Drift:
@@ -57,15 +57,15 @@ class Drift:
         ----------
         force, amplitude : number, sequence or DataArray
             Dimensionless force and amplitude, at least 0.  A sequence becomes a dimension of the
-            result; DataArrays broadcast by their dimensions.  If an argument is in chunks of dask,
-            the result is in chunks, too.
+            result; DataArrays broadcast by their dimensions.  If an argument is in dask chunks, so
+            is the result.
 
         Returns
         -------
         xarray.Dataset
             Variables velocity, velocity_error, threshold and state.  `threshold` is the force up to
-            which the contact stays at rest.  `state` is an index into STATES, which the attribute
-            flag_meanings lists.
+            which the contact stays at rest.  `state` is an index into STATES, listed in the
+            attribute flag_meanings.
 
         Raises
         ------
@@ -101,13 +101,14 @@ class Drift:
         Raises
         ------
         InputError
-            If a number of coordinates is below 2, or if `at` raises it.
+            If a number of coordinates is below 2, or if `at` raises InputError.
         """
         return self.at(**grid_axes(self._dataset, {"force": force, "amplitude": amplitude}))
 
 
 def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return velocity, error bound, threshold of the force and code of the state, all (n,)."""
+    """Return the velocity, its error bound, the force threshold and the code of the state, (n,)
+    each."""
     coordinates = table.coordinates
     assert isinstance(coordinates, DriftCoordinates)  # checked by Drift
     least = np.asarray(threshold(coordinates.motion, amplitude), float)
@@ -127,7 +128,7 @@ def _drift(table: CellTable, amplitude: np.ndarray, force: np.ndarray) -> tuple[
 def _refuse_outside(
     coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray
 ) -> None:
-    """Raise InputError with the name of the argument for the first point outside the map."""
+    """Raise InputError for the first point outside the map, with the name of the argument."""
     low, high = coordinates.amplitude
     for name, values, ends in (
         ("force", force, (0.0, coordinates.force)),

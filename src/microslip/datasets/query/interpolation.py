@@ -1,10 +1,9 @@
 """Interpolation in a table by local cubics, with an error estimate from leaving nodes out.
 
 Along an axis, values are interpolated by the cubic through the four nearest nodes.  To estimate the
-error, each node is also predicted by the cubic through its neighbours, which has twice the spacing.
-The largest difference between prediction and value at the nodes around a cell bounds the error in
-the cell.  The true error is sixteen times smaller for a smooth function and about as large at a
-kink.
+error, each node is also predicted from its neighbours by a cubic with twice the spacing.  The error
+bound of a cell is the largest difference between prediction and value at the surrounding nodes.
+The true error is sixteen times smaller for a smooth function and about as large at a kink.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ NODES = 4
 class Axis:
     """Ascending coordinates of one axis of a table.
 
-    The axis is logarithmic if the ratios of the coordinates are more even than their distances.
+    The axis is logarithmic if the coordinates are closer to equal ratios than to equal steps.
     """
 
     values: np.ndarray
@@ -76,10 +75,12 @@ class Axis:
         return cell, share, index, lagrange(x[index], q)
 
     def misses(self, table: np.ndarray) -> np.ndarray:
-        """Return the absolute difference between each node and the cubic through its neighbours.
+        """Return the absolute difference between the value at each node and the cubic through its
+        neighbours.
 
-        The nodes are along the first axis of the table.  An end node gets the difference of its
-        neighbour.  If there are only two nodes, both get the difference between their values.
+        The nodes are along the first axis of the table.  An end node is assigned the difference of
+        its neighbour.  If there are only two nodes, both are assigned the difference between their
+        values.
         """
         x = self.nodes
         count = len(x)
@@ -101,7 +102,7 @@ def _unevenness(values: np.ndarray) -> float:
 
 
 def lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Return the Lagrange weights, shape (n, k), for interpolation from k nodes to n points.
+    """Return the Lagrange weights for interpolation from k nodes to n points, shape (n, k).
 
     nodes: shape (n, k), or (1, k) if all points have the same nodes; points: shape (n,).
     """
@@ -138,7 +139,8 @@ class Table:
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return values and error bounds at points inside the table, shape (n,) each.
 
-        If one of the nodes is unknown, the value is NaN and the error bound is infinite.
+        If a value at one of the nodes is unknown, the result is NaN and the error bound is
+        infinite.
         """
         i, s, rows, row_weights = self.rows.cubics(row)
         j, t, columns, column_weights = self.columns.cubics(column)
@@ -152,7 +154,8 @@ class Table:
 
 
 def largest_around(values: np.ndarray, size: int = 3) -> np.ndarray:
-    """Return the largest entry in each window of a table.  The table is padded by its edge entries.
+    """Return the largest entry in each window of a table.  The table is padded with its edge
+    entries.
 
     Parameters
     ----------
@@ -165,7 +168,7 @@ def largest_around(values: np.ndarray, size: int = 3) -> np.ndarray:
     Returns
     -------
     numpy.ndarray
-        Array of the shape (n, m) for size 3.  For size 4 the shape is (n - 1, m - 1), with at least
+        Array of shape (n, m) for size 3.  For size 4, the shape is (n - 1, m - 1), with at least
         one entry along each axis.
     """
     padded = np.pad(values, [(1, max(1, size - 1 - n)) for n in values.shape], mode="edge")

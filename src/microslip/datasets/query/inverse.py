@@ -1,8 +1,8 @@
 """Search a map for the velocities or amplitudes at which friction has a requested value.
 
-Because a map has an error, the result is an interval: the range in which friction equals the
-requested value to within the error, and the place at which the map has exactly this value.  If
-friction has the value at several places, there is an interval for each place.
+Because a map has an error, the result is an interval in which friction equals the requested value
+to within the error.  The result also includes the place at which the map has exactly this value.
+If friction has the value at several places, there is an interval for each place.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ OUTCOMES = (
     "friction is larger everywhere",
     "friction is smaller everywhere",
 )
-"""Outcomes of a search.  The variable `outcome` contains their indices.  A value is possible if the
-map reaches it only to within the error."""
+"""Outcomes of a search.  The variable `outcome` contains their indices.  The outcome is "possible"
+if the map reaches the value only to within the error."""
 (SINGLE, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
-"""Numbers of places at which a search evaluates friction first, in equal steps and in equal ratios.
-Between two neighbouring places friction is assumed to cross the requested value at most once."""
+"""Numbers of places at which a search first evaluates friction, in equal steps and in equal ratios.
+Friction is assumed to cross the requested value at most once between neighbouring places."""
 DECADES = 6
-"""Number of decades from the smallest to the largest of the places in equal ratios."""
+"""Number of decades covered by the places in equal ratios."""
 AT_A_TIME = 1000
-"""Number of searches that run together.  It limits the memory."""
+"""Number of searches that run together, which limits the memory."""
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
 Friction = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Function of the searched and the other coordinate, shape (n,) each, that returns friction and its
-error."""
+"""Function friction_at(searched coordinate, other coordinate) -> (friction, error), shape (n,)
+each."""
 
 
 def ends_of(
@@ -72,8 +72,8 @@ def search(
     Returns
     -------
     intervals : numpy.ndarray, shape (k, 5)
-        A row for each interval, ascending: index of the search, place or NaN, lower end, upper end,
-        and 1 if both ends are inside the range, else 0.
+        A row for each interval, in ascending order.  Its entries are the index of the search, the
+        place or NaN, the lower end, the upper end, and 1 if both ends are inside the range, else 0.
     outcome : numpy.ndarray, shape (n,)
         Indices into OUTCOMES.
     """
@@ -94,13 +94,14 @@ def search(
 def _search(
     at: Friction, wanted: np.ndarray, other: np.ndarray, places: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return intervals and outcomes as `search` does, from friction at the first places."""
+    """Return the same intervals and outcomes as `search`, from friction at the first places."""
 
     def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
         return at(place, other)[0] - wanted
 
     def excess(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return the distance of friction from the requested value, minus the error."""
+        """Return the absolute difference between friction and the requested value, minus the
+        error."""
         value, error = at(place, other)
         return np.abs(value - wanted) - error
 
@@ -110,11 +111,11 @@ def _search(
         for part in at(np.tile(places, count), np.repeat(other, len(places)))
     )
     off = value - wanted[:, None]
-    inside = ~(np.abs(off) > error)  # an unknown value may be the requested one
+    inside = ~(np.abs(off) > error)  # an unknown value may equal the requested value
     crosses = np.sign(off[:, :-1]) * np.sign(off[:, 1:]) < 0.0
-    # A run of cells can contain the requested friction. Two cells belong to the same run if the
-    # node between them is inside. The nodes at the ends of a run are outside, except at the ends
-    # of the range.
+    # A run of cells can contain the requested friction.  Two cells belong to the same run if
+    # friction at the node between them is within the error of the request ("inside").  The nodes at
+    # the ends of a run are outside, except at the ends of the range.
     touched = inside[:, :-1] | inside[:, 1:] | crosses
     row, first = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (1, 0))))
     last = np.nonzero(touched & ~np.pad(inside[:, 1:-1], ((0, 0), (0, 1))))[1] + 1
@@ -133,8 +134,8 @@ def _search(
     place[crossed], _ = _roots(difference, places[lower], places[lower + 1], arguments, crossed)
     ends = []
     for node, step in ((first, 1), (last, -1)):
-        # The end lies between an outer node, outside, and an inner place: the neighbouring node if
-        # that is inside, else the place of the requested friction.
+        # The end lies between an outer node, which is outside, and an inner place.  The inner place
+        # is the neighbouring node if this node is inside, else the place of the requested friction.
         neighbour = np.clip(node + step, 0, len(places) - 1)
         inner = np.where(inside[row, neighbour], places[neighbour], place)
         end = np.where(inside[row, node] | np.isnan(inner), places[node], inner)
@@ -161,10 +162,11 @@ def _roots(
     arguments: tuple[np.ndarray, ...],
     chosen: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find the roots of a function in brackets; also returns True where the search succeeded.
+    """Find the roots of a function in brackets.  Also return True for each bracket in which the
+    search succeeded.
 
     left, right: ends of the brackets, shape (n,); arguments: additional arguments of the function,
-    shape (m,) each; chosen: mask, shape (m,), of the n arguments that belong to the brackets.
+    shape (m,) each; chosen: mask, shape (m,), that selects the arguments for the n brackets.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -178,7 +180,7 @@ def _roots(
 def answer(
     name: str, shape: xr.DataArray, intervals: np.ndarray, outcome: np.ndarray, motion: str
 ) -> xr.Dataset:
-    """Convert intervals to a dataset with the dimensions of the request and `root`.
+    """Convert intervals to a dataset with the request's dimensions and the dimension `root`.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""The nodes of a map, from the dataset of a sweep or from a selection of it.
+"""Read the nodes of a map from the dataset of a sweep, or from a selection of such a dataset.
 
 Between Poisson's ratios, every node is interpolated by a cubic through the four nearest ratios, or
-by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the errors of
-the nodes and of the interpolation error.  The latter is estimated by leaving ratios out (see
-`interpolation`).  If there are only two ratios, it is the difference between their values.
+by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the node errors
+and the interpolation error.  The interpolation error is estimated by leaving ratios out (see
+`interpolation`).  With only two ratios, it is the difference between the two values.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Nodes:
     poisson, amplitude, velocity : numpy.ndarray
         Ascending dimensionless coordinates, shapes (k,), (n,) and (m,).
     values, errors : numpy.ndarray, shape (k, n, m)
-        mu_macro and the bound of its error.
+        mu_macro and its error bound.
     """
 
     poisson: np.ndarray
@@ -45,7 +45,7 @@ class Nodes:
     errors: np.ndarray
 
     def table(self, poisson: float, *, still: bool = False) -> Table | None:
-        """Return the map at a Poisson's ratio, or None if there is none.
+        """Return the map at a Poisson's ratio, or None if there is no such map.
 
         The map is for velocities above 0 or, if `still` is True, for the velocity 0.
         """
@@ -66,7 +66,7 @@ class Nodes:
         value = np.tensordot(weights, self.values[index], 1)
         flat = self.values.reshape(len(self.poisson), -1)
         misses = axis.misses(flat).reshape(self.values.shape)
-        # the nodes around the cell, as along the other axes
+        # at the nodes around the cell, as along the other axes
         around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
         error = 4.0 * share * (1.0 - share) * largest_around(around)
         return value, self.errors[index].max(axis=0) + error
@@ -80,17 +80,17 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     dataset : xarray.Dataset
         Dataset with mu_macro and mu_macro_error.  Their dimensions are velocity, poisson and, if
         the motion is periodic, amplitude.  An axis with only one value can be a coordinate without
-        a dimension.  Nodes that did not converge are unknown.  If there is no variable `converged`,
-        these are the nodes with an error above the attribute `tolerance`.
+        a dimension.  Values at nodes that did not converge are unknown.  Without a variable
+        `converged`, these are the nodes with an error above the attribute `tolerance`.
     periodic : bool
         True if the motion has an amplitude.
     poisson : float, optional
-        Poisson's ratio of the dataset, if the dataset does not have this coordinate.
+        Poisson's ratio of the dataset, if the dataset lacks this coordinate.
 
     Raises
     ------
     InputError
-        If a variable is missing or a dimension is not allowed.  The message has its name.
+        If a variable is missing or a dimension is not allowed.  The message contains the name.
     """
     axes = ("poisson", "amplitude", "velocity") if periodic else ("poisson", "velocity")
     if "poisson" not in dataset.coords and poisson is not None:
@@ -130,7 +130,7 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
     """Raise InputError if two nodes at the same place differ by more than their errors.
 
-    A join of datasets can contain such nodes.
+    A join of datasets can contain such a pair of nodes.
     """
     value, error = (
         chosen[name].where(chosen["is_known"]) for name in ("mu_macro", "mu_macro_error")
@@ -200,7 +200,7 @@ def poisson_within(ratios: np.ndarray, poisson: float | None) -> float:
         raise InputError("poisson", poisson, f"{allowed}, one number")
     try:
         nu = low if poisson is None else float(poisson)
-    except OverflowError:  # a whole number of more than 308 digits
+    except OverflowError:  # an integer of more than 308 digits
         nu = np.inf
     if not low - SAME <= nu <= high + SAME:
         raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")

@@ -24,7 +24,7 @@ from microslip.foundation.files import refuse_no_folder
 from microslip.sweeps.stamps import is_damaged
 
 SOLVED = {"mu_macro", "velocity_error"}
-"""Variables by which the dataset of a sweep is recognised.  It has at least one of them."""
+"""Variables that identify the dataset of a sweep.  Such a dataset contains at least one of them."""
 
 
 def open_map(
@@ -34,7 +34,7 @@ def open_map(
     *,
     group: str | None = None,
 ) -> xr.Dataset:
-    """Open the dataset of a sweep, which has the accessor `microslip`.
+    """Open the dataset of a sweep.  The dataset has the accessor `microslip`.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def open_map(
     results : str or path
         Folder with the results of the workflow.
     chunks : optional
-        Argument `chunks` of xarray.open_dataset.  Use {} for arrays of dask.
+        Argument `chunks` of xarray.open_dataset.  Use {} for dask arrays.
     group : str, optional
         Group of the file to open instead of the map: velocity_curves or amplitude_curves (limits
         from theory on fine axes), history (Figure 1), field (Figure 3) or transients (Figure 5).
@@ -54,14 +54,14 @@ def open_map(
     -------
     xarray.Dataset
         The map or the group, with dimensionless variables.  A group has the attributes of the map,
-        but its own title.
+        except the title.
 
     Raises
     ------
     InputError
         If the name or the group is unknown.
     CacheError
-        If the file is missing, damaged or not the dataset of a sweep.  The message is one line.
+        If the file is missing, damaged or not the dataset of a sweep.  The message has one line.
     """
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")

@@ -16,7 +16,8 @@ from microslip.sweeps.solve_stored import solve_stored
 
 
 def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
-    """Call solve_stored with a folder of results.  If it is read-only, use a temporary folder."""
+    """Call solve_stored with a folder of results.  If this folder is read-only, use a temporary
+    folder."""
     try:
         return solve_stored(*point, results=folder, **settings)
     except CacheError as error:
@@ -27,8 +28,8 @@ def solve_and_store(folder: str, *point: Any, **settings: Any) -> Result:
 def drive_of(dataset: xr.Dataset) -> dict[str, object]:
     """Return the drive and the contacts of a dataset as arguments of microslip.solve.
 
-    The result is {} for one contact at a prescribed velocity.  Raises InputError if the dataset
-    does not have exactly one value of each argument.
+    The result is {} for one contact at a prescribed velocity.  Raises InputError unless the dataset
+    has exactly one value of each argument.
     """
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
     for name in names:

@@ -1,7 +1,7 @@
-"""The interpolated surface of a map on a grid that is fine enough to draw.
+"""Interpolate a map on a grid that is fine enough for drawing.
 
-Datasets contain values at the computed points only. This module interpolates between the points for
-figures, with the cubics of `query.interpolation`.
+Datasets contain values at the computed points only.  For figures, this module interpolates between
+the points with the cubics of `query.interpolation`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ FINE = 200
 class Surface:
     """Values of a map on a fine grid that contains all computed points.
 
-    The values are those of `microslip.at`, except where its cubic leaves the range of the two
-    neighbouring points, as on coarse maps. There they are clipped to this range, so that no figure
-    shows an extremum that was not computed. Where a point of a cubic is unknown, the value is
+    The values equal those of `microslip.at`, except if the cubic leaves the range of the two
+    neighbouring points.  This happens on coarse maps.  Such a value is clipped to this range, so
+    that figures show only computed extrema.  If a point of a cubic is unknown, the value is
     interpolated linearly.
 
     Parameters
@@ -30,7 +30,7 @@ class Surface:
     amplitude : ndarray, shape (n,)
         Dimensionless, ascending.
     values : ndarray, shape (n, m)
-        Values at the points. Values that are not finite are unknown.
+        Values at the points.  Values that are not finite are unknown.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Surface:
         """Return the values on the fine grid, masked in cells without reliable contours.
 
         A contour is reliable if the interpolation error is below half the distance between two
-        levels. The error is estimated by leaving points out.
+        levels.  The interpolation error is estimated by leaving points out.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class Surface:
 
 
 def _subdivided(axis: Axis) -> np.ndarray:
-    """Return the coordinates of an axis with evenly spaced coordinates between them."""
+    """Return the coordinates of an axis, with additional evenly spaced coordinates between them."""
     parts = -(-FINE // (len(axis.nodes) - 1))
     share = np.arange(1, parts) / parts
     between = axis.nodes[:-1, None] + share * np.diff(axis.nodes)[:, None]
@@ -92,12 +92,13 @@ def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarr
     cubic = np.einsum("pn,pn...->p...", weights, table[nodes])
     low, high = table[cell], table[np.minimum(cell + 1, len(table) - 1)]
     share = share[:, None]
-    # At an end with a known value, the unknown value at the other end has no weight.
+    # At a point with a known value, the unknown value of the other point has no weight.
     line = np.where(share > 0, share * high, 0.0) + np.where(share < 1, (1.0 - share) * low, 0.0)
     return np.where(np.isnan(cubic), line, np.clip(cubic, np.fmin(low, high), np.fmax(low, high)))
 
 
 def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
-    """Return the indices of the cells left and right of each coordinate; equal inside a cell."""
+    """Return the indices of the cells to the left and right of each coordinate.  They are equal
+    inside a cell."""
     sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
     return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]

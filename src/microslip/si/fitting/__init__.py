@@ -1,7 +1,7 @@
-"""Fit of the coefficient of friction of a contact, and of u_lim or G, to measured friction.
+"""Fit a contact's coefficient of friction, and u_lim or G, to measured friction.
 
-`measured` reads and checks the table.  `scales` converts the rows to dimensionless points for
-given values of both unknowns.  `friction_models` computes the friction of the points.  `estimate`
+`measured` reads and checks the table.  `scales` converts the rows to dimensionless points for a
+pair of values of the unknowns.  `friction_models` computes the friction of the points.  `estimate`
 contains the least-squares fit and its intervals.  `fit` contains the public function, and `fitted`
 contains its result.
 """

@@ -1,4 +1,4 @@
-"""Intervals, undetermined unknowns and warnings of a fit."""
+"""The result of a fit: intervals, undetermined unknowns and warnings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.validity import broken_assumptions
 
 WIDEST_MU = 2.0
-"""Largest allowed ratio of the upper to the lower end of the interval of mu."""
+"""Largest allowed ratio between the upper and the lower end of the interval for mu."""
 UNLIKELY = 0.01
 """Probability below which a sum of squares leads to a warning."""
 
@@ -120,7 +120,7 @@ def concluded(
 def _second(
     scale: Scale, best: estimate.Best, ends: np.ndarray, shift: np.ndarray, allowed: float | None
 ) -> dict[str, float | None]:
-    """Fields of u_lim and of the shear modulus.
+    """Fields for u_lim and the shear modulus.
 
     allowed: threshold of the sum of squares; None if the rows do not determine the second unknown.
     """
@@ -144,7 +144,8 @@ def _second(
 
 
 def _open(scale: Scale, ends: np.ndarray) -> str:
-    """The reason why the rows do not determine the second unknown; ends: ends of its interval."""
+    """The reason why the rows do not determine the second unknown.  ends: ends of the unknown's
+    interval."""
     low, high = ends
     which = f"any {scale.name}"
     if low > 0.0:
@@ -164,7 +165,7 @@ def _warnings(
     """Warnings about a fit.
 
     allowed: threshold of the sum of squares; 0 if the rows do not determine the second unknown.
-    chance: probability that the sum of squares is larger by chance; None if the errors are unknown.
+    chance: probability of a larger sum of squares by chance; None if the errors are unknown.
     """
     best, *others = fits
     if chance is not None and chance < UNLIKELY:

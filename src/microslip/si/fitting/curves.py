@@ -1,4 +1,4 @@
-"""The model curve of a fit: the friction between the rows, at enough points for a figure."""
+"""Model curves of a fit: the friction between the rows, at enough points for a figure."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
 PIECES = 60
-"""Number of points with equal steps on a curve, and number of points with equal ratios.  Straight
-lines between them look smooth in a figure."""
+"""Number of points in equal steps on a curve, and number of points in equal ratios.  A curve drawn
+through these points looks smooth."""
 
 
 class Curve(NamedTuple):
     """Points of all model curves of a fit, one curve after another.  Arrays have shape (n,).
 
-    The abscissa is the condition with the most different values.  Rows whose other conditions are
-    equal share a curve, if there are at least two.
+    The abscissa is the condition with the most different values.  At least two rows whose other
+    conditions are equal share a curve.
 
     Attributes
     ----------
@@ -39,8 +39,7 @@ class Curve(NamedTuple):
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
-    """Name of the condition with the most different values; the first one if several have as
-    many."""
+    """Name of the condition with the most distinct values.  In a tie, the first such condition."""
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
@@ -84,7 +83,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
 
 
 def _axis(values: np.ndarray) -> np.ndarray:
-    """The sorted values, with further values between them in equal steps and in equal ratios."""
+    """The sorted values, with additional values between them in equal steps and in equal ratios."""
     least, most = values[values > 0.0][0], values[-1]
     even = np.linspace(values[0], most, PIECES), np.geomspace(least, most, PIECES)
     return np.unique(np.clip(np.concatenate([values, *even]), values[0], most))

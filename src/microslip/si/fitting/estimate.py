@@ -1,11 +1,11 @@
-"""Least-squares fit of two positive numbers, with intervals from the profile of the sum of squares.
+"""Least-squares fit of two positive numbers, with intervals from the profile sum of squares.
 
 The unknowns are theta = (ln mu, ln scale).  For each value of one unknown, the sum of squares is
 minimised over the other unknown.  The interval contains the values for which this minimum is below
 a threshold.  The threshold is the least sum of squares plus a quantile.  If the rows have errors,
-it is a quantile of chi square.  Otherwise it is a quantile of the F distribution times the mean
-square residual.  Such an interval does not depend on the parametrisation.  It may be infinite on
-one side.
+this is a quantile of chi square.  Otherwise it is a quantile of the F distribution times the mean
+square residual.  Such an interval does not depend on the parametrisation.  An interval may be
+infinite on one side.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GUESSED_MU = 0.3
 PASSES = 3
 """Number of linear fits of mu in the scan."""
 STILL = 1e-10
-"""Smallest change of theta that counts."""
+"""Smallest change of theta that is not treated as zero."""
 FIRST_STEP = 0.1
 """First step from the best fit towards an end of an interval, used if the curvature is singular."""
 DOUBLINGS = 12
@@ -39,12 +39,12 @@ class Rows:
     Attributes
     ----------
     ratios : callable
-        Takes thetas, shape (k, 2), and returns the ratios, shape (k, n).
+        Function that takes thetas, shape (k, 2), and returns the ratios, shape (k, n).
     value, weight : np.ndarray, shape (n,)
-        Measured values, in any unit, and the factors that convert mu to a value.
+        Measured values, in any unit, and factors that convert mu to the unit of the values.
     error : np.ndarray, shape (n,)
-        Standard errors in the unit of the values.  If they are unknown, all are equal to an
-        arbitrary scale.
+        Standard errors in the unit of the values.  If the errors are unknown, all are set to the
+        same arbitrary value.
     absolute : bool
         Whether the errors are known.
     lower, upper : np.ndarray, shape (2,)
@@ -60,7 +60,7 @@ class Rows:
     upper: np.ndarray
 
     def residuals(self, theta: np.ndarray) -> np.ndarray:
-        """Value minus model, divided by the error, shape (n,)."""
+        """Measured value minus model, divided by the error, shape (n,)."""
         (ratio,) = self.ratios(theta[None])
         return (self.value - np.exp(theta[0]) * self.weight * ratio) / self.error
 
@@ -85,7 +85,7 @@ class Best:
 
 
 def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Best:
-    """Minimise the sum of squares over some unknowns, from an initial guess.
+    """Minimise the sum of squares over some of the unknowns, from an initial guess.
 
     Parameters
     ----------
@@ -131,13 +131,13 @@ def starts(rows: Rows) -> list[np.ndarray]:
 
 
 def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> float:
-    """Largest excess over the least sum of squares inside an interval.
+    """Largest difference from the least sum of squares inside an interval.
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
         Largest error of the model in each row, divided by the error of the row.  The threshold is
-        at least the mean square of these numbers.
+        at least the mean square of these ratios.
     """
     from scipy.stats import chi2, f
 
@@ -150,8 +150,8 @@ def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> f
 
 
 def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float, float]:
-    """Both ends of the interval of one unknown.  An end that the rows do not determine is
-    infinite.
+    """Both ends of the interval for one unknown.  An end is infinite if the rows do not determine
+    it.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
     last = best.theta
 
     def excess(value: float) -> float:
-        """Least sum of squares at a value of the unknown, minus the threshold at the end of the
+        """Least sum of squares at a fixed value of the unknown, minus the largest sum inside the
         interval."""
         nonlocal last
         start = np.where(np.arange(2) == which, value, last)
@@ -191,7 +191,7 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
 
 
 def _first_step(best: Best, which: int, allowed: float) -> float:
-    """Half the width of the interval for a linear model."""
+    """Half the width of the interval in a linear model."""
     curvature = best.slopes.T @ best.slopes
     if np.linalg.cond(curvature) > 1e12:
         return FIRST_STEP
@@ -199,14 +199,14 @@ def _first_step(best: Best, which: int, allowed: float) -> float:
 
 
 def shifts(best: Best, model: np.ndarray, determined: list[int]) -> np.ndarray:
-    """Largest change of theta that the errors of the model cause, to first order, shape (2,).
+    """Largest change of theta due to model errors, to first order, shape (2,).
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
         Largest error of the model in each row, divided by the error of the row.
     determined : list of int
-        Indices of the unknowns that the rows determine.  The change of other unknowns is 0.
+        Indices of the unknowns that the rows determine.  The change is 0 for other unknowns.
     """
     shift = np.zeros(2)
     shift[determined] = np.abs(np.linalg.pinv(best.slopes[:, determined])) @ model

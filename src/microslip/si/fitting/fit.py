@@ -1,4 +1,4 @@
-"""Fit of mu, and of u_lim or the shear modulus, to the measured friction of a contact."""
+"""Fit mu, and u_lim or the shear modulus, to the measured friction of a contact."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from microslip.si.quantities import read
 
 SMALLEST_MU = 1e-5
 TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
-"""Default value, and largest allowed value, of the accepted error of mu_macro in the solver."""
+"""Default and largest allowed tolerance of mu_macro in the solver."""
 CONFIDENCE = 0.95
 """Default confidence level of the intervals."""
 MOST_PASSES = 6
 """Largest number of fits.  The model is corrected before each fit."""
 SETTLED = 5e-4
-"""The iteration ends if both numbers change by less than this fraction between two fits."""
+"""Convergence criterion: the largest relative change of both numbers between two fits."""
 
 
 def fit(
@@ -74,18 +74,17 @@ def fit(
     speed, amplitude, frequency, load : quantity, optional
         Common value for all rows.  It replaces a column.
     nu : quantity, optional
-        Poisson's ratio of the equivalent half-space.  The default is Poisson's ratio of the map,
-        or 0 without a map.  With a radius, this is Poisson's ratio of the bodies, and it is
-        required.
+        Poisson's ratio of the equivalent half-space.  The default is the map's Poisson's ratio, or
+        0 without a map.  With a radius, `nu` is Poisson's ratio of the bodies and is required.
     radius : quantity, optional
-        Radius of relative curvature, m.  For a sphere on a flat it is the radius of the sphere.
+        Radius of relative curvature, m.  For a sphere on a flat, this is the sphere's radius.
     counterbody : str, optional
         Only with a radius.  The counterbody is "rigid" (default), or "same" for the material of
         the first body.
     confidence : quantity, optional
         Confidence level of the intervals, default 0.95.
     tolerance : quantity, optional
-        Largest accepted error of mu_macro of the solver, default 1e-3.
+        Largest accepted error of mu_macro in the solver, default 1e-3.
     decimal, encoding : str
         The decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
 
@@ -153,7 +152,7 @@ def _refuse_too_few(rows: Measured, table: object) -> None:
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
 ) -> tuple[Scale, dict[str, str]]:
-    """The second unknown, and the inputs that belong to it as texts."""
+    """The second unknown, and the texts of the related inputs."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
@@ -177,10 +176,10 @@ def _scale(
 def _rows(
     rows: Measured, scale: Scale, model: FrictionModel, ends: tuple[float, float]
 ) -> estimate.Rows:
-    """The rows, weights and limits for the least squares."""
+    """The rows for the least squares, with their weights and the bounds of the unknowns."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
-        """Ratios for all guesses in one call, which is faster for a map."""
+        """Compute the ratios for all guesses in one call, which is faster with a map."""
         parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
         return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
 

@@ -31,8 +31,8 @@ class Fit:
         Coefficient of friction without vibration, dimensionless, and the ends of its interval.
     u_lim_m, u_lim_low_m, u_lim_high_m : float or None
         Displacement at which the whole contact slides under the mean load, m, and the ends of its
-        interval.  A number that the rows do not determine is None; so is an infinite end of its
-        interval.
+        interval.  A value is None if the rows do not determine it, and an end is None if it is
+        infinite.
     shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
         Shear modulus of the bodies, Pa, and the ends of its interval; None in a fit without a
         radius.
@@ -41,13 +41,13 @@ class Fit:
     confidence : float
         Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
-        Largest relative change that model errors cause in mu, and in u_lim or the shear modulus.
-        The intervals include it.
+        Largest relative change in mu, and in u_lim or the shear modulus, due to model errors.  The
+        intervals include this change.
     standard_error : float or None
         Standard error of one row, from the residuals of the fit, in the unit of the rows.  None for
         rows with standard errors.
     chi_square, p_value : float or None
-        Weighted sum of squares, and the probability that it is larger by chance.  None for rows
+        Weighted sum of squares, and the probability of a larger sum by chance.  None for rows
         without standard errors.
     degrees_of_freedom : int
         Number of rows minus 2.
@@ -60,9 +60,9 @@ class Fit:
     understood : dict of str
         Inputs as text.
     labels : dict of list
-        Columns of texts in the table, by name.
+        Text columns of the table, by name.
     left_out : tuple of str
-        Unreadable lines of the table, with reasons.  The fit ignores these lines.
+        Unreadable lines of the table, with the reasons.  The fit ignores these lines.
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
         Conditions of each row.  The amplitude is in m, or in rad for a bore.
     velocity, amplitude : np.ndarray, shape (rows,)
@@ -127,8 +127,8 @@ class Fit:
         return {name: plain(getattr(self, name)) for name in names}
 
     def to_xarray(self) -> xr.Dataset:
-        """The fit as a dataset.  Rows are along the dimension `row`, numbers have no dimension,
-        and texts are attributes.
+        """Convert the fit to a dataset.  Row data have the dimension `row`, numbers have no
+        dimension, and texts are attributes.
 
         Variables `curve_NAME` along `curve_point` contain the curve.
         """

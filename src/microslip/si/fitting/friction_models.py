@@ -1,9 +1,10 @@
-"""Friction of the rows of a fit, from an existing map or from the solver and a coarse map.
+"""Compute the friction for the rows of a fit, from an existing map or from the solver and a coarse
+map.
 
-A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver computes
-a coarse map once, which gives the change of friction between two guesses.  Then it solves the rows
-at the best guess so far, which corrects the coarse map there.  At the end, the remaining error of
-the coarse map is of second order.
+A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver first
+computes a coarse map.  This map gives the change of friction between two guesses.  Then the solver
+computes the rows at the best guess so far, which corrects the coarse map at this guess.  At the
+end, the remaining error of the coarse map is of second order.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from microslip.si.fitting.scales import Points
 from microslip.si.friction_map import FrictionMap
 
 LEAST, MOST = 0.03, 20.0
-"""Smallest and largest amplitude of the coarse map.  Below, nearly all of the contact sticks;
-above, nearly all of it slides all the time."""
+"""Smallest and largest amplitude of the coarse map.  At smaller amplitudes, nearly the whole
+contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, it is the
-velocity."""
+"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, the velocity
+itself."""
 PROVED = ("transverse", "bore")
 """Motions whose maps can be evaluated outside the tabulated range, for Poisson's ratio 0."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
@@ -37,7 +38,7 @@ MOST_SOLVED = 200
 
 
 class FrictionModel:
-    """A model that computes mu_macro of the rows and its error estimate, shape (n,) each."""
+    """A model that computes mu_macro and its error estimate for the rows, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
         """mu_macro of all rows for each guess.
@@ -59,7 +60,7 @@ class FrictionModel:
 
 
 class MapFriction(FrictionModel):
-    """Friction from the dataset of a sweep, by its accessor `friction`, see datasets.query.
+    """Friction interpolated in the dataset of a sweep, see datasets.query.
 
     Parameters
     ----------
@@ -101,7 +102,8 @@ class MapFriction(FrictionModel):
 
 
 class SolvedFriction(FrictionModel):
-    """Friction from the solver and a coarse map over the logarithms of amplitude and ratio.
+    """Friction from the solver and a coarse map.  The axes of the map are the logarithms of
+    amplitude and ratio.
 
     The ratio is the velocity divided by the amplitude, which does not depend on u_lim.  For a
     bore, the ratio is the velocity.
@@ -113,7 +115,7 @@ class SolvedFriction(FrictionModel):
     poisson, tolerance : float
         Arguments of microslip.solve.
     ends : list of Points
-        Points of the rows for the smallest and the largest second unknown.
+        Points of the rows for the smallest and for the largest value of the second unknown.
 
     Raises
     ------
@@ -202,7 +204,7 @@ def _solution(
 
 
 def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
-    """At least four nodes that cover the range of these logarithms."""
+    """Return at least four nodes that cover the range of these logarithms."""
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
     return np.linspace(low, high, count)

@@ -1,4 +1,4 @@
-"""A table of measured friction, with the values that all rows share.
+"""Read a table of measured friction, and the values that all rows share.
 
 speed [mm/s],amplitude [um],friction [N]
 1,0.5,1.93
@@ -48,9 +48,9 @@ class Measured:
     texts : dict of str
         Conditions that all rows share, as text.
     labels : dict of list
-        Columns of texts, by name.
+        Text columns, by name.
     left_out : tuple of str
-        Unreadable lines, with reasons.
+        Unreadable lines, with the reasons.
     """
 
     speed: np.ndarray
@@ -80,7 +80,7 @@ class Measured:
 
     @property
     def distinct(self) -> int:
-        """Number of different conditions."""
+        """Number of distinct conditions."""
         return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
 
 
@@ -140,10 +140,10 @@ def read_measured(
 def _numbers(
     table: Table, source: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
-    """Columns in SI units, columns of labels, and messages about unreadable lines of a file.
+    """Columns in SI units, columns of labels, and messages about unreadable lines in a file.
 
-    Empty rows, and unreadable lines of a file, are omitted.  An unreadable value in another table
-    raises InputError.
+    Empty rows, and unreadable lines of a file, are omitted.  In a table that is not a file, an
+    unreadable value raises InputError.
     """
     names = [name for name in table.columns if name not in LABELS]
     unknown = [name for name in names if name not in COLUMNS]
@@ -203,5 +203,5 @@ def _quantity(table: Mapping[str, np.ndarray], source: object) -> str:
 
 
 def named(source: Any) -> str | list:
-    """Name of a table in messages: its path, or the names of its columns."""
+    """Name of a table for messages: the path, or the names of the columns."""
     return str(source) if isinstance(source, str | os.PathLike) else list(source)

@@ -1,4 +1,4 @@
-"""Conversion of both unknowns of a fit to the dimensionless points of all rows.
+"""Convert both unknowns of a fit to the dimensionless points of all rows.
 
 The unknowns are mu, and either u_lim at the mean load or the shear modulus.  A fit of u_lim needs
 no elastic modulus.  u_lim is proportional to load^(2/3), and the contact radius to load^(1/3)
@@ -34,8 +34,8 @@ class Scale:
     rows : Measured
         The measurements.
     poisson : float
-        Poisson's ratio of the equivalent half-space for u_lim, or of the bodies for the shear
-        modulus.
+        Poisson's ratio of the equivalent half-space (fit of u_lim) or of the bodies (fit of the
+        shear modulus).
     unit, name : str
         Unit and name of the second unknown.
     """
@@ -55,11 +55,11 @@ class Scale:
         raise NotImplementedError
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown for which the amplitudes are from `least` to `most`."""
+        """Range of the second unknown for which all amplitudes are between `least` and `most`."""
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row; rows: default the rows of the fit."""
+        """Velocity and amplitude of each row.  rows: default is the rows of the fit."""
         rows = self.rows if rows is None else rows
         u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
         return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
@@ -67,7 +67,7 @@ class Scale:
 
 @dataclass(frozen=True, eq=False)
 class Displacement(Scale):
-    """A scale whose second unknown is u_lim at the mean load, m, for motions along a line."""
+    """Fit of u_lim at the mean load, m, for motions along a line."""
 
     unit, name = "m", "u_lim"
 
@@ -76,10 +76,10 @@ class Displacement(Scale):
         return scale
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of u_lim for which the amplitudes are from `least` to `most`.
+        """Range of u_lim for amplitudes between `least` and `most`.
 
-        At one end of the range, all positive amplitudes are at most `least`.  At the other end,
-        they are at least `most`.
+        At one end of the range, all positive amplitudes are at most `least`.  At the other end, all
+        are at least `most`.
         """
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
@@ -88,7 +88,7 @@ class Displacement(Scale):
 
 @dataclass(frozen=True, eq=False)
 class Modulus(Scale):
-    """A scale whose second unknown is the shear modulus, Pa.
+    """Fit of the shear modulus, Pa.
 
     Both bodies have this modulus, or one of them is rigid.
 
@@ -114,7 +114,7 @@ class Modulus(Scale):
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row; rows: default the rows of the fit."""
+        """Velocity and amplitude of each row.  rows: default is the rows of the fit."""
         rows = self.rows if rows is None else rows
         if not self.spin:
             return super().points(mu, scale, rows)
@@ -126,7 +126,7 @@ class Modulus(Scale):
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Smallest and largest shear modulus of solid bodies, whatever the amplitudes are."""
+        """Smallest and largest shear modulus of solid bodies, regardless of the amplitudes."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:
@@ -135,5 +135,5 @@ class Modulus(Scale):
 
 
 SOFTEST, HARDEST = 1e2, 1e13
-"""Smallest and largest shear modulus, Pa.  A weak gel has the smallest one; the largest one is
-above that of diamond."""
+"""Smallest and largest shear modulus, Pa.  A weak gel has the smallest modulus.  The largest
+modulus exceeds diamond's."""
