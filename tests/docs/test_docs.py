@@ -33,7 +33,7 @@ from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
-from microslip.datasets import certified_map, point_variables, sweep_dataset
+from microslip.datasets import certified_map, sweep_dataset
 from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
@@ -428,19 +428,6 @@ def table(page, first):
         if not line.startswith("|"):
             return rows
         rows.append([cell.strip().strip("`") for cell in line.strip("|").split("|")])
-
-
-def test_the_guide_to_the_workflow_lists_all_variables():
-    variables = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
-    variables |= {
-        name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()
-    }
-    variables |= {
-        name: (variables[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()
-    }
-    assert table("docs/how-to/workflow.md", "variable") == [
-        [name, text.replace("|", "\\|")] for name, (_, text) in variables.items()
-    ]
 
 
 def test_every_model_every_figure_and_every_public_name_has_its_place():

@@ -13,6 +13,7 @@ from microslip.config import load
 from microslip.datasets import certified_map, sweep_dataset
 from microslip.datasets.query.drift import Drift
 from microslip.si.prediction import COLUMNS
+from microslip.si.response import UNITS
 from microslip.studies import registry
 from microslip.sweeps import batches
 from microslip.sweeps.store import Store
@@ -56,6 +57,15 @@ def test_every_field_of_a_record_is_in_its_table_and_no_other(title):
     assert set(section(title)) == {field.name for field in fields(RECORDS[title])}
 
 
+def test_every_column_and_attribute_of_a_response_is_in_its_table_and_no_other():
+    plain = microslip.response([0.0, 0.1], tolerance=0.1)
+    path = {"forward": ["0 um", "0.1 um"]}
+    contact = {"mu": 0.3, "load": "10 N", "radius": "5 mm", "material": "steel"}
+    real = microslip.predict_response(path, tolerance=0.1, **contact)
+    names = {*UNITS, *plain.columns, *real.columns, *plain.attributes, *real.attributes}
+    assert set(section("A response along a path (CSV or netCDF)")) == names
+
+
 def test_every_name_of_a_point_is_in_its_table_and_no_other():
     contacts = "phase=0;phase=180"
     drives = ({"force": 0.5, "mass": 0.1, "contacts": contacts}, {"stiffness": 1.0, "damping": 0.1})
@@ -93,7 +103,9 @@ def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkey
     Solver(monkeypatch)
     names = set().union(*(written(name, tmp_path) for name in GRIDS))
     fine = {name for name in names if name.removesuffix("_curve") in names and "_curve" in name}
-    assert set(section("A sweep")) == names - fine
+    assert (
+        set(section("A sweep (`transverse.nc`, `bore.nc`, `continuous_bore.nc`)")) == names - fine
+    )
 
 
 def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
@@ -105,21 +117,35 @@ def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
         return {"key": batches.key_of(request), "result": flat, "versions": {}}
 
     data = certified_map.build(map_, certified_stub.played(map_, answer))
-    assert set(section("A certified map")) == set(map(str, data.variables))
+    title = "A certified map (`certified_transverse.nc`, `certified_bore.nc`)"
+    assert set(section(title)) == set(map(str, data.variables))
 
 
 def test_every_variable_of_a_map_of_drift_and_of_its_answers_is_in_its_table_and_no_other():
     data = certified_stub.drifting()
     answer = Drift(data).at(0.5, 1.0)
     names = set(data.variables) | set(answer.variables)
-    assert set(section("A certified map of drift")) == set(map(str, names))
+    title = "A certified map of drift (`certified_drift_transverse.nc`)"
+    assert set(section(title)) == set(map(str, names))
 
 
 STUDIES = {
-    "accuracy": ("The study of accuracy", studies_stub, studies_stub.accuracy_result),
-    "stability": ("The study of stability", studies_stub, studies_stub.stability_result),
-    "claims": ("The check of the paper", claims_stub, claims_stub.result),
-    "propulsion": ("The study of propulsion", propulsion_stub, propulsion_stub.propulsion_result),
+    "accuracy": (
+        "The study of accuracy (`accuracy_cost.nc`)",
+        studies_stub,
+        studies_stub.accuracy_result,
+    ),
+    "stability": (
+        "The study of stability (`stability.nc`)",
+        studies_stub,
+        studies_stub.stability_result,
+    ),
+    "claims": ("The check of the paper (`claims.nc`)", claims_stub, claims_stub.result),
+    "propulsion": (
+        "The study of propulsion (`propulsion.nc`)",
+        propulsion_stub,
+        propulsion_stub.propulsion_result,
+    ),
 }
 
 
