@@ -32,7 +32,7 @@ POINT_VARIABLES = {
     "iterations": (np.int32, "iterations of the step solver"),
     "work": (np.int64, "step solves times unknowns"),
     "effort": (np.int64, "iterations times unknowns"),
-    "retried": (np.int32, "runs done again by safer steps"),
+    "retried": (np.int32, "runs repeated with tighter steps"),
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge"),
 }
@@ -69,11 +69,11 @@ DESCRIPTIONS = {
     "error_solver": "part of mu_macro_error from the iteration in each step",
     "error_model": "part of mu_macro_error from a closed form in place of a run, or a file's "
     "resolution",
-    "converged": "mu_macro_error is within the tolerance, if one is meant",
+    "converged": "whether mu_macro_error is within the tolerance, if there is one",
     "iterations": "iterations of the step solver in all runs",
     "work": "step solves times unknowns, summed over all runs",
     "effort": "iterations of the step solver times unknowns, summed over all runs",
-    "retried": "runs done again by safer steps, since they had not converged",
+    "retried": "runs repeated with a tighter tolerance of the steps, after they did not converge",
     "reason": "why the point did not converge, empty if it did",
     "mu_torque": TORQUE_OF.description,
     "dissipated_energy": "energy that friction dissipates in a period, divided by mu F_z u_lim, "

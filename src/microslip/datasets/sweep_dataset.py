@@ -239,7 +239,7 @@ FIELD = {
 
 def _traction_field(record: dict) -> dict[str, tuple]:
     result, velocity = record["result"], record["request"]["velocity"]
-    centre = "centre of rotation, lateral, divided by a"
+    centre = "lateral centre of rotation divided by a"
     variables = {f"field_{name}": variable("cell", result[name], FIELD[name]) for name in FIELD}
     return variables | {
         "field_velocity": variable((), velocity, "forward velocity of the traction field"),

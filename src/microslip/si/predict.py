@@ -162,8 +162,6 @@ def predict(
         the largest accepted relative error of the speed, and the default is 1e-2.  Below one
         thousandth of the unit of speed, the error is relative to this thousandth.  The unit of
         speed is omega u_lim, or a unit defined by the motion.
-    power : bool
-        True to also compute the power of the oscillation.
     map : xarray.Dataset, optional
         Dataset of a sweep with this motion, pressure and Poisson's ratio, see `open_map`.  It
         replaces the solver: an answer takes milliseconds.  The error is the error bound of the

@@ -31,7 +31,7 @@ FORMULAS = {
         "zone_printed": ("mu_static_stick_zone_printed", "Eq 33 as printed"),
     },
 }
-"""The paper's formulas for each motion. Each name maps to (name in theory.catalogue, long_name)."""
+"""The paper's formulas for each motion: name -> (name in datasets.catalogue, long_name)."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 RADII = 201
