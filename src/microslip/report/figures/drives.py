@@ -77,7 +77,7 @@ def _over_velocity(
     _logarithmic(axes, velocity[velocity > 0.0][0], velocity[-1])
     axes.set(xlabel=look.axis(VELOCITY["transverse"]), ylabel=look.FRICTION_IN_TWO_LINES)
     panels.unit_range(axes)
-    panels.legend_above(axes, "a", f"amplitude {amplitude:g}, sideways")
+    panels.legend_above(axes, "a", f"amplitude {amplitude:g}, lateral oscillation")
 
 
 def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
