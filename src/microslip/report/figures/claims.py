@@ -91,7 +91,7 @@ def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) ->
         label = look.conditions([(quantity.latex, float(amplitude))])
         axes.plot(radius, used, color=color, ls=look.SOLID, label=label, gid="used")
         axes.plot(radius, rest, color=color, ls=look.DASHED, gid="left")
-    for ls, label in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
+    for ls, label in ((look.SOLID, "used"), (look.DASHED, "remaining, forward")):
         axes.plot([], [], color=look.BLACK, ls=ls, label=label)
     axes.set(
         xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="fraction of the bound  (dimensionless)"
