@@ -1,5 +1,5 @@
-"""The command line.  `microslip point MOTION ...` solves one point, and `microslip sweep` many
-points."""
+"""The command line.  `microslip point MOTION ...` solves one point, and `microslip sweep` solves
+many points."""
 
 from __future__ import annotations
 
@@ -264,7 +264,8 @@ def _problem_of_motion(words: list[str]) -> InputError | None:
 
 
 def _split_motion(words: list[str]) -> tuple[list[str], str]:
-    """Return the words with the bare name of the motion, and the motion with its numbers.
+    """Reduce the motion in a command line to its bare name.  Return the new words and the original
+    motion.
 
     The parser accepts only bare names, such as elliptic for elliptic:forward=0.5.  Words of other
     commands are unchanged.
@@ -314,8 +315,8 @@ def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] 
 
 
 def _bar() -> contextlib.AbstractContextManager[Any]:
-    """Context manager of a progress line that counts runs.  It yields None if standard error is not
-    a terminal."""
+    """Context manager that shows a progress line with the number of runs.  It yields None if
+    standard error is not a terminal."""
     if not sys.stderr.isatty():
         return contextlib.nullcontext()
     from tqdm import tqdm

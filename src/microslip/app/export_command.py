@@ -189,7 +189,7 @@ def _answer(
     comments: Sequence[str],
     writers: dict[str, Callable],
 ) -> Answer:
-    """Write the file of --output, or print the table as CSV with six digits."""
+    """Write the --output file, or print the table as CSV with six digits."""
     if options.output is None:
         csv = frame.to_csv(index=False, float_format="%.6g", lineterminator="\n")
         comments = [f"# {one}" for one in comments]

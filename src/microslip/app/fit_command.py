@@ -64,7 +64,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command.  Returns the exit code: 0 for both numbers, 1 for one of them, 2 for bad
+    """Run the command.  Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad
     input."""
     titles = {"motion": "MOTION", "measured": "CSV"}
     return respond("microslip fit", options, _answer, titles)

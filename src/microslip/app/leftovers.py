@@ -28,7 +28,7 @@ BATCH = re.compile(r"[0-9a-f]{20}\.jsonl")
 DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 PLACES = {".": (".", "summaries"), "figures": ("figures",), "pages": (".",)}
-"""Folders of a product's files, by the folder of the product's stamp."""
+"""Folders with the files of products, keyed by the folder of the stamps."""
 
 
 def requested(plan: Plan, folder: Path) -> set[str]:
@@ -80,8 +80,8 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
 def find_leftovers(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Return the files that no plan requests, by kind.
 
-    Links, files behind links, and folders that are named like a file belong to the user and are not
-    listed.
+    Links and their targets belong to the user and are not listed.  The same is true of folders with
+    the name of a file.
     """
     needed = {file for plan in plans for file in requested(plan, folder)}
     paths: dict[str, list[Path]] = {kind: [] for kind in KINDS}

@@ -20,7 +20,7 @@ SYNONYMS = {
 """Options that have another name in another command."""
 
 NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
-"""Pattern of the first characters of a negative number.  Options do not match it."""
+"""Pattern of the first characters of a negative number.  No option matches it."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -99,8 +99,8 @@ def option(argument: str) -> str:
 def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
     """Replace the Python arguments in a message by options.
 
-    Only decimal, encoding and names of several words are replaced, since a name of one word may
-    also be an ordinary word of the text.
+    Of the names without an underscore, only `decimal` and `encoding` are replaced, because the
+    others are also ordinary words.
     """
     text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
     names = "|".join(name for name in arguments if "_" in name)
@@ -110,7 +110,7 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class StoreSpelling(argparse.Action):
-    """Action that stores a value and the spelling of its option on the command line."""
+    """Action that stores a value and the option as spelled on the command line."""
 
     def __call__(
         self,

@@ -48,7 +48,7 @@ class Product(NamedTuple):
     code : tuple of str
         Modules that make the product.  Modules that they import are not listed.
     datasets, groups : sequence of str
-        Names of the input datasets and of the input groups of batches.
+        Names of the input datasets and of the input batch groups.
     settings : dict
         Settings that influence the product, as JSON values.
     """
@@ -97,8 +97,8 @@ class Plan:
     def _batches_in(self, group: str) -> dict[str, Batch | None]:
         """Batches of a group by name, in the order of the requests.
 
-        A certified map has one batch with all points.  The batch is None, since its requests depend
-        on the results.
+        A certified map has one batch with all points.  Its value is None, because its requests
+        depend on the results.
         """
         configuration = self.configuration
         name, _, runs = group.rpartition("_")

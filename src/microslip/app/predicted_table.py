@@ -187,7 +187,7 @@ def _rows(
 def _problem(error: InputError | str, columns: Collection[str]) -> str:
     """Format a contact's error message, with columns and options in place of Python arguments.
 
-    An InputError about an empty cell or a missing column has no value.
+    For an empty cell or a missing column, the message contains no value.
     """
     from microslip.si.predict import NOTHING
 
@@ -201,7 +201,7 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
 
 
 def _write(options: argparse.Namespace, dataset: xr.Dataset) -> None:
-    """Write the files of --output and --figure.  Raises InputError."""
+    """Write the --output and --figure files.  Raises InputError."""
     if options.output is not None:
         write_output(options.output, dataset_writers(dataset, dataset.to_dataframe()))
     if options.figure is not None:

@@ -23,7 +23,7 @@ OPTIONS = {
 }
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("force", "power_out", "power_in", "efficiency")
-"""Fields of the line that have an error estimate."""
+"""Fields of a PropulsionLine with an error estimate."""
 REFERENCE_LOADS = (
     "u_lim belongs to the load without oscillation (the reference load); forces and powers are "
     "divided by mu times the mean load"

@@ -153,7 +153,7 @@ def refuse_figure(path: str | None) -> None:
 
 
 def opened_map(path: str) -> xr.Dataset:
-    """Open the dataset of the option --map, given as a .nc file or as the name of a sweep.
+    """Open the dataset of the option --map, which is a .nc file or the name of a sweep.
 
     Raises InputError and CacheError.
     """

@@ -47,9 +47,9 @@ ERRORS = {
     "force_lateral": "force_error",
     "torque": "torque_error",
 }
-"""Column with the error estimate of each force and of the torque."""
+"""Columns with the error estimates of the forces and the torque."""
 PLAIN = dict.fromkeys(("forward", "lateral", "angle", "load", "indentation"), "")
-"""Columns of a path without units."""
+"""Columns of a dimensionless path."""
 WITHOUT_CONTACT = {"nu", "pressure", *OUTPUT}
 """Options that are also allowed without a contact in SI units."""
 

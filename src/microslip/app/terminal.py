@@ -18,8 +18,8 @@ from typing import Any, NoReturn
 CANNOT_WRITE = 74
 """Exit code if the output cannot be written: EX_IOERR of sysexits.h."""
 CLOSED_PIPE = 141
-"""Exit code if the reader of the output has ended.  A program ended by SIGPIPE has the same
-code."""
+"""Exit code if the program that reads the output has ended.  A program ended by SIGPIPE has the
+same code."""
 OF_SIGNAL = 128
 """Offset of the exit code: a program that is ended by signal n returns this number plus n."""
 

@@ -20,7 +20,7 @@ def _demand(condition: bool, circumstance: str, allowed: str) -> None:
 
 
 def map_of(sweep: Sweep, adaptive: "Adaptive") -> CertifiedMap:
-    """Create the certified map of a sweep.  Raises Refusal if the sweep cannot have one."""
+    """Create the certified map of a sweep.  Raises Refusal if a certified map is not possible."""
     many = len(sweep.amplitude or ()) > 1
     if sweep.drives:
         names = [name for name, _, _ in sweep.drives]

@@ -55,8 +55,8 @@ def refuse_unsolvable(sweep: Sweep) -> None:
 
 
 def _problem(sweep: Sweep, velocity: float | None, end: int, **drive: float | None) -> Problem:
-    """The problem of a sweep at a velocity and at the smallest or largest amplitude.  Raises
-    InputError."""
+    """Return the problem of a sweep at a velocity, for the smallest or the largest amplitude.
+    Raises InputError."""
     from microslip.adaptive.checks import checked_driven_problem
 
     return checked_driven_problem(

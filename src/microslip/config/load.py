@@ -137,8 +137,8 @@ ROLES = ("motion", "pressure")
 
 
 def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
-    """Return the entries whose values can name files, in a configuration with defaults: key of the
-    mapping -> name -> entry."""
+    """Return the entries of a configuration whose values can name files.  The result maps the key
+    of a mapping to its entries by name."""
     places = {key: filled[key] for key in ("extended", "drives")}
     return places | {"propulsion.motions": filled["propulsion"]["motions"]}
 
@@ -146,7 +146,7 @@ def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
 def remember_files(filled: dict) -> None:
     """Store the paths of all files named in a configuration from `with_defaults_and_paths`.
 
-    Requests name files by their content.
+    A request identifies a file by its content.
     """
     entries = [one for place in entries_with_files(filled).values() for one in place.values()]
     named_files.remember(entry[role] for entry in entries for role in ROLES if role in entry)
@@ -165,8 +165,8 @@ def _settings(mapping: dict, source: str) -> Root:
 def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
     """Add the path and the digest of the file to the name of a motion or a pressure.
 
-    A name without a file is returned unchanged.  If the file is missing, raises InputError if
-    `strict` is set; otherwise returns the name unchanged.
+    A name without a file is returned unchanged.  For a missing file, raises InputError if `strict`
+    is True, and otherwise returns the name unchanged.
     """
     if not named_files.speaks_of_file(name):
         return name
@@ -320,8 +320,8 @@ def _refuse_taken(name: str, others: Iterable[str]) -> None:
 
 
 def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Name of a motion or a pressure.  If it contains the path of a file, the digest of the file
-    replaces the path."""
+    """Name of a motion or a pressure.  The path of a file in the name is replaced by the file's
+    digest."""
     placed = _with_path(name, role, folders, strict)
     if not named_files.speaks_of_file(placed):
         return placed

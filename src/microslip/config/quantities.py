@@ -20,7 +20,7 @@ class Quantity:
     text : str
         Label of an axis.
     unit : str
-        Definition as a ratio, in plain text.  It is "" if the symbol is the ratio.
+        Definition as a ratio, in plain text.  An empty text means that the symbol is the ratio.
         report.figures.formulas converts the definition to other notations.
     symbol, latex : str
         Symbol in plain text and in LaTeX.

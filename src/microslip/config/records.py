@@ -7,14 +7,14 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
-"""Name of a sweep -> motion of the paper, as on the command line.  The dataset has the same name as
-the sweep."""
+"""Motion of the paper for each sweep, named as on the command line.  The dataset has the same name
+as the sweep."""
 HISTORIES_OF_SWEEP = {
     "transverse": ("transverse",),
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
-"""Name of a sweep -> single runs in its dataset, for figures."""
+"""Single runs for figures in a sweep's dataset, keyed by the name of the sweep."""
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)

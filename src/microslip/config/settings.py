@@ -283,7 +283,7 @@ class Sweep(SteadySweep):
     amplitude: Axis
     """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""
     adaptive: Adaptive | None = None
-    """Settings of a certified map over the same ranges, see below. By default, no map is made."""
+    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
 
 
 class _NamedSweep(SteadySweep):
@@ -299,7 +299,7 @@ class _NamedSweep(SteadySweep):
     tolerance: Tolerance = 1e-3
     """Largest accepted absolute error of mu_macro."""
     adaptive: Adaptive | None = None
-    """Settings of a certified map over the same ranges, see below. By default, no map is made."""
+    """Settings of a certified map over the same ranges (see below). By default, no map is made."""
 
 
 class ExtendedSweep(_NamedSweep):
@@ -486,7 +486,7 @@ class _Grid(Settings):
 
 
 class ModelMap(_Grid):
-    """Grid of the maps that show the cheapest model for each tolerance, at Poisson's ratio 0."""
+    """Grid for maps of the cheapest model for each tolerance, at Poisson's ratio 0."""
 
     velocity: MapAxis = _raw({"log": {"start": 0.001, "stop": 10, "count": 13}})
     """Forward velocities of both motions, above 0."""
@@ -504,7 +504,7 @@ class Accuracy(Settings):
 
     methods: Methods = _raw(None)
     """Methods to compare, with parameters as in "admm:penalty=0.1". A method has the name of its
-    file in src/microslip/solver/methods, with hyphens. The name shipped is the method of
+    file in src/microslip/solver/methods, with hyphens. The name "shipped" means the method used by
     microslip.solve. The default is all methods."""
     points: Annotated[dict[PointName, StudyPoint], Field(min_length=1)] = _raw(POINTS)
     """Points at which all methods and models run, by name. Each point has a panel."""
@@ -513,11 +513,11 @@ class Accuracy(Settings):
     repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 5
     """Number of measurements of each computing time. The result is their median."""
     map: ModelMap = _raw({})
-    """Grid of the maps that show the cheapest model for each tolerance."""
+    """Grid for maps of the cheapest model for each tolerance."""
 
 
 class Stability(Settings):
-    """Study of the failures of methods. `snakemake stability` makes stability.nc and its figure."""
+    """Study of method failures. `snakemake stability` makes stability.nc and its figure."""
 
     methods: Methods = _raw(None)
     """Methods to compare, named as under `accuracy`."""
@@ -618,14 +618,14 @@ class Root(Settings):
     """Sweeps of other motions and pressures, by name. `snakemake extended` makes a dataset for each
     sweep and a figure for each group."""
     drives: dict[PlainName, DriveSweep] = {}
-    """Sweeps of contacts driven by a force or a spring, by name, see `snakemake drives`."""
+    """Sweeps of contacts driven by a force or a spring, by name (see `snakemake drives`)."""
     histories: Histories = _raw({})
     """Single runs for Figures 1, 3 and 5."""
     accuracy: Accuracy = _raw({})
-    """Study of the cost of accuracy, see `snakemake accuracy`."""
+    """Study of the cost of accuracy (see `snakemake accuracy`)."""
     stability: Stability = _raw({})
-    """Study of the failures of methods, see `snakemake stability`."""
+    """Study of method failures (see `snakemake stability`)."""
     propulsion: Propulsion = _raw({})
-    """Study of self-propelled motions, see `snakemake propulsion`."""
+    """Study of self-propelled motions (see `snakemake propulsion`)."""
     claims: Claims = _raw({})
-    """Test of the paper's statements, see `snakemake claims`."""
+    """Test of the paper's statements (see `snakemake claims`)."""

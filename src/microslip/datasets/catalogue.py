@@ -1,8 +1,9 @@
 """Closed forms for each motion, with their limits, ranges of validity and names.
 
-The catalogue serves datasets, figures, values outside the tabulated range, and the study of the
-paper's claims. The forms apply to Hertz pressure; for other pressures see datasets.pressure_limits.
-The solver uses exact.py instead, so editing a name here does not change stored results.
+The catalogue is used for datasets, figures, values outside the tabulated range, and the study of
+the paper's claims. The forms apply to Hertz pressure; for other pressures see
+datasets.pressure_limits. The solver uses exact.py instead, so editing a name here does not change
+stored results.
 """
 
 from __future__ import annotations

@@ -123,8 +123,8 @@ def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
 def whole(path: str | os.PathLike[str]) -> xr.Dataset:
     """Read the root and all groups of a file into one dataset with the attributes of the root.
 
-    Raises CacheError if the file declares more values than it has bytes.  Raises the errors of
-    xarray if it is not a netCDF file.
+    Raises CacheError if the file declares more values than it has bytes.  Raises xarray's errors if
+    the file is not a netCDF file.
     """
     refuse_oversized(path)
     with xr.open_dataset(path, engine="netcdf4") as file:

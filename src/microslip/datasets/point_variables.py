@@ -61,8 +61,8 @@ CHANGES = {
     "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
 }
 """Changes relative to the smallest Poisson's ratio, in a sweep over Poisson's ratios: name ->
-(variable, factor, long_name).  The factor multiplies the variable's value at the smallest ratio
-before it is added."""
+(variable, factor, long_name).  A change is the variable's value plus `factor` times its value at
+the smallest ratio."""
 DESCRIPTIONS = {
     "error_resolution": "part of mu_macro_error from cells, angles and time steps",
     "error_periodicity": "part of mu_macro_error from the distance to the periodic state",

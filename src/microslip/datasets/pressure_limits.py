@@ -49,8 +49,8 @@ def formulas_under(motion: str, name: str) -> dict:
 
 
 def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
-    """Return two functions of the amplitude: the static friction of the whole stick zone, and the
-    exact static friction."""
+    """Return two functions of the amplitude: the fraction of the load inside the stick zone, and
+    the exact static friction."""
     if motion == "bore":
 
         def stick_radius(amplitude: float) -> float:

@@ -28,8 +28,8 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
 
 
 def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
-    """Return the closed forms for a sweep.  With a drive, only those that depend on the amplitude
-    alone."""
+    """Return the closed forms for a sweep.  With a drive, only the forms that depend on amplitude
+    alone are returned."""
     if sweep.contacts is not None:
         return {}  # closed forms are valid for one contact
     forms = formulas(*solver_names(sweep))
@@ -90,7 +90,7 @@ def curves(sweep: Sweep) -> dict:
 def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
     """Return a fine axis over the range of a coarse axis.
 
-    Velocities have equal ratios and start at the smallest velocity above 0.
+    Velocities are logarithmically spaced and start at the smallest velocity above 0.
     """
     positive = axis[axis > 0.0]
     if dim == "velocity" and len(positive):

@@ -43,13 +43,13 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """Return a variable of codes as a tuple for xarray.Dataset.  Codes are indices of
+    """Return a variable that contains codes as a tuple for xarray.Dataset.  Codes are indices of
     `meanings`."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 
 
 def flag_attributes(long_name: str, meanings: Sequence[str]) -> dict:
-    """Return the attributes of a variable of codes.  Codes are indices of `meanings`."""
+    """Return the attributes of a variable that contains codes.  Codes are indices of `meanings`."""
     numbers = np.arange(len(meanings), dtype=np.int8)
     words = " ".join(name.replace(" ", "_") for name in meanings)
     return {"long_name": long_name, "flag_values": numbers, "flag_meanings": words}

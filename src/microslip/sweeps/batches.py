@@ -55,7 +55,7 @@ times."""
 
 
 class Batch(NamedTuple):
-    """Requests of a job: all combinations of a row with a value on an axis.
+    """Requests of a job: each row is combined with each value on an axis.
 
     Attributes
     ----------
@@ -236,9 +236,8 @@ def run_batch(requests: Sequence[dict], store: Store) -> tuple[list[dict], dict]
 
 
 def gather(answers: Iterable[tuple[dict, float]]) -> tuple[list[dict], dict]:
-    """Collect the records of some answers, and the statistics of the batch.  The statistics are the
-    number of records, the number of computed records, the CPU time, and whether all records are
-    final.
+    """Collect records, and compute the statistics of the batch.  The statistics are the number of
+    records, the number of computed records, the CPU time, and whether all records are final.
 
     Points that did not converge are logged.  Raises SolverError if the solver failed at all points.
     """

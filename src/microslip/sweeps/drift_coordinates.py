@@ -3,8 +3,8 @@
 The force threshold is the static limit at the amplitude.  Below the threshold, a contact does not
 drift and no map is needed.  Above it, the drift velocity is approximately proportional to (force -
 threshold)^(3/2), because friction approaches its static limit in proportion to velocity^(2/3).  The
-velocity becomes infinite as the force approaches 1.  For a rigid contact, it is then proportional
-to (1 - force)^(-1/2).
+velocity becomes infinite as the force approaches 1.  Near a force of 1, the velocity of a rigid
+contact is proportional to (1 - force)^(-1/2).
 
 The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).  Nodes
 are clustered at two amplitudes: where the threshold equals the largest force, and where it
@@ -109,7 +109,7 @@ class DriftCoordinates(NamedTuple):
 
 
 def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarray:
-    """Scaled force t, which is 0 at the threshold and infinite at the force 1."""
+    """Scaled force t, which is 0 at the threshold and infinite at a force of 1."""
     return np.arctanh(np.sqrt(np.clip((force - least) / (1.0 - least), 0.0, 1.0)))
 
 

@@ -3,10 +3,10 @@
 A cell is a box in scaled coordinates (map_coordinates) with equally spaced nodes: 5 along the
 velocity, 5 along the amplitude and 3 along Poisson's ratio.  Friction in a cell is interpolated by
 the polynomial through its nodes.  The surplus of a direction is computed from the largest
-differences of the highest order along this direction.  It equals the error of a polynomial of one
-degree less.  The error of the cell's polynomial is estimated as a fraction of the surplus; the
-fraction was calibrated on other points.  A cell whose error is too large is halved along the
-direction with the largest surplus.  Both halves reuse the nodes of the cell.
+differences of the highest order along this direction.  It equals the error of a polynomial whose
+degree is lower by one.  The error of the cell's polynomial is estimated as a fraction of the
+surplus; the fraction was calibrated on other points.  A cell whose error is too large is halved
+along the direction with the largest surplus.  Both halves reuse the nodes of the cell.
 
 The cells depend only on the results at the nodes, not on the order of the requests.
 """
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
     from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
-"""Error of a cell's polynomial divided by the surplus; calibrated by benchmarks/certified.py."""
+"""Ratio of a cell's polynomial error to its surplus, calibrated by benchmarks/certified.py."""
 LOWER_ORDER = 0.35
-"""Factor of third differences in the surplus, for cells in which fourth differences cancel by
+"""Weight of third differences in the surplus, for cells in which fourth differences cancel by
 chance."""
 LOW_DEGREE = 2.0
-"""Factor of second differences in the surplus.  Polynomials of degree 2 have a larger error
+"""Weight of second differences in the surplus.  Polynomials of degree 2 have a larger error
 relative to the surplus."""
 RESOLVED = 0.05
-"""Largest surplus of a cell that is not halved.  Above this value, the error can be a multiple of
-SHARE times the surplus, so the cell is halved even if its error bound is small."""
+"""Largest surplus of a cell that is not halved.  Above this value, the error can be much larger
+than SHARE times the surplus, so the cell is halved even if its error bound is small."""
 SMALLEST = 2.0**-9
 """Smallest width of a cell, as a fraction of the width of a patch."""
 

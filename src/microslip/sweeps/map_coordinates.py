@@ -5,8 +5,8 @@ limit has no velocity.  A map is divided into patches at the known kinks of the 
 (theory.kinks).  Patches are boxes in scaled coordinates.  Below the velocity of the kink, the
 scaled velocity is proportional to velocity^(1/3).  Friction approaches its static limit with twice
 this exponent.  In this range, amplitudes are divided at their kinks, and nodes are clustered at the
-kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Amplitudes without
-kinks are scaled by log(1 + 2 A).
+kinks.  Above the velocity of the kink, the scaled velocity is logarithmic.  Where there are no
+kinks, amplitudes are scaled by log(1 + 2 A).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from microslip.theory.kinks import Kinks, kink_velocity
 DIGITS = 9
 """Number of significant digits of the coordinates of a node."""
 CLEAR = 2.0
-"""Smallest ratio between a kink's velocity and either end of the range.  A kink closer to an end is
-not a border between patches."""
+"""Smallest ratio between a kink's velocity and either end of the velocity range.  Closer kinks do
+not divide the map."""
 SLOW_POWER = 1.0 / 3.0
 """Power of the velocity in the scaled coordinate below the kink."""
 FAST = 2.0
@@ -35,7 +35,7 @@ resolve a steep rise of friction."""
 AT_KINKS = 2.0
 """Exponent that clusters nodes at kinks of the amplitude."""
 SPREAD = 2.0
-"""Amplitudes without kinks are evenly spaced in log(1 + SPREAD A)."""
+"""Where there are no kinks, amplitudes are evenly spaced in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 """Degrees of the polynomials in a cell; friction is nearly linear in Poisson's ratio."""
 
@@ -194,7 +194,8 @@ class MapCoordinates(NamedTuple):
         return share**power if below else 1.0 - (1.0 - share) ** power
 
     def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
-        """Return whether nodes are clustered at the lower end of a patch, and at the upper end.
+        """Return two flags: whether nodes are clustered at the lower and at the upper end of a
+        patch.
 
         Nodes are clustered at kinks and, in a patch below a kink, at the amplitude 0.
         """
@@ -203,7 +204,7 @@ class MapCoordinates(NamedTuple):
 
 
 def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
-    """Relative position of values between two ends, clipped to 0 to 1."""
+    """Relative position of values between two ends, clipped to the range 0 to 1."""
     return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 

@@ -46,8 +46,9 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        For each node: friction, or the scaled velocity under a force, and the error.  The values
-        are NaN and infinity if the point did not converge.  They depend only on the records.
+        Value and error at each node.  The value is the friction or, under a force, the scaled
+        velocity.  The values are NaN and infinity if the point did not converge.  They depend only
+        on the records.
     refinement : Refinement
         The cells.
     """

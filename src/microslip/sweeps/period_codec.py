@@ -2,7 +2,8 @@
 
 Half the disc and half the period are stored; the rest follows from symmetry.  Tractions are stored
 as fractions of the friction bound in steps of 1/127, which is sufficient for drawings.  The density
-of the dissipated energy has 65,535 steps.  Forces have seven decimals.  Slip flags are exact.
+of the dissipated energy is stored in 65,535 steps.  Forces have seven decimals.  Slip flags are
+exact.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ def packed(period: Period, angles: int) -> dict:
     Parameters
     ----------
     period : Period
-        The period, on whole rings.
+        The period, with points on complete rings.
     angles : int
         Number of points on half a ring.
 
     Returns
     -------
     dict
-        radius, bound: lists over rings, (cells,).  The names in HISTORIES: lists over time, (steps
+        radius, bound: lists over rings, (cells,).  Each name in HISTORIES: a list over time, (steps
         + 1,).
 
         tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
@@ -47,8 +48,8 @@ def packed(period: Period, angles: int) -> dict:
 
         slips: base64 of bits, (steps/2 + 1, angles, cells).
 
-        densities: base64 of uint16, (angles, cells), density of the dissipated energy in steps of
-        its largest value divided by 65535.
+        densities: base64 of uint16, (angles, cells), density of the dissipated energy, scaled so
+        that its largest value is 65535.
 
         turned: True if the other half of the disc is this half rotated by half a turn, as in
         translations.  False if it is the mirror image across the lateral axis.

@@ -128,6 +128,6 @@ def solve_stored(
 
 
 def _drives(**values: float | None) -> tuple:
-    """Convert a drive to a value of Sweep's attribute `drives`."""
+    """Convert a drive to the format of `Sweep.drives`."""
     pairs = ((name, values[name]) for name in DRIVES)
     return tuple((name, (float(value),), False) for name, value in pairs if value is not None)

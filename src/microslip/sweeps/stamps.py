@@ -25,8 +25,8 @@ FOLDER = ".made"
 AGAIN = ".again"
 """Name of a marker file in the folder of results.  The file is newer than every outdated file."""
 WHEN = 1_000_000_000
-"""Modification time of AGAIN in seconds since 1970, a date in 2001.  Outdated files are dated one
-second earlier."""
+"""Modification time of the marker file in seconds since 1970, a date in 2001.  Outdated files are
+dated one second earlier."""
 HDF5 = b"\x89HDF"
 """First bytes of a netCDF file, which is in HDF5 format."""
 
@@ -97,8 +97,8 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
     """Correct the dates of files.  If `right` is False, the files are outdated and get a date in
     2001.  Otherwise, a date in the future is replaced by the current time.
 
-    Snakemake runs a job again if its output file is older than the input AGAIN.  It also rejects
-    files that are older than any input, even if this input is marked as ancient.
+    Snakemake runs a job again if its output file is older than the marker file.  It also rejects a
+    file that is older than one of its inputs, even if this input is marked as ancient.
     """
     for path in filter(os.path.exists, paths):
         if not right:
@@ -108,10 +108,10 @@ def date(paths: Iterable[str | Path], right: bool) -> None:
 
 
 def write_again(path: str | Path, dated: bool) -> None:
-    """Write the file AGAIN with new content, because Snakemake ignores the date of files with
+    """Write new content to the marker file, because Snakemake ignores the date of files with
     unchanged content.
 
-    dated: True to give it the date WHEN.
+    dated: True to set the file's date to WHEN.
     """
     files.write_atomically(Path(path), os.urandom(16).hex().encode())
     if dated:

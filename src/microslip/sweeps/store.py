@@ -19,7 +19,7 @@ from microslip.foundation.errors import CacheError
 log = logging.getLogger(__name__)
 
 NOT_FINAL = b" not final\n"
-"""End of the checksum line if at least one record is not final, see evaluate.is_final."""
+"""End of the checksum line if at least one record is not final (see evaluate.is_final)."""
 
 
 def write(path: str | Path, records: Iterable[dict], final: bool = True) -> None:

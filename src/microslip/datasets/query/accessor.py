@@ -90,9 +90,9 @@ class Friction:
 
         Between the nodes of a map, the error bound is the sum of the interpolation error and the
         node errors.  See `interpolation` and, for interpolation between Poisson's ratios, `nodes`.
-        In a certified map, it is the error bound of the cell (see `cells`).  Outside the tabulated
-        range, it is the distance to the farther end of a bracket (see `beyond`).  Next to a point
-        that did not converge, mu_macro is NaN or its error bound is infinite.
+        In a certified map, each cell has its own error bound (see `cells`).  Outside the tabulated
+        range, the error bound is the distance to the farther end of a bracket (see `beyond`).  Next
+        to a point that did not converge, mu_macro is NaN or its error bound is infinite.
 
         The dataset can be a selection or a join of datasets, in memory or in dask chunks.  It must
         have mu_macro, mu_macro_error, their coordinates and the attributes.  If there is no
@@ -155,9 +155,10 @@ class Friction:
         Parameters
         ----------
         velocity, amplitude : int or sequence
-            Number of coordinates over the range of the map, or the coordinates themselves.  Numbers
-            give velocities in equal ratios and amplitudes in equal steps.  The amplitude is ignored
-            for continuous-bore.  The velocity is ignored for a certified map of the static limit.
+            Number of coordinates over the range of the map, or the coordinates themselves.  From a
+            number, velocities are logarithmically spaced and amplitudes are evenly spaced.  The
+            amplitude is ignored for continuous-bore.  The velocity is ignored for a certified map
+            of the static limit.
         **settings
             Arguments `poisson` and `tolerance` of `at`.
 
@@ -212,7 +213,7 @@ class Friction:
         Raises
         ------
         InputError
-            If both velocity and amplitude are given, or neither, or if `at` raises InputError.
+            If both or neither of velocity and amplitude are given, or if `at` raises InputError.
         """
         others = {"velocity": velocity, "amplitude": amplitude}
         others = {name: value for name, value in others.items() if value is not None}

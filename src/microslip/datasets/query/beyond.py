@@ -6,9 +6,9 @@ bound on 1 - mu_macro.  At all computed points, friction also decreases with the
 
 At the edge of a map, the bracket is as narrow as the error estimate.  Away from the edge, the
 bracket widens.  The difference between friction and its limit is assumed to follow a power law with
-a local exponent between 0 and twice the asymptotic exponent.  The local exponents of the computed
-points are 0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, and 0.6 to 2 towards no
-vibration.
+a local exponent between 0 and twice the asymptotic exponent.  At the computed points, the local
+exponent is 0 to 1 near the static limit, 1.2 to 2.5 in fast sliding, and 0.6 to 2 for small
+amplitudes.
 
 For large amplitudes, friction tends to a limit (Eqs 6 and 29).  The sign of the difference from
 this limit depends on the velocity.  Above the map's largest amplitude, this difference is bounded
@@ -70,8 +70,8 @@ class Limits:
     large : callable
         Function of velocity and amplitude: limit for large amplitudes.
     same_limit : callable
-        Function of velocity, amplitude and another amplitude.  It returns the velocity at which the
-        other amplitude has the same limit for large amplitudes.
+        Function (velocity, amplitude, other) -> velocity.  At the returned velocity and the
+        amplitude `other`, `large` has the same value as at the first two arguments.
     drop : callable
         Function of velocity and amplitude: upper bound of 1 - mu_macro.
     """
@@ -174,7 +174,7 @@ def wider(
 ) -> tuple:
     """Estimate friction at amplitudes above the largest amplitude of a map.
 
-    edge: friction at the largest amplitude of the map, at the velocities with the same limit;
+    edge: friction at the largest amplitude of the map, at the velocities from `same_limit`;
     distance: see `distances`.  Returns values and errors, shape (n,) each.
     """
     end = limits.large(velocity, amplitude)
@@ -192,8 +192,8 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Return the largest differences between friction at the edge of a map and the limit of
-    friction.
+    """Return the largest differences between friction at the largest amplitude of a map and its
+    limit for large amplitudes.
 
     The limit is the limit for large amplitudes, and the edge is at the map's largest amplitude.
 

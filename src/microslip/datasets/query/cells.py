@@ -16,7 +16,7 @@ from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
-"""Number of velocities along the largest amplitude at which friction is evaluated."""
+"""Number of velocities at which friction is evaluated along the largest amplitude."""
 
 
 def is_certified(dataset: xr.Dataset) -> bool:
@@ -73,7 +73,8 @@ class CellTable:
 
     @cached_property
     def columns(self) -> Axis:
-        """Velocities in equal ratios over the range of the map.  For a static limit, only 0."""
+        """Logarithmically spaced velocities over the range of the map.  For a static limit, only
+        0."""
         if not self._velocity:
             return Axis(np.zeros(1))
         slow, fast = self._velocity

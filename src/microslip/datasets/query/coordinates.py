@@ -115,7 +115,7 @@ def grid_axes(dataset: xr.Dataset, request: dict[str, Any]) -> dict[str, Any]:
         Dataset with the coordinates.
     request : dict
         For each axis, by name: the number of coordinates, or the coordinates themselves.
-        Velocities have equal ratios, and other axes have equal steps.
+        Velocities are logarithmically spaced, and other axes are evenly spaced.
 
     Raises
     ------

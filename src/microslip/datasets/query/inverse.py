@@ -27,12 +27,13 @@ OUTCOMES = (
 if the map reaches the value only to within the error."""
 (SINGLE, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
 EVEN, GEOMETRIC = 65, 97
-"""Numbers of places at which a search first evaluates friction, in equal steps and in equal ratios.
-Friction is assumed to cross the requested value at most once between neighbouring places."""
+"""Numbers of evenly spaced and of logarithmically spaced places at which a search first evaluates
+friction.  Friction is assumed to cross the requested value at most once between neighbouring
+places."""
 DECADES = 6
-"""Number of decades covered by the places in equal ratios."""
+"""Number of decades covered by the logarithmically spaced places."""
 AT_A_TIME = 1000
-"""Number of searches that run together, which limits the memory."""
+"""Number of simultaneous searches.  This number limits the memory use."""
 ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
 Friction = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -94,7 +95,7 @@ def search(
 def _search(
     at: Friction, wanted: np.ndarray, other: np.ndarray, places: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the same intervals and outcomes as `search`, from friction at the first places."""
+    """Return the intervals and outcomes of `search` from friction at `places`."""
 
     def difference(place: np.ndarray, wanted: np.ndarray, other: np.ndarray) -> np.ndarray:
         return at(place, other)[0] - wanted
@@ -162,8 +163,8 @@ def _roots(
     arguments: tuple[np.ndarray, ...],
     chosen: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find the roots of a function in brackets.  Also return True for each bracket in which the
-    search succeeded.
+    """Find the roots of a function in brackets.  Return the roots and, for each bracket, whether
+    the search succeeded.
 
     left, right: ends of the brackets, shape (n,); arguments: additional arguments of the function,
     shape (m,) each; chosen: mask, shape (m,), that selects the arguments for the n brackets.

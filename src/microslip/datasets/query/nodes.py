@@ -1,9 +1,9 @@
 """Read the nodes of a map from the dataset of a sweep, or from a selection of such a dataset.
 
-Between Poisson's ratios, every node is interpolated by a cubic through the four nearest ratios, or
-by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the node errors
-and the interpolation error.  The interpolation error is estimated by leaving ratios out (see
-`interpolation`).  With only two ratios, it is the difference between the two values.
+Between Poisson's ratios, the value at each node is interpolated by a cubic through the four nearest
+ratios, or by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the
+node errors and the interpolation error.  The interpolation error is estimated by leaving ratios out
+(see `interpolation`).  With only two ratios, it is the difference between the two values.
 """
 
 from __future__ import annotations

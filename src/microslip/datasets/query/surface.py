@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from microslip.datasets.query.interpolation import Axis, largest_around
 
 FINE = 200
-"""Approximate number of lines of the fine grid along each axis."""
+"""Approximate number of grid lines along each axis of the fine grid."""
 
 
 class Surface:
