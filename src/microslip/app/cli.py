@@ -197,8 +197,8 @@ def main(arguments: list[str] | None = None) -> int:
     Parameters
     ----------
     arguments : list of str, optional
-        Words after the program name.  By default, they are those of this process.  Signals then end
-        the process (see microslip.app.terminal).
+        Words after the program name.  By default, the words from the command line of this process
+        are used, and signals end the process (see microslip.app.terminal).
 
     Returns
     -------

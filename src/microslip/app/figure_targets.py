@@ -88,7 +88,7 @@ def why_no_figure(configuration: Configuration, figure: str) -> str | None:
 
 
 def heading_of(configuration: Configuration, dataset: str) -> str:
-    """Return the heading in a run's report for figures whose first dataset is `dataset`."""
+    """Return the report's heading for figures whose first dataset is `dataset`."""
     headings = {
         "The paper's figures": configuration.sweeps,
         "Other motions and pressures": configuration.extended,

@@ -1,4 +1,4 @@
-"""The log of a job of the workflow, and the message if the job fails."""
+"""The log of a workflow job, and the message if the job fails."""
 
 import gc
 import logging

@@ -1,8 +1,8 @@
 """The command `microslip gc`: list and remove result files that no configuration requests.
 
-After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
-stay in the folder, since another configuration may request them.  Only files that the workflow
-names or stamps are considered, since all other files belong to the user.
+The workflow keeps all older results after an edit of the configuration or the solver.  Another
+configuration may request them.  Only files that the workflow names or stamps are considered, since
+all other files belong to the user.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _path_of(request: dict) -> str:
 
 
 def _named(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the kind and path of each file in a folder of results, if it is named like a result."""
+    """Yield the kind and path of each file in a folder, if the file has the name of a result."""
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -80,8 +80,8 @@ def _named(folder: Path) -> Iterator[tuple[str, Path]]:
 def find_leftovers(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Return the files that no plan requests, by kind.
 
-    Links and their targets belong to the user and are not listed.  The same is true of folders with
-    the name of a file.
+    Links belong to the user and are not listed, nor are files that are reached through links.  A
+    folder is never listed.
     """
     needed = {file for plan in plans for file in requested(plan, folder)}
     paths: dict[str, list[Path]] = {kind: [] for kind in KINDS}

@@ -123,7 +123,7 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
 
 
 def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
-    """Return the contacts of a file with one contact per line."""
+    """Read contacts from a file with one contact per line."""
     from microslip.si.table import NAMES, as_dataset
     from microslip.si.tables import table_of
 

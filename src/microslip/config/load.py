@@ -137,8 +137,10 @@ ROLES = ("motion", "pressure")
 
 
 def entries_with_files(filled: dict) -> dict[str, dict[str, dict]]:
-    """Return the entries of a configuration whose values can name files.  The result maps the key
-    of a mapping to its entries by name."""
+    """Return all entries that can name files, as key -> name -> entry.
+
+    filled: configuration with all defaults.
+    """
     places = {key: filled[key] for key in ("extended", "drives")}
     return places | {"propulsion.motions": filled["propulsion"]["motions"]}
 

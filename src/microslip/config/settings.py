@@ -355,9 +355,9 @@ class ForceHistory(Settings):
     periods: Annotated[int, Field(ge=1, le=1000), WHOLE] = 4
     """Number of periods. The tractions are zero at the start."""
     cells: Cells | None = None
-    """Number of rings. It must be even. The default is that of microslip.history."""
+    """Number of rings. It must be even. The default is the same as in microslip.history."""
     steps: Steps | None = None
-    """Number of time steps in a period. It must be even. The default is that of
+    """Number of time steps in a period. It must be even. The default is the same as in
     microslip.history."""
 
 
@@ -367,7 +367,7 @@ class TractionField(Settings):
     velocity: Positive = 0.5
     """Forward velocity v0/(a omega). The centre of rotation is at the coordinate -velocity."""
     cells: Cells | None = None
-    """Number of rings. It must be even. The default is that of microslip.history."""
+    """Number of rings. It must be even. The default is the same as in microslip.history."""
 
 
 class Transients(Settings):
@@ -378,9 +378,10 @@ class Transients(Settings):
     travel: Positive = 5.0
     """Forward displacement of each run, in units of u_lim."""
     cells: Cells | None = None
-    """Number of rings. It must be even. The default is that of microslip.history."""
+    """Number of rings. It must be even. The default is the same as in microslip.history."""
     steps: Steps | None = None
-    """Number of time steps in a run. It must be even. The default is that of microslip.history."""
+    """Number of time steps in a run. It must be even. The default is the same as in
+    microslip.history."""
 
 
 class Histories(Settings):

@@ -1,6 +1,6 @@
 """Write datasets to netCDF files with groups, and read them.
 
-The root of a file contains the variables with the axes of the sweep.  The root can therefore be
+The root of a file contains the variables that have the sweep's axes.  The root can therefore be
 converted to one table and joined with other files.  Variables with other axes, such as curves and
 single runs, are in groups, which are opened by name:
 

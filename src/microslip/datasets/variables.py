@@ -1,4 +1,4 @@
-"""Variables of datasets with the attributes of the CF conventions."""
+"""Dataset variables with the attributes of the CF conventions."""
 
 from __future__ import annotations
 

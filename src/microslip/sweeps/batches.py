@@ -33,7 +33,7 @@ RECORD_FORMAT = 1
 solver."""
 
 STARTS = ("stress-free", "full-rotation", "full-slip")
-"""Initial states of Figure 5."""
+"""Initial states in Figure 5."""
 FOLDERS = {
     "point": "points",
     "history": "histories",

@@ -46,9 +46,9 @@ def refine(
     Returns
     -------
     answers : dict of tuple to (float, float)
-        Value and error at each node.  The value is the friction or, under a force, the scaled
-        velocity.  The values are NaN and infinity if the point did not converge.  They depend only
-        on the records.
+        Value and error at each node.  They depend only on the records.  The value is friction or,
+        under a force, the scaled velocity.  If the point did not converge, the value is NaN and the
+        error is infinite.
     refinement : Refinement
         The cells.
     """

@@ -192,10 +192,8 @@ def distances(
     velocity: np.ndarray,
     widest: float,
 ) -> np.ndarray:
-    """Return the largest differences between friction at the largest amplitude of a map and its
-    limit for large amplitudes.
-
-    The limit is the limit for large amplitudes, and the edge is at the map's largest amplitude.
+    """Return the largest differences between friction at a map's largest amplitude and the limit
+    for large amplitudes.
 
     Parameters
     ----------

@@ -73,8 +73,8 @@ class CellTable:
 
     @cached_property
     def columns(self) -> Axis:
-        """Logarithmically spaced velocities over the range of the map.  For a static limit, only
-        0."""
+        """Logarithmically spaced velocities over the range of the map.  For a static limit, the
+        only velocity is 0."""
         if not self._velocity:
             return Axis(np.zeros(1))
         slow, fast = self._velocity

@@ -1,4 +1,4 @@
-"""Interpolation in a table by local cubics, with an error estimate from leaving nodes out.
+"""Interpolation in a table by local cubics, with an error estimate.
 
 Along an axis, values are interpolated by the cubic through the four nearest nodes.  To estimate the
 error, each node is also predicted from its neighbours by a cubic with twice the spacing.  The error

@@ -98,7 +98,7 @@ def _refined(axis: Axis, coordinates: np.ndarray, table: np.ndarray) -> np.ndarr
 
 
 def _cells(axis: Axis, coordinates: np.ndarray) -> list[np.ndarray]:
-    """Return the indices of the cells to the left and right of each coordinate.  They are equal
-    inside a cell."""
+    """Return the indices of the cells to the left and right of each coordinate.  Both are equal if
+    the coordinate is inside a cell."""
     sides = (np.searchsorted(axis.values, coordinates, side) for side in ("left", "right"))
     return [np.clip(side - 1, 0, len(axis.values) - 2) for side in sides]
