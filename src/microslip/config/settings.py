@@ -49,7 +49,7 @@ STUDIES: dict[str, dict] = json.loads(
 POINTS, MOTIONS = STUDIES["accuracy"], STUDIES["propulsion"]
 """Default points of the accuracy study, and default motions of the propulsion study, by name."""
 MOST_LINES, MOST_PANELS = 8, 4
-"""Largest number of lines in a panel of the propulsion figure, and largest number of panels."""
+"""In the propulsion figure: largest number of lines in a panel, and largest number of panels."""
 
 
 class Settings(BaseModel):
@@ -278,7 +278,7 @@ class SteadySweep(Settings):
 
 
 class Sweep(SteadySweep):
-    """Keys of a sweep of transverse oscillations (Eq 1) or of oscillating rotations (Eq 23)."""
+    """Keys of a sweep for transverse oscillations (Eq 1) or oscillating rotations (Eq 23)."""
 
     amplitude: Axis
     """Amplitude, which is y0/u_lim (Eq 2) or phi0/phi_lk(a/2) (Eq 27)."""

@@ -84,9 +84,9 @@ DESCRIPTIONS = {
 MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 WIDTHS = {"model": 32, "reason": 256}
-"""Maximum number of bytes in a text variable.  Longer texts are truncated, see `_text`."""
+"""Maximum number of bytes in a text variable.  Longer texts are truncated (see `_text`)."""
 BLOCK = 4096
-"""Number of points that are written at once, and number of points in a chunk of a large dataset."""
+"""Number of points written at once, and number of points per chunk in a large dataset."""
 Box = tuple[slice, ...]
 """A block of a grid: a slice for each axis."""
 

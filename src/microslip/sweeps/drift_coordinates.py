@@ -8,8 +8,8 @@ contact is proportional to (1 - force)^(-1/2).
 
 The scaled force t is therefore defined by tanh(t)^2 = (force - threshold) / (1 - threshold).  Nodes
 are clustered at two amplitudes: where the threshold equals the largest force, and where it
-vanishes.  Cells interpolate asinh(velocity).  The error of asinh is the absolute error of a small
-velocity, and the relative error of a large velocity.
+vanishes.  Cells interpolate asinh(velocity).  The error of asinh equals the absolute error for
+small velocities and the relative error for large ones.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Names of the axes of the map, in the order of scaled coordinates."""
+        """Names of the map's axes, in the order of scaled coordinates."""
         return "force", "amplitude"
 
     @property

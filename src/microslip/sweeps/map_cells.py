@@ -37,7 +37,7 @@ RESOLVED = 0.05
 """Largest surplus of a cell that is not halved.  Above this value, the error can be much larger
 than SHARE times the surplus, so the cell is halved even if its error bound is small."""
 SMALLEST = 2.0**-9
-"""Smallest width of a cell, as a fraction of the width of a patch."""
+"""Smallest width of a cell, as a fraction of a patch's width."""
 
 Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]

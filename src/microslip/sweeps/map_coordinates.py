@@ -21,7 +21,7 @@ from microslip.foundation.canonical import canonical_json
 from microslip.theory.kinks import Kinks, kink_velocity
 
 DIGITS = 9
-"""Number of significant digits of the coordinates of a node."""
+"""Number of significant digits in a node's coordinates."""
 CLEAR = 2.0
 """Smallest ratio between a kink's velocity and either end of the velocity range.  Closer kinks do
 not divide the map."""
@@ -67,7 +67,7 @@ class MapCoordinates(NamedTuple):
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Names of the axes of the map, in the order of scaled coordinates."""
+        """Names of the map's axes, in the order of scaled coordinates."""
         return tuple(name for name in DEGREES if getattr(self, name))
 
     @property

@@ -295,7 +295,7 @@ class Friction:
         return self._read[1]
 
     def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
-        """Return the map at one Poisson's ratio, see Nodes.table."""
+        """Return the map at one Poisson's ratio (see Nodes.table)."""
         if (nu, still) not in self._tables:
             self._tables[nu, still] = nodes.table(nu, still=still)
         return self._tables[nu, still]

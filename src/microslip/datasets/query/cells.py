@@ -62,7 +62,7 @@ class CellTable:
 
     @property
     def _velocity(self) -> tuple[float, ...]:
-        """The range of the velocity, or () for a map of the static limit or of drift."""
+        """The range of the velocity; () for a static-limit map or a drift map."""
         coordinates = self.coordinates
         return coordinates.velocity if isinstance(coordinates, MapCoordinates) else ()
 

@@ -1,4 +1,4 @@
-"""Read the nodes of a map from the dataset of a sweep, or from a selection of such a dataset.
+"""Read the nodes of a map from a sweep's dataset, or from a selection of such a dataset.
 
 Between Poisson's ratios, the value at each node is interpolated by a cubic through the four nearest
 ratios, or by a polynomial of lower degree if there are fewer ratios.  The error is the sum of the
@@ -73,7 +73,7 @@ class Nodes:
 
 
 def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> Nodes:
-    """Read the nodes of a map from the dataset of a sweep, or from a selection of it.
+    """Read the nodes of a map from a sweep's dataset, or from a selection of such a dataset.
 
     Parameters
     ----------
