@@ -141,7 +141,7 @@ def test_tolerance_out_of_reach_is_exit_code_1():
         ),
         (
             ("propulsion",),
-            ["stall force", "no-load velocity", "--points", "after a colon", "heavy body"],
+            ["stall force", "no-load velocity", "--points", "after a colon", "body is heavy"],
         ),
         (("point",), [*MOTIONS, "mu F_z", "ratio", "mu_apparent", SPIN]),
         (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
