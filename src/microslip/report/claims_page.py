@@ -56,9 +56,9 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
 
 
 def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleNamespace]:
-    """Return the entries along a dimension. An entry's coordinate is its attribute `name`.
+    """Return the entries along a dimension. The attribute `name` of an entry is its coordinate.
 
-    prefix: removed from the names of variables. Defaults to the name of the dimension.
+    prefix: prefix to remove from the names of variables, by default the name of the dimension.
     """
     columns = {
         name.removeprefix(prefix or f"{dim}_") if name != dim else "name": dataset[name].values
@@ -70,7 +70,7 @@ def _records(dataset: xr.Dataset, dim: str, prefix: str = "") -> list[SimpleName
 
 
 def _runs(dataset: xr.Dataset) -> dict[str, SimpleNamespace]:
-    """Return the runs by name, with a description and the row of each run on the page."""
+    """Return the runs by name. Each run has a description and its row on the page."""
     runs = {run.name: run for run in _records(dataset, "run")}
     for row, run in enumerate(runs.values(), start=1):
         run.row = row

@@ -21,10 +21,10 @@ from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
-"""Tolerances of references for rings (cheap) and for angular points."""
+"""Tolerance of a reference computed with rings (cheap), and with angular points."""
 MOST_WORK = 5_000_000
-"""Work budget of a probe, in step solves times unknowns. It is several times the work of the
-shipped method."""
+"""Work budget of a probe (number of step solves times number of unknowns). It is several times the
+work of the shipped method."""
 
 
 class Point(NamedTuple):

@@ -142,8 +142,8 @@ def axis_label(dataset: xr.Dataset, dim: str) -> str:
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
     """Return the theoretical limits of a dataset at one Poisson's ratio.
 
-    Each limit has values at the points. A limit with a fine axis also has a curve, unless it
-    depends on both velocity and amplitude.
+    Each limit has a value at every point. A limit with a fine axis also has a curve, unless the
+    limit depends on both velocity and amplitude.
     """
     motion = dataset.attrs["motion"].partition(":")[0]
     own = FORMS.get(motion, {})

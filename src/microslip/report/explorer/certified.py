@@ -27,8 +27,8 @@ def packed(dataset: xr.Dataset) -> dict:
     dict
         JSON values, with flat arrays. `values` is the friction at the points, null if unknown.
         `nodes` is the number of nodes of a cell in each direction, with the velocity first. Three
-        arrays describe the cells: `cells` contains the point indices of each cell, `borders` the
-        cell's two ends in each direction, and `bounds` the cell's error bound.
+        arrays describe the cells: `cells` contains the point indices of each cell, `borders` its
+        two ends in each direction, and `bounds` its error bound.
 
     Raises
     ------

@@ -76,7 +76,7 @@ def maps_of(configuration: Configuration) -> list[str]:
 
 
 def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
-    """Return the reason, in one line, why a configuration has no page, or None if it has one."""
+    """Return a one-line reason why a configuration has no page, or None if it has a page."""
     names = maps_of(configuration)
     if not names:
         return (
@@ -108,10 +108,10 @@ def _count(sweep: Sweep) -> int:
 
 
 def period_requests(configuration: Configuration, name: str) -> list[dict]:
-    """Return the requests for the periods of a map, at the smallest Poisson's ratio.
+    """Return the requests for a map's periods at the smallest Poisson's ratio.
 
-    The velocity varies fastest. If the map has more points than `MOST_PERIODS`, only every second,
-    third, ... value of each axis has periods.
+    The velocity varies fastest. A map with more points than `MOST_PERIODS` has periods only at
+    every n-th value of each axis.
     """
     sweep = configuration.sweeps[name]
     most = MOST_PERIODS // len(maps_of(configuration))
@@ -137,7 +137,7 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
 def report(periods: dict) -> Iterator[str]:
     """Yield lines of a log: the number of periods, and each period that did not converge.
 
-    periods: list of records for each map, by name.
+    periods: list of records for each map, keyed by the map's name.
     """
     for name, records in periods.items():
         unconverged = [record for record in records if not record["result"]["converged"]]

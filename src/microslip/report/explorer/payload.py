@@ -50,9 +50,9 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     Parameters
     ----------
     datasets : dict of xarray.Dataset
-        Datasets by the names of the sweeps, see `explorer`.
+        Datasets, keyed by the sweep's name, see `explorer`.
     periods : dict of list
-        Records of periods, by the names of the sweeps with stored periods.
+        Records of the stored periods, keyed by the sweep's name.
     certified : sequence of xarray.Dataset
         Certified maps for the form for a real contact.
 

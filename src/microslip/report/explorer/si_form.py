@@ -71,9 +71,9 @@ FIELDS = {
     "stroke": Field("amplitude (half stroke)", "m", ("um", "nm", "mm", "m"), "0.3", False),
     "angle": Field("amplitude (half angle)", "rad", ("mrad", "deg", "rad"), "1", False),
 }
-"""Fields by their names in the scripts, in the order in which the form shows them."""
+"""Fields, keyed by their names in the scripts, in the order of the form."""
 SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_nu")}
-"""For each of the two bodies, the fields that replace the material's name."""
+"""For each of the two bodies: the fields that can be used instead of a material's name."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
 CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
 """Default choices in the form's lists."""

@@ -1,6 +1,7 @@
 """The stability atlas: a coloured square for the outcome of each method in each case.
 
-Each varied quantity has a block of squares. The blocks in a row share the names of the methods.
+Each varied quantity has a block of squares. The names of the methods are written once for all
+blocks in a row.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Figure of a certified map: friction, cells and points of the map, and error bounds of the cells.
 
-For a certified map of drift, the figure shows the velocity under a force instead of friction.
+For a certified drift map, the figure shows the velocity under a force instead of friction.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BOUND = "error estimate,\nthousandths  (dimensionless)"
 DIMENSIONLESS = "(dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
-"""Numbers of coordinates along an axis at which a map, and a line, are evaluated."""
+"""Number of coordinates along an axis, for a map and for a line."""
 SIDE = np.linspace(0.0, 1.0, 17)
 """Relative positions of points along a side of a cell. A side is curved in the figure."""
 

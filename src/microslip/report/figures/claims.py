@@ -35,7 +35,7 @@ LIGHTEST = 0.82
 PIXELS = 401
 """Number of pixels along each side of a contact's image."""
 MOMENTS = {0: "before one turning point", 1: "mid-stroke", 2: "before the other"}
-"""Labels of the moments of `patches` by their index in the dataset."""
+"""Labels of the moments in `patches`, keyed by index in the dataset."""
 AREAS = (
     ("patch_stick", "all", look.BLACK, look.SOLID),
     ("patch_stick_right", "right half", look.BLUE, look.DASHED),
@@ -60,7 +60,7 @@ def static(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _friction(axes: Axes, dataset: xr.Dataset, motion: str, curves: tuple) -> None:
-    """Draw the limit and the formulas as lines, and points and the paper's run as markers."""
+    """Draw lines for the limit and the formulas, and markers for the points and the paper's run."""
     amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, name, color, ls in curves:
         label = FORMS[motion][name].equation or FORMS[motion][name].label

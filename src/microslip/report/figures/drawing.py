@@ -62,7 +62,7 @@ Figures whose names depend on the configuration are not included. These are the 
 """
 
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
-"""Full names of the figures of the paper by their short names fig1 to fig6."""
+"""Full names of the paper's figures, keyed by their short names fig1 to fig6."""
 
 CERTIFIED = "certified_"
 """Prefix of the names of certified maps. A map's figure has the same name as its dataset."""
@@ -73,8 +73,8 @@ FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
-"""Formats of `save`: metadata to omit (dates and versions), and the metadata entry for the
-provenance."""
+"""Formats of `save`, each with the metadata to omit (dates and versions) and the entry that
+contains the provenance."""
 PROVENANCE = ["title", "references", "microslip_version", "source_digest", "results_digest"]
 PROVENANCE += ["configuration", "library_versions"]
 """Attributes of a dataset that describe its provenance."""
@@ -109,8 +109,8 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     Parameters
     ----------
     name : str
-        A key of `FIGURES` or `ON_DEMAND`, the value of `figure_of` for a group, or the name of a
-        certified map.
+        Name of the figure: a key of `FIGURES` or `ON_DEMAND`, a value that `figure_of` returns, or
+        the name of a certified map.
     datasets : dict of xarray.Dataset
         The datasets of the figure by name, or all datasets of the group. Others are ignored.
 

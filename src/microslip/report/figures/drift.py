@@ -30,7 +30,7 @@ UNCONVERGED: look.Ink = {"color": look.BLACK, "marker": "x", "ls": "none"}
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
-    """Draw the velocity by force and amplitude, for transverse oscillation and oscillating bore."""
+    """Draw velocity against force and amplitude for transverse oscillation and oscillating bore."""
     figure = look.new_figure(look.DOUBLE, 3.3)
     grid = figure.subplots(1, len(datasets))
     any_unconverged = False
@@ -54,7 +54,8 @@ def velocity_bands(
 ) -> tuple[ContourSet, np.ndarray]:
     """Fill a panel with bands of velocity, shape (amplitudes, forces).
 
-    Returns the bands and the decimal logarithms of the velocities, clipped to the bands.
+    Returns the bands, and the decimal logarithms of the velocities, limited to the range of the
+    bands.
     """
     clipped = np.clip(np.nan_to_num(velocity), *10.0 ** DECADES[[0, -1]])
     shown, settings = np.log10(clipped), {"levels": DECADES, "cmap": look.COLOURMAP}
@@ -69,7 +70,7 @@ def velocity_bar(filled: ContourSet, grid: Axes | list[Axes]) -> None:
 
 
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
-    """Draw one map. Returns its bands and whether it has unconverged points."""
+    """Draw one map. Returns the bands, and True if the map has unconverged points."""
     motion = dataset.attrs["motion"]
     part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
     part = part.transpose("amplitude", "force", ...)

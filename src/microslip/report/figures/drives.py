@@ -108,7 +108,7 @@ def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", 
 
 
 def _force(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw constant forces against the mean velocities of contacts that move."""
+    """Draw constant force against mean velocity, for contacts that move."""
     moving = dataset.isel(force=(dataset["velocity"].values > 0.0))
     velocity, force, converged = columns(moving, "velocity", "force", "converged")
     label, exact = "constant force", np.zeros(force.size)

@@ -28,7 +28,7 @@ PARAMETERS = (
     (r"u_\mathrm{lim}", "u_lim{}_m", "m"),
     ("G", "shear_modulus{}_Pa", "Pa"),
 )
-"""Fitted parameters: symbol, name in the dataset ({}: "", "_low" or "_high"), SI unit."""
+"""Fitted parameters: symbol, name in the dataset (with "", "_low" or "_high" for {}), SI unit."""
 BAND = 2.0
 """Half-width of the residual band, in standard errors. About 95 % of the residuals are inside."""
 

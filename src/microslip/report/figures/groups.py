@@ -27,9 +27,9 @@ from microslip.report.figures.map_panel import fill
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
-"""Number of columns by number of maps. Other numbers of maps have 3 columns."""
+"""Number of columns for 1, 2 and 4 maps. Any other number of maps is drawn in 3 columns."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-"""Height of a row of maps by number of columns, and total height of the margins, in inches."""
+"""Height of a row for each number of columns, and total height of the margins, in inches."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Levels of the contours, fewer than on a large map."""
 BEYOND = 0.01
@@ -43,9 +43,9 @@ JOINING = 0.5
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw a map or a line for every Poisson's ratio of each dataset.
 
-    The figure has maps if every dataset has at least two amplitudes and two velocities above 0. It
-    has lines if no dataset does. If there is enough space, `poisson.draw` draws the effect of
-    Poisson's ratio instead.
+    The figure shows maps if every dataset has at least two amplitudes and two velocities above 0.
+    It shows lines if no dataset has that many. If there is enough space, `poisson.draw` draws the
+    effect of Poisson's ratio instead.
     """
     if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
@@ -131,7 +131,7 @@ def _label_maps(
 
 
 def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """Draw static friction against the amplitude, or friction against the velocity, as lines."""
+    """Draw lines of static friction against amplitude, or of friction against velocity."""
     (dim,) = {"amplitude" if d.sizes.get("amplitude", 0) > 1 else "velocity" for d in datasets}
     figure = look.new_figure(5.2, 3.3)
     axes = figure.subplots()
@@ -163,7 +163,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
 
 
 def _limit(axes: Axes, dataset: xr.Dataset, dim: str, **ink: Any) -> bool:
-    """Draw a closed form or the computed static limit. Returns False if there is neither."""
+    """Draw a closed form or the computed static limit. Returns False if neither is available."""
     forms = [variable for variable in THEORY[dim] if variable in dataset]
     if forms and float(dataset["poisson"]) == 0.0:
         line = limit(dataset, forms[0])

@@ -28,7 +28,7 @@ FEW = len(LINE_LEVELS)
 POINTS: look.Ink = {"ls": "none", "marker": "o", "ms": 3.0, "color": look.BLACK}
 POINTS |= {"mec": "white", "mew": 0.4, "clip_on": False, "gid": "points"}
 OUTLINE = 3.0
-"""Width of the outline of numbers, in points. Half of it is outside the digits."""
+"""Line width of the outline of numbers, in points. Half of the line is outside the digits."""
 HATCHED: look.Ink = {"fc": (1.0, 1.0, 1.0, 0.45), "ec": look.BLACK, "lw": 0.0, "hatch": 6 * "/"}
 
 
@@ -45,7 +45,8 @@ def number_contours(
     """Write numbers on contours after the layout has given the panel its final size.
 
     A number is placed as far as possible from other contours and from the ends of its own contour.
-    Such an end could be read as a minus sign. A contour without enough space has no number.
+    Beside a number, the end of a contour could be read as a minus sign. A contour without enough
+    space has no number.
 
     Parameters
     ----------

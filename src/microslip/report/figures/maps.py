@@ -124,7 +124,7 @@ def _static_cut(axes: Axes, parts: Cut, motion: str, letter: str) -> None:
 
 
 def _where_not_zero(axes: Axes) -> tuple[float, float]:
-    """Return the horizontal range in which a line is above `NOTHING`, extended by half."""
+    """Return the x range where a line is above `NOTHING`, with the upper end multiplied by 1.5."""
     x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
     last = x[y > NOTHING].max(initial=x.min())
     following = x[x > last].min(initial=x.max())

@@ -131,7 +131,7 @@ def computed(axes: Axes, x: np.ndarray, *columns: np.ndarray, label: str, **ink:
 
 
 def _once(axes: Axes, label: str) -> str:
-    """Return the label. Prefix it with "_" if the panel has it, so that the legend omits it."""
+    """Return the label, prefixed with "_" (hidden in legends) if the panel already has it."""
     return "_" + label if label in axes.get_legend_handles_labels()[1] else label
 
 

@@ -28,7 +28,7 @@ LOOKS = (
 MOST = 3
 """Maximum number of datasets in a figure."""
 MOST_LEVELS = 12
-"""With this many levels on each side of 0, the labels of the two innermost would overlap."""
+"""With this many levels on each side of 0, the labels of the two levels next to 0 would overlap."""
 DIVERGING = "PuOr"
 """Colour map of differences. It is pale in the middle."""
 

@@ -14,7 +14,7 @@ BELOW = (
     "#F07F6A", "#F18E7A", "#F29D8A", "#F4AE9C", "#F6BEAF", "#F6CEC1", "#F5DED3",
 )  # fmt: skip
 """Colours of friction 0, -0.05, ..., -1. They start at the first colour of `style.COLOURMAP`, have
-equal distances in CIELAB, and become lighter away from 0. From 0 to -0.5 they differ from all
+equal distances in CIELAB, and become lighter away from 0. From 0 to -0.5, they differ from all
 colours of `style.COLOURMAP` for all common kinds of colour vision."""
 LOWEST = -1.0
 DARK = 0.5

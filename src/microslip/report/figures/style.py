@@ -52,7 +52,7 @@ LINES = (
     (SKY, "X", DASHDOT),
     (GREY, "*", DOTTED),
 )
-"""Colours, markers and line styles of the lines of a panel, in their order."""
+"""Colour, marker and line style of each line in a panel, in the order of the lines."""
 
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),

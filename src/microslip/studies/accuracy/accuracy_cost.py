@@ -1,8 +1,8 @@
 """Requests for the study of accuracy and cost.
 
-At each point every model is run with the shipped method at all levels of its ladder. Every other
+At each point, every model is run with the shipped method at all levels of its ladder. Every other
 method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
-given tolerances and a reference. For two motions there are also maps, with trials of all models on
+given tolerances and a reference. For two motions, there are also maps, with trials of all models on
 a grid of points. The cost of a step is measured for a series of sizes.
 
 Requests are grouped into pieces, one for each job. Computing a piece takes much longer than
@@ -36,7 +36,7 @@ SCALING_SIZES = {
 """Sizes of each model as (cells, angles). The setting `levels` limits the number of sizes."""
 SCALING_STEPS = 16
 LARGE = 64
-"""From this number of squares along a side, a run takes as long as all coarser runs together."""
+"""A run with at least this many squares along a side takes as long as all coarser runs together."""
 SIZES_PER_JOB = 4
 """This many of the smallest sizes share one job. Each larger size has its own job."""
 

@@ -246,7 +246,7 @@ SCALING: dict[str, tuple] = {
     "seconds": ("median CPU time of a step", float, "s"),
     "memory": ("memory of the arrays of the contact", float, "byte"),
 }
-"""Results for each size of a model: (long_name, type, units) by name."""
+"""Results for each size of a model: name -> (long_name, type, units)."""
 
 
 def _scaling(settings: Accuracy, answers: Answers) -> dict:

@@ -1,4 +1,4 @@
-"""Pareto fronts, cheapest trials and fitted exponents of cost."""
+"""Pareto fronts, cheapest trials, and fitted cost exponents."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,7 +8,7 @@ AS_CHEAP = 1.5
 
 
 def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
-    """Mark the trials on the Pareto front of cost and error, a bool array of shape (n,).
+    """Return a bool array, shape (n,): True for trials on the Pareto front of cost and error.
 
     A trial is on the front if every other trial is more expensive, less accurate, or equal in both.
     cost, error: arrays of shape (n,). Trials with values that are not finite are not on the front.

@@ -1,7 +1,7 @@
 """Requests for the runs that decide the verdicts on the statements.
 
-The module `parts` builds its requests with these functions and judges the results. Most requests
-are points at the tolerance of the study. The others are single runs: the paper's own runs,
+The functions of this module build the requests, and the module `parts` judges the results. Most
+requests are points at the tolerance of the study. The others are single runs: the paper's own runs,
 transients, fields of tractions, and periods.
 """
 
@@ -14,7 +14,7 @@ from microslip.studies.ladders import exact_model
 PAPER_VELOCITY = 0.005
 """Smallest velocity in the paper's maps of the two motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
-"""Number of squares along a side, as in the paper, and number of steps in a period of our run."""
+"""Number of squares along a side (as in the paper), and number of steps per period in our run."""
 PAPER_TOLERANCE = 1e-3
 """Tolerance of the stresses in the paper."""
 
@@ -27,8 +27,8 @@ CELLS = {"fine": 32, "coarse": 16}
 """Number of rings for transients and steady tractions. The error is the difference between the fine
 and the coarse run."""
 FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
-"""Velocities of the runs for steady tractions. Up to 0.8 the centre of rotation is inside the
-contact."""
+"""Velocities of the runs for steady tractions. At velocities up to 0.8, the centre of rotation is
+inside the contact."""
 
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
@@ -42,7 +42,7 @@ RUNS_PER_JOB = 2
 
 
 def velocities(study: Claims) -> list[float]:
-    """Return the velocities of the study and the paper's smallest velocity, ascending."""
+    """Return the study's velocities and the paper's smallest velocity, in ascending order."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
@@ -100,7 +100,7 @@ def transient(start: str, cells: str) -> dict:
 
 
 def stiff(study: Claims, amplitude: float, velocity: float, exponent: int) -> dict:
-    """Return the request for a point with an oscillating indentation of a power-law indenter."""
+    """Return the request for a point of a power-law indenter with an oscillating indentation."""
     place = point(study, "normal:indentation=1", velocity, amplitude)
     return place | {"pressure": f"power:exponent={exponent}"}
 

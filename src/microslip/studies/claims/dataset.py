@@ -120,7 +120,7 @@ CHECK_COLUMNS: dict[str, tuple] = {
 }
 """Columns of the table of checks: (function of a part and a check, long_name, type).
 
-In PART_COLUMNS the arguments of the function are a part and all its checks.
+In PART_COLUMNS, the arguments of the function are a part and all its checks.
 """
 
 
@@ -209,7 +209,7 @@ RUN_COLUMNS: dict[str, tuple] = {
 
 
 def _patches(settings: Claims, runs: Runs) -> dict:
-    """Return the stick patches and their edges in the slowest period at the amplitude nearest 1."""
+    """Return the stick patches and edges at the smallest velocity and the amplitude nearest 1."""
     slowest = min(v for v, _ in claims.periods(settings))
     places = [(v, a) for v, a in claims.periods(settings) if v == slowest]
     for velocity, amplitude in sorted(places, key=lambda place: abs(np.log(place[1]))):
@@ -249,8 +249,8 @@ def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Return the theoretical edges of the stick zone for v -> 0 at the moments of the patches.
 
     The moments are those of stick_area.patches. Next to a turning point, the stick zone is a leaf
-    on one side of the contact, where |cos angle| >= tau/g. Points of the leaf slip only at the
-    other turning point. In mid-stroke the stick zone is a circle, whose radius depends on the
+    on one side of the contact, where |cos angle| >= tau/g. A point inside the leaf slips only at
+    the other turning point. In mid-stroke, the stick zone is a circle. Its radius depends on the
     rotation since the last turning point.
     """
     c = paper.bore_stick_radius(amplitude)

@@ -1,8 +1,8 @@
 """Checks that judge the parts of the paper's statements.
 
-Each part has a function of the study and the runs that returns checks. Most parts compare values of
-runs with a formula. For these, `_judge` builds the function from a source of values, a formula and
-a margin. The error of a margin is the value's error estimate.
+Each part has a function that takes the study and the runs and returns checks. Most parts compare
+values of runs with a formula. For these parts, `_judge` builds the function from a source of
+values, a formula and a margin. The error of a margin is the value's error estimate.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ from microslip.theory import constant_stiffness, paper
 
 Checks = Callable[[Claims, Runs], Iterable[Check]]
 Margin = Callable[[float, float], float]
-"""Function of a computed value and its reference that returns a margin. The margin is positive if
+"""Function that returns a margin from a computed value and its reference. The margin is positive if
 the part holds."""
 Values = Callable[[Claims, Runs], Iterable[tuple[dict[str, float], float, float, Sequence[Run]]]]
-"""Source of values. It yields tuples of a place, a value, an error estimate and runs."""
+"""Source of values: a function that yields tuples (place, value, error estimate, runs)."""
 Amplitudes = Callable[[float], bool]
 """Function that returns True for the amplitudes that a part applies to."""
 
@@ -85,9 +85,9 @@ def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Check
 
 
 def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Values:
-    """Return the source of friction at the points of requests.
+    """Return a source that yields the friction of each request.
 
-    names: entries of a request that describe the place of its point.
+    names: entries of a request that form the place.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -99,7 +99,7 @@ def _friction(requests: Callable[[Claims], Iterable[dict]], *names: str) -> Valu
 
 
 def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
-    """Return the source of friction at all amplitudes and velocities of a motion."""
+    """Return a source that yields a motion's friction at all its amplitudes and velocities."""
     return _friction(
         lambda study: (
             claims.point(study, motion, velocity, amplitude)
@@ -112,7 +112,7 @@ def _map(motion: str, chosen: Amplitudes = lambda amplitude: True) -> Values:
 
 
 def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Values:
-    """Return the source of friction at one velocity and at the amplitudes with static friction.
+    """Return a source that yields friction at one velocity, at amplitudes with static friction.
 
     velocity: by default the smallest velocity of the study.
     """
@@ -126,7 +126,7 @@ def _slow(motion: str, chosen: Amplitudes, velocity: float | None = None) -> Val
 
 
 def _limit(motion: str, chosen: Amplitudes) -> Values:
-    """Return the source of the static limit at each amplitude."""
+    """Return a source that yields a motion's static limit at each amplitude."""
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
         for amplitude in filter(chosen, claims.limited(study, motion)):
@@ -136,7 +136,7 @@ def _limit(motion: str, chosen: Amplitudes) -> Values:
 
 
 def _closed_limit(low: float = 0.0) -> Values:
-    """Return the source of the closed-form static limit of the bore, at amplitudes >= `low`."""
+    """Return a source that yields the bore's closed-form static limit at amplitudes >= `low`."""
     return _friction(
         lambda study: (
             claims.point(study, "bore", 0.0, a) for a in study.amplitude["bore"] if a >= low
@@ -146,7 +146,7 @@ def _closed_limit(low: float = 0.0) -> Values:
 
 
 def _limit_on_rings() -> Values:
-    """Return the source of the static limit of the bore on rings, at each amplitude."""
+    """Return a source that yields the bore's static limit on rings at each amplitude."""
     return _friction(
         lambda study: (
             claims.resolved_limit(study, "bore", a) for a in claims.limited(study, "bore")
@@ -156,10 +156,10 @@ def _limit_on_rings() -> Values:
 
 
 def _end(quantity: str) -> Values:
-    """Return the source of a quantity's value at the end of each transient.
+    """Return a source that yields the value of a quantity at the end of each transient.
 
-    The error is the sum of two changes: the change from half as many rings, and the change over the
-    last tenth of the forward travel.
+    The error is the sum of two terms: the difference from a run with half as many rings, and the
+    change over the last tenth of the forward travel.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -174,9 +174,9 @@ def _end(quantity: str) -> Values:
 
 
 def _field(index: int) -> Values:
-    """Return the source of one of the two numbers of `_tractions`.
+    """Return a source that yields one of the two numbers that `_tractions` returns.
 
-    The error is the change from half as many rings.
+    The error is the difference from a run with half as many rings.
     """
 
     def values(study: Claims, runs: Runs) -> Iterator[tuple]:
@@ -189,10 +189,9 @@ def _field(index: int) -> Values:
 
 
 def _tractions(run: Run) -> tuple[float, float]:
-    """Return two numbers of a field of tractions.
+    """Return the smallest ratio of traction to friction bound, and the largest angle in degrees.
 
-    The first number is the smallest traction divided by the friction bound. The second number is
-    the largest angle between the tractions and Eq 15, in degrees.
+    The angle is between the tractions and Eq 15.
     """
     names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
     lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
@@ -257,7 +256,7 @@ def _sine_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
     """Yield checks of the paper's own runs.
 
-    A run's error is the distance from a run at the study's tolerance.
+    A run's error is its difference from a run at the study's tolerance.
     """
     for amplitude in claims.sliding(study):
         place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}
@@ -281,7 +280,7 @@ def _steady_nears(study: Claims, runs: Runs) -> Iterator[Check]:
 
 
 def _rises(rows: Callable[[Claims], Iterable[list[dict]]], *names: str) -> Checks:
-    """Return checks that compare neighbours in rows of requests, from slow to fast."""
+    """Return checks that compare each request in a row with the next faster one."""
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
         for row in rows(study):
@@ -308,11 +307,11 @@ def _rises_on_map(motion: str) -> Checks:
 def _periods(
     judge: Callable[[np.ndarray, np.ndarray, float], tuple[float, float, float]],
 ) -> Checks:
-    """Return checks of periods. The error of a margin is the change from half as many rings.
+    """Return checks of periods. A margin's error is its change with half as many rings.
 
     judge: function of (right, left, cell) that returns a value, its reference and the margin.
-    right, left: fractions of the area that stick in each half, shape (steps,). cell: area fraction
-    of the smallest cell.
+    right, left: stick area in each half, divided by the contact area, shape (steps,). cell: area of
+    the smallest cell, divided by the contact area.
     """
 
     def checks(study: Claims, runs: Runs) -> Iterator[Check]:
@@ -414,7 +413,7 @@ CHECKS: dict[str, Checks] = {
     "sine_nearer": _sine_nearer,
     "sine_below": _judge(_flat_end, constant_stiffness.sum_of_powers, above),
 }
-"""Functions that return the checks of a part, by the name of the part."""
+"""For each part, by name: the function that returns its checks."""
 
 
 @dataclass(frozen=True)

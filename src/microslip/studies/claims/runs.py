@@ -83,7 +83,7 @@ _CALLS = {
         "microslip.adaptive.single_run run_trial(...)['mu_macro']",
     ),
 }
-"""For each kind of request: the arguments in the request, and the call that takes them."""
+"""For each kind of request: names of the arguments, and the function call that they belong to."""
 
 
 def _literal(value: str | float) -> str:

@@ -1,18 +1,18 @@
-"""The paper's statements and one by M. Popov (2020), in plain words, and their criteria.
+"""The paper's statements in plain words, and their criteria. Statement 10 is by M. Popov (2020).
 
 A part is one aspect of a statement that numbers can confirm or refute. The checks of each part are
 in `parts`.
 """
 
 GOOD = 0.02
-"""Largest error of a formula for mu_macro that counts as good. It is just visible on a map with
-contours at steps of 0.1."""
+"""A formula for mu_macro counts as good if its error is at most this. An error of this size is just
+visible on a map with contours at steps of 0.1."""
 SLIGHT = 0.05
-"""Largest difference of mu_macro that counts as slight."""
+"""Largest difference in mu_macro that counts as slight."""
 AGREES = 0.01
-"""Largest difference of mu_macro at which a curve and a dashed line over it count as equal."""
+"""A curve and a dashed line over it count as equal up to this difference in mu_macro."""
 RELATIVE = 0.1
-"""Largest relative error of a formula that counts as good where friction is small."""
+"""Where friction is small, a formula counts as good if its relative error is at most this."""
 LARGE_BORE = 5.0
 """Smallest bore amplitude that counts as large: the largest amplitude of the paper's map."""
 TURNING_BORE = 2.0

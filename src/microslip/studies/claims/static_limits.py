@@ -126,7 +126,8 @@ def _curves(motion: str) -> dict:
 
 
 def _shares(motion: str) -> dict:
-    """Return the used and the remaining fraction of the friction bound by radius and amplitude."""
+    """Return the used and remaining fractions of the friction bound at each radius and
+    amplitude."""
     radius, amplitudes = np.linspace(0.0, 1.0, RADII), np.array(SHARE_AMPLITUDES[motion])
     dims = (f"{motion}_share_amplitude", "share_radius")
     at = (motion, radius, amplitudes[:, None])
@@ -156,7 +157,7 @@ SPLIT = {
     "from_resolution_error": "error of this part",
     "squares_shift": "difference of the limit on squares from the limit",
 }
-"""Variables along the amplitudes of a motion: long_name by name."""
+"""Variables with a value for each amplitude of a motion: name -> long_name."""
 
 
 def _split(study: Claims, runs: Runs, motion: str) -> dict:
@@ -183,7 +184,7 @@ def _split(study: Claims, runs: Runs, motion: str) -> dict:
 
 
 def _row(study: Claims, runs: Runs, motion: str, amplitude: float) -> dict[str, float]:
-    """Return the values of SPLIT at an amplitude."""
+    """Return the values of the SPLIT variables at an amplitude."""
     exact, exact_error, _ = limit(study, runs, motion, amplitude)
     slowest = claims.point(study, motion, claims.velocities(study)[0], amplitude)
     march, march_error = friction(runs(slowest))

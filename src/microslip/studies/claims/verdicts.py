@@ -32,7 +32,7 @@ class Check:
         Margin and its error. The margin is positive if the part holds. The error is infinite if a
         run did not converge.
     runs : tuple of str
-        Names of the runs. The first one has the computed value.
+        Names of the runs. The computed value is from the first run.
     place : tuple
         Pairs of a name and a number, such as ("amplitude", 1.0).
     """
@@ -75,7 +75,7 @@ def of_claim(parts: list) -> int:
 
 
 def decisive(checks: list, outcome: int) -> Check | None:
-    """Return the check with the largest margin among those with the outcome, or None."""
+    """Return the check of this outcome with the largest absolute margin, or None."""
     decided = [check for check in checks if check.outcome == outcome]
     return max(decided, key=lambda check: abs(check.margin), default=None)
 
@@ -89,8 +89,8 @@ def tightest(checks: list) -> Check | None:
 def where(checks: list) -> str:
     """Return a text that lists where a part holds, such as "amplitude 1 to 3; not at amplitude 5".
 
-    Checks are grouped by the first number of their places. If some checks of a group hold and some
-    fail, the text lists the second numbers of the failing checks.
+    Checks are grouped by the first number in `place`. If some checks of a group hold and some fail,
+    the text lists the failing checks by the second number in `place`.
     """
     if not checks or not checks[0].place:
         return ""
@@ -122,7 +122,7 @@ def where(checks: list) -> str:
 
 
 def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
-    """Return texts for series of consecutive chosen values, such as "0.5" and "1 to 3"."""
+    """Return a text for each series of consecutive chosen values, such as "0.5" or "1 to 3"."""
     stretch, texts = [], []
     for value in [*order, None]:
         if value is not None and chosen(value):
@@ -134,7 +134,7 @@ def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
 
 
 def _within(group: list[Check]) -> str:
-    """Return a text that lists the second numbers of the places where a group's checks fail."""
+    """Return a text that lists a group's failing checks by the second number in `place`."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:
         return "for some"

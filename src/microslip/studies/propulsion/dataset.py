@@ -21,7 +21,7 @@ LINE_COLUMNS: dict[str, tuple] = {
     "converged": ("every force and power is within the tolerance", bool),
     "reason": ("reason why not, or why the motion propels nothing", str),
 }
-"""Results of a line: (long_name, type) by name. Numbers are negative if the motion propels
+"""Results of a line: name -> (long_name, type). Numbers are negative if the motion propels
 backward."""
 COORDINATES: dict[str, tuple] = {
     "line": (lambda name, _: name, "name of the motion", str),
@@ -43,7 +43,7 @@ POINT_COLUMNS = {
     "efficiency": "power_out divided by power_in",
     "efficiency_error": "error estimate of efficiency",
 }
-"""Results at every point of a line: long_name by name. They are NaN if the motion does not propel
+"""Results at every point of a line: name -> long_name. They are NaN if the motion does not propel
 the body."""
 
 

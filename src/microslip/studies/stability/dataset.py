@@ -37,8 +37,7 @@ AXIS_COLUMNS: dict[str, tuple] = {
 }
 
 UNSOLVED = "a step was left unsolved"
-"""Start of the reason given for a run that reached the iteration limit close to a step's
-solution."""
+"""First words of `reason` if a run reached the iteration limit close to the solution of a step."""
 
 
 def outcome(

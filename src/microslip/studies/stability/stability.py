@@ -16,7 +16,7 @@ from microslip.studies import requests
 
 @dataclass(frozen=True)
 class Axis:
-    """A quantity that is varied, with its cases.
+    """A varied quantity and its cases.
 
     Attributes
     ----------
@@ -26,8 +26,8 @@ class Axis:
     note : str
         Values of the fixed quantities.
     cases : tuple
-        Pairs of the value and a dict with entries of the request: motion, velocity, amplitude,
-        poisson, cells or steps.
+        Pairs (value, overrides). `overrides` is a dict with entries of the request: motion,
+        velocity, amplitude, poisson, cells or steps.
     parameters : tuple
         Pairs of a method and the name of its varied parameter. If this is not empty, the axis
         applies only to these methods and, for comparison, to the shipped method.
