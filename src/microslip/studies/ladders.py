@@ -41,7 +41,7 @@ LADDERS = {
 """Levels of each model. Squares have few levels, because they are by far the most expensive."""
 
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
-"""Number of levels of each model for methods other than the shipped method. These methods can be
+"""Number of levels per model, for all methods except the shipped method. The other methods can be
 slow or use dense matrices."""
 
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5

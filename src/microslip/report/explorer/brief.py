@@ -1,4 +1,4 @@
-"""Pack maps and lines of sweeps without stored periods, with a value and an error for each point.
+"""Pack sweeps without stored periods as maps and lines. Each point has a value and an error.
 
 A sweep over velocities and amplitudes is shown as a map for each Poisson's ratio. Other sweeps, and
 sweeps with a drive, are shown as lines. The abscissa of the lines is the longest axis, and there is

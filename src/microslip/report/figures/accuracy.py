@@ -1,4 +1,4 @@
-"""Figures of the accuracy study: performance profiles, and cost of a step by number of unknowns."""
+"""Figures of the accuracy study: performance profiles, and step cost against number of unknowns."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ GROWTH = {
 
 
 def profile(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the performance profiles, with a panel for each contest, at the tightest tolerance.
+    """Draw performance profiles at the tightest tolerance, with a panel for each contest.
 
     A profile is the fraction of points that a competitor solves within a cost.
     """
@@ -47,7 +47,8 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _profile(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
-    """Draw a line for each competitor: fraction of points against ratio to the smallest cost."""
+    """Draw a line for each competitor: fraction of points against ratio of cost to smallest
+    cost."""
     ratios = contest["profile_ratio"].transpose("competitor", "point").values
     high = 1.3 * max(ratios[np.isfinite(ratios)].max(initial=1.0), LEAST_RANGE)
     names = contest["competitor"].values.astype(str)

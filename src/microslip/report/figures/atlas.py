@@ -149,7 +149,7 @@ def _labels(axes: Axes, block: Block, names: list[str], square: float) -> None:
 
 
 def _head(axes: Axes, block: Block, letter: str, square: float) -> None:
-    """Write letter, title and note of a block above its cases."""
+    """Write a block's letter, title and note above its cases."""
     room = (block.width - 1) * square
     panels.letter(axes, letter, block.title, room)
     axes.xaxis.set_label_position("top")

@@ -15,7 +15,7 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 
 def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read a file with its groups into one dataset for `draw`.
+    """Read a file, including its groups, into one dataset for `draw`.
 
     Raises CacheError if the file is missing or damaged.
     """

@@ -57,8 +57,8 @@ ON_DEMAND = {"fit": ("fit",), "curve": ("curve",)}
 FIGURES = {name: tuple(keys) for name, (_, *keys) in _DRAWN.items() if name not in ON_DEMAND}
 """Figures of the workflow, with the names of the datasets.
 
-Figures whose names depend on the configuration are not included. These are the figures of groups in
-`extended`, see `figure_of`, and of certified maps.
+Figures whose names depend on the configuration are not included. These are the figures for
+certified maps and for groups in `extended`, see `figure_of`.
 """
 
 SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}

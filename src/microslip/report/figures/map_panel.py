@@ -92,7 +92,7 @@ def fill(
     lines: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, list[Artist], int]:
-    """Fill a panel with `mu_macro` by velocity and amplitude, interpolated as in `microslip.at`.
+    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as in `microslip.at`.
 
     Contours end where the interpolation is too uncertain, see `Surface.supported`. In this case,
     and on coarse maps, the computed points are drawn as well.

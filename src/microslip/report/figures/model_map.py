@@ -1,4 +1,4 @@
-"""Map that shows the cheapest accurate model by velocity and amplitude."""
+"""Map that shows the cheapest accurate model at each velocity and amplitude."""
 
 from __future__ import annotations
 

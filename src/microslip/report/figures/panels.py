@@ -24,13 +24,13 @@ VISIBLE_ERROR = 0.01
 
 
 def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
-    """Write letter and note above a panel, in lines with a width of at most `room` inches."""
+    """Write a letter and a note above a panel, in lines at most `room` inches wide."""
     text = look.wrapped(look.heading(which, note), room, look.HEADING)
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
 def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None:
-    """Write letter, note and legend above a panel."""
+    """Write a letter, a note and a legend above a panel."""
     legend = axes.legend(
         title=look.heading(which, note),
         title_fontsize=look.HEADING,
@@ -81,7 +81,7 @@ def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
 
 
 def logarithmic(axis: Axis) -> None:
-    """Label the powers of ten of an axis, or round numbers if it has fewer than two powers."""
+    """Label an axis at powers of ten, or at round numbers if it contains fewer than two powers."""
     low, high = np.sort(axis.get_view_interval())
     powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1
     axis.set_minor_formatter(NullFormatter())
@@ -97,8 +97,8 @@ def edges(points: np.ndarray, logarithmic: bool) -> np.ndarray:
     """Return the edges, shape (n + 1,), of cells around n points.
 
     The edges are half-way between neighbouring points. The first and the last point are in the
-    middle of their cells. points: ascending; logarithmic: True for half-way by ratio, False for
-    half-way by difference.
+    middle of their cells. points: ascending; logarithmic: True for geometric means, False for
+    arithmetic means.
     """
     if logarithmic:
         return np.exp(edges(np.log(points), False))

@@ -18,7 +18,7 @@ VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw force and efficiency in a column of panels for each value of the variable `panel`."""
+    """Draw a column of panels (force and efficiency) for each value of the variable `panel`."""
     names = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(names), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(names), sharex="col", squeeze=False)

@@ -129,7 +129,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def number(value: float) -> str:
-    """Format a number with three digits as mathtext, with a power of ten if large or small."""
+    """Format a number as mathtext with three digits, and a power of ten if it is large or small."""
     text = f"{value:.3g}"
     if "e" not in text:
         return text
@@ -157,7 +157,7 @@ def conditions(pairs: Iterable[tuple[str, float]]) -> str:
 
 
 def model(name: str) -> tuple[str, str, str]:
-    """Return colour, marker and abbreviation of a contact model. An unknown model is grey."""
+    """Return the colour, marker and abbreviation of a contact model. An unknown model is grey."""
     return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
 
 

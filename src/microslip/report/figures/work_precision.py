@@ -213,7 +213,7 @@ def _panel(axes: Axes, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale)
 
 
 def _ink(model: str, method: str) -> look.Ink:
-    """Return colour, marker and line of the trials of a model with a method."""
+    """Return the colour, marker and line style for trials of a model with a method."""
     if method == "paper":
         return PAPER
     if model == "auto":

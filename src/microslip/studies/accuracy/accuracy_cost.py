@@ -1,9 +1,9 @@
 """Requests for the study of accuracy and cost.
 
 At each point, every model is run with the shipped method at all levels of its ladder. Every other
-method is run at the levels of the model that `model="auto"` selects. Each point also has solves at
-given tolerances and a reference. For two motions, there are also maps, with trials of all models on
-a grid of points. The cost of a step is measured for a series of sizes.
+method is run at the levels of the model that `model="auto"` selects. Each point also has a
+reference, and solves at given tolerances. For two motions, there are also maps, with trials of all
+models on a grid of points. The cost of a step is measured for a series of sizes.
 
 Requests are grouped into pieces, one for each job. Computing a piece takes much longer than
 starting a job. Adding a method to the configuration adds pieces and does not change the existing

@@ -2,7 +2,7 @@
 
 The paper's formulas count the whole friction bound inside the stick zone, although the oscillation
 uses a part of it (see microslip.solver.static_limit). The paper's own runs do not show the
-difference, because their velocity is too large and their resolution too coarse.
+difference, because their velocity is too large and their resolution is too coarse.
 """
 
 from __future__ import annotations
