@@ -16,7 +16,7 @@ def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     front = np.isfinite(cost) & np.isfinite(error)
     best, best_cost = np.inf, np.inf
-    # From cheap to expensive; among equal costs the more accurate trial comes first.
+    # From cheap to expensive; among equal costs, the more accurate trial comes first.
     for i in np.lexsort((error, cost)):
         if not front[i]:
             continue

@@ -91,7 +91,7 @@ def _contests(rows: list[dict]) -> Iterator[tuple[str, list[tuple[str, dict]]]]:
         trials = []
         for row in rows:
             method = row["trial_method"]
-            # The shipped method takes part at the points and models of its rivals.
+            # The shipped method is included at the points and models of its rivals.
             beside = method == SHIPPED and (row["trial_point"], row["trial_model"]) in places
             if contests[method] == contest or beside:
                 is_model = method == SHIPPED and contest == MODELS

@@ -94,7 +94,7 @@ AXES = (
         *("centre", "rings: slender cells at the centre", "bore, v 0.1, A 1"),
         _varied("cells", (4, 8, 12, 16, 24), **_BORE),
     ),
-    # Up to velocity 1 the centre of rotation, where slip has no direction, is inside the contact.
+    # Up to velocity 1, the contact contains the centre of rotation, where slip has no direction.
     Axis(
         "rotation-centre",
         "velocity: where the centre of rotation lies",
