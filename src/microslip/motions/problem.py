@@ -31,8 +31,8 @@ SMALLEST_OSCILLATION = 1e-12
 """A difference between oscillations counts as a rounding error if it is below this fraction of the
 amplitude."""
 ROUNDING = 1e-9
-"""Largest accepted difference between 1 and the mean load of several contacts.  Loads in texts have
-12 digits."""
+"""Largest accepted difference between 1 and the mean load of several contacts.  A text gives loads
+with 12 digits."""
 
 
 @dataclass(frozen=True)
@@ -122,17 +122,17 @@ class Problem:
 
     @property
     def half_period_mirror(self) -> bool:
-        """Whether the second half of a period is the mirror image of the first half, see Motion."""
+        """Whether the second half of a period is the mirror image of the first half; see Motion."""
         return self.motion.half_period_mirror and self.pressure.mirrored
 
     @property
     def straight(self) -> bool:
-        """Whether the oscillation alone follows a straight line, see Motion."""
+        """Whether the oscillation alone follows a straight line; see Motion."""
         return self.motion.straight and not self.follows
 
     @property
     def propels(self) -> bool:
-        """Whether the oscillation alone can propel the contact, see Motion."""
+        """Whether the oscillation alone can propel the contact; see Motion."""
         return self.motion.propels and not self.follows
 
     # Kinematics
@@ -167,7 +167,7 @@ class Problem:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Phases of the turning points, see Motion.  They cover a whole period if the pressure is
+        """Phases of the turning points; see Motion.  They cover a whole period if the pressure is
         not symmetric."""
         velocity = 0.0 if self.follows else self._sign * self.velocity
         first = self.motion.turns(velocity, self.size)
@@ -202,7 +202,7 @@ class Problem:
 
     @cached_property
     def mean_speed(self) -> float:
-        """Mean speed of the oscillation, as the path length per radian of phase, in u_lim.
+        """Mean speed of the oscillation: path length per radian of phase, in u_lim.
 
         For several contacts it is the mean weighted by their loads.
         """
@@ -223,7 +223,7 @@ class Problem:
 
     @property
     def readings(self) -> tuple[Problem, ...]:
-        """Problems with other interpolations of the same data, see Motion.readings and
+        """Problems that interpolate the same data differently; see Motion.readings and
         Pressure.readings."""
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
@@ -316,8 +316,8 @@ class Part:
     def oscillation(self, phase: np.ndarray) -> np.ndarray:
         """Forward, lateral and angular oscillation at a phase of the body, shape (3, ...).
 
-        Displacements are in u_lim of the body.  The angle is multiplied by the radius of this
-        contact, so it is also in u_lim of the body.
+        Displacements are in u_lim of the body.  The angle is multiplied by the contact's radius, so
+        it is also in u_lim of the body.
         """
         return self.extent * np.array(self.problem.oscillation(phase + self.lead))
 
@@ -327,7 +327,7 @@ class Part:
         return problem.motion.depth(phase + self.lead, problem.size, problem.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
-        """Phases of the body at the turning points of the contact; `still`: True for velocity 0."""
+        """The body's phases at the turning points of the contact. still: True for velocity 0."""
         problem = replace(self.problem, velocity=0.0) if still else self.problem
         return np.array(problem.turns) - self.lead
 

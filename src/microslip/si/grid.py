@@ -194,8 +194,8 @@ def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
 def interpolation_error(values: xr.DataArray) -> float:
     """Largest difference between a value and the linear interpolation of its neighbours.
 
-    The largest differences along all axes with three or more values are added.  Where the values
-    are smooth, linear interpolation between them has an error of a quarter of this sum.
+    It is the sum of the largest differences along each axis with three or more values.  Where the
+    values are smooth, linear interpolation between them has an error of a quarter of this sum.
     """
     total = 0.0
     for name in values.dims:
@@ -207,5 +207,5 @@ def interpolation_error(values: xr.DataArray) -> float:
 
 
 def _coordinate(name: str, unit: str) -> str:
-    """Return the name of a coordinate, in the form of the column names of a Prediction."""
+    """Return the name of a coordinate, in the same form as a Prediction's column names."""
     return "amplitude_si" if name == "amplitude" else "_".join([name, *re.findall(r"\w+", unit)])

@@ -342,8 +342,8 @@ def read_motion(
 ) -> tuple[RealMotion, dict[str, str]]:
     """The motion, and a dict with the text of each argument.  Raises InputError.
 
-    sought: name of the quantity that a search determines, or None.  This quantity may be missing,
-    and so may the speed.
+    sought: name of the quantity that a search determines, or None.  This quantity and the speed may
+    be missing.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)

@@ -47,13 +47,13 @@ def line(title: str, text: str) -> str:
 
 
 def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float]:
-    """The largest unit (name, size) in `units` in which a value is at least `least`."""
+    """Select the largest unit (name, size) for which the value is at least `least`."""
     return next((one for one in units if abs(value) >= least * one[1]), units[-1])
 
 
 def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
-    """The unit with the largest prefix in which a value is at least `least`.  For 0, the unit has
-    no prefix."""
+    """The unit with the largest metric prefix that leaves the value at least `least`.  For 0, the
+    unit has no prefix."""
     prefix, size = unit_for(value or 1.0, PREFIXES, least)
     return f"{prefix}{base}", size
 
@@ -68,8 +68,8 @@ def force_unit(newtons: float) -> tuple[str, float]:
 def probability_text(chance: float, error: float) -> str:
     """Format a probability in per cent with its error, or as a bound if it is close to 0 or 1.
 
-    Close means that the distance is below EXCLUDED or below the error.  The bound includes the
-    error.
+    A probability is close to 0 or 1 if the distance is below EXCLUDED or below the error.  The
+    bound includes the error.
     """
     distance = min(chance, 1.0 - chance)
     if distance >= max(EXCLUDED, error):

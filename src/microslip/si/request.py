@@ -47,8 +47,8 @@ LARGEST_TOLERANCE = 0.1
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Default tolerance of mu_macro, and default tolerance of the speed under a force."""
 ANY_LOAD = 1e-12
-"""Placeholder for the load that a search determines, N.  It is small enough for Hertz's theory to
-apply to all bodies."""
+"""Placeholder, N, for a load that is determined by a search.  It is so small that Hertz's theory
+applies to all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
 """Quantities that a search can determine."""
 ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
@@ -184,7 +184,7 @@ class Request:
         tolerance : float
             Largest accepted error.
         amplitude, poisson : float, optional
-            Values that replace those of the request.
+            They replace the values of the request.
         **drive : float
             Dimensionless force, stiffness, mass and damping.
 

@@ -48,7 +48,7 @@ class RealResponse:
         Forces and torque.  They are positive in the direction of the displacement that they
         resist.
     force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
-        Error estimate of both forces (the larger of the two), and error estimate of the torque.
+        Larger error estimate of the two forces, and error estimate of the torque.
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
@@ -61,7 +61,7 @@ class RealResponse:
     converged : bool
         Whether every error is within the tolerance.
     reason : str
-        Why the response is not converged, else empty.
+        Why the response is not converged; empty if it is.
     """
 
     path: dict[str, np.ndarray]
@@ -132,7 +132,7 @@ def predict_response(
         Progress callback, see `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
-        contact.  The load belongs to the reference state.
+        contact.  The load is that of the reference state.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def predict_response(
 
 
 def contact_of(contact: Mapping[str, object]) -> TwoBodies:
-    """The contact for some of ARGUMENTS by name.  Raises InputError."""
+    """The contact described by a mapping with keys from ARGUMENTS.  Raises InputError."""
     strange = sorted(contact.keys() - set(ARGUMENTS))
     if strange:
         allowed = f"allowed are {', '.join(ARGUMENTS)}"

@@ -25,7 +25,7 @@ NAMES = {name: False for name in NOTHING if name != "map"}
 """Allowed columns of a file.  Each column is an argument of predict, and needs no unit in the
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
-"""Text columns.  Any other column is numeric if it has no value."""
+"""Text columns.  Every other column without values is numeric."""
 
 
 def predict_table(
@@ -55,8 +55,8 @@ def predict_table(
     -------
     xarray.Dataset
         Every column of a Prediction, over the dimension `case`, with units.  Missing values are
-        NaN. Lists of texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is
-        the error message of a case without a prediction, else empty.
+        NaN. Lists of texts are joined by semicolons.  `case_NAME` contains the input column NAME.
+        `error` is the error message of a case without a prediction, else empty.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPredict
 
 
 def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
-    """A variable over the cases.  Numbers have a unit."""
+    """Return a dataset variable along the dimension `case`.  Numbers have a unit."""
     if name in ("warnings", "not_checked"):
         return "case", ["; ".join(texts) for texts in values], {}
     if any(isinstance(value, bool) for value in values):

@@ -34,7 +34,7 @@ SPREADS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Columns of the standard uncertainties, keyed by the corresponding attributes of a Prediction."""
+"""Columns with the standard uncertainties, keyed by attributes of a Prediction."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 

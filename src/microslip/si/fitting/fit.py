@@ -152,7 +152,7 @@ def _refuse_too_few(rows: Measured, table: object) -> None:
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
 ) -> tuple[Scale, dict[str, str]]:
-    """The second unknown, and the texts of the related inputs."""
+    """The second unknown, and its inputs as text."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
@@ -176,7 +176,7 @@ def _scale(
 def _rows(
     rows: Measured, scale: Scale, model: FrictionModel, ends: tuple[float, float]
 ) -> estimate.Rows:
-    """The rows for the least squares, with their weights and the bounds of the unknowns."""
+    """The least-squares rows, with their weights, and the bounds of the unknowns."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
         """Compute the ratios for all guesses in one call, which is faster with a map."""
@@ -196,8 +196,8 @@ def _rows(
 
 
 def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
-    """The best fit, then the fits from other initial guesses.  The model is corrected at the best
-    fit."""
+    """The best fit, followed by the fits from other initial guesses.  The model is corrected at the
+    best fit."""
     fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
     best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):
