@@ -30,7 +30,7 @@ def table_of(file: NamedFile, content: bytes) -> NumberTable:
 
 
 def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
-    """Parse the content of a file.  The table has at least one of COLUMNS.
+    """Parse the content of a file.  The table has at least one of the columns in COLUMNS.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class Motion:
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     rotates : bool
-        Whether the contact rotates.  For rotations the tractions depend on the polar angle.
+        Whether the contact rotates.  In a rotation, the tractions depend on the polar angle.
     half_period_mirror : bool
         Whether the second half of a period equals the first half with the lateral displacement and
         the angle reversed.  If False, a march covers a whole period.
@@ -175,7 +175,8 @@ def within_rings(radius: float) -> float:
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Stick radius of an oscillation along a line with the amplitude `reach`, in u_lim.
 
-    For a sphere it is Eq 8.  The result is None at full slip, or if the stick zone is not a circle.
+    For a sphere, it is Eq 8.  The result is None at full slip, or if the stick zone is not a
+    circle.
     """
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

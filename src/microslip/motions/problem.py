@@ -2,13 +2,13 @@
 
 A body can rest on several contacts of the same shape.  The units of the body are those of a contact
 under the mean load: forces are divided by mu times the load of all contacts, and displacements by
-u_lim of this contact.  A contact under another load has an indentation and a u_lim that are
-`extent` times larger.  Its radius and its stiffness change as well, but by less.  The amplitude and
-the velocity of the body are lengths, so they are divided by `extent` to convert them to the units
-of a contact.
+u_lim of this contact.  Under another load, the indentation and the u_lim of a contact are `extent`
+times larger.  Its radius and its stiffness change as well, but by less.  The amplitude and the
+velocity of the body are lengths, so they are divided by `extent` to convert them to the units of a
+contact.
 
-All contacts move forward with the body.  At a prescribed velocity the contacts are independent, and
-their phases have no effect.
+All contacts move forward with the body.  At a prescribed velocity, the contacts are independent,
+and their phases have no effect.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Problem:
     motion : Motion
         The motion, such as `Transverse()` or `Elliptic(forward=0.5)`.
     velocity : float
-        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force the
+        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force, the
         velocity is part of the result; leave this argument at 0.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
@@ -58,8 +58,8 @@ class Problem:
     contacts : tuple of BodyContact
         Contacts that carry the body; empty for a single contact.
     backward : bool
-        Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
-        velocity v is then minus the friction of the original motion at -v.
+        Whether the forward direction is reversed.  Then, under a symmetric pressure, friction at v
+        equals minus the friction of the original motion at -v.
     follows : bool
         Whether the body follows the mean forward oscillation of its contacts, as a massless body
         under a constant force does.  The mean oscillation is then subtracted from each contact's
@@ -204,7 +204,7 @@ class Problem:
     def mean_speed(self) -> float:
         """Mean speed of the oscillation: path length per radian of phase, in u_lim.
 
-        For several contacts it is the mean weighted by their loads.
+        For several contacts, it is the mean weighted by their loads.
         """
         if self.contacts:
             return sum(part.share * part.extent * part.problem.mean_speed for part in self.parts)
@@ -235,7 +235,7 @@ class Problem:
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
         """Function of the phase that returns the indentation depth divided by its reference value.
 
-        For several contacts the function returns one row for each contact.  The attribute is None
+        For several contacts, the function returns one row for each contact.  The attribute is None
         if the load is constant.
         """
         if not self.motion.loads:
@@ -280,7 +280,7 @@ class Problem:
         """Whether the contacts form pairs such that each pair exerts no mean forward force.
 
         The oscillation changes its sign after half a period, and the phases in a pair differ by
-        half a period.  So the oscillations of both contacts in a pair are opposite.
+        half a period.  So the two contacts of a pair oscillate in opposite directions.
         """
         there = self.motion.displacement(LOOP + np.pi, 0.0, self.size, self.poisson)
         here = self.motion.displacement(LOOP, 0.0, self.size, self.poisson)
@@ -327,7 +327,7 @@ class Part:
         return problem.motion.depth(phase + self.lead, problem.size, problem.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
-        """The body's phases at the turning points of the contact. still: True for velocity 0."""
+        """The body's phases at the turning points of the contact.  still: True for velocity 0."""
         problem = replace(self.problem, velocity=0.0) if still else self.problem
         return np.array(problem.turns) - self.lead
 

@@ -1,7 +1,7 @@
 """Motions from samples: a path from the first row to the last one, or one period of any shape.
 
 A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
-the indentation.  Along a path all of these quantities change linearly between rows.  A period is
+the indentation.  Along a path, all of these quantities change linearly between rows.  A period is
 interpolated by periodic cubic splines through equally spaced rows.
 """
 
@@ -74,8 +74,8 @@ class SampledPath(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
-        """Create the path from columns by name, see PLANE and NORMAL; None stands for a constant
-        quantity.
+        """Create the path from named columns; see PLANE and NORMAL.  A quantity is constant if its
+        column is None.
 
         Raises
         ------
@@ -111,7 +111,7 @@ class SampledPath(_Samples):
         """Largest displacement of a contact point between consecutive rows, in u_lim, shape (rows -
         1,).
 
-        A change of the indentation counts as a displacement by the change of the local u_lim.
+        If the indentation changes, the change in the local u_lim counts as a displacement.
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
         out = np.hypot(forward, lateral) + angle
@@ -124,7 +124,7 @@ class SampledPath(_Samples):
 class Sampled(_Samples):
     """One period of a motion of any shape, from equally spaced samples.
 
-    With the amplitude A the indenter moves by A times the interpolated displacements.  A load or
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  A load or
     an indentation h oscillates as 1 + A (h - 1).
 
     Attributes
@@ -147,8 +147,8 @@ class Sampled(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
-        """Create the motion from columns by name, see PLANE and NORMAL; None stands for a constant
-        quantity.
+        """Create the motion from named columns; see PLANE and NORMAL.  A quantity is constant if
+        its column is None.
 
         Raises
         ------

@@ -80,7 +80,7 @@ def read_argument(
 
 
 Arguments = Mapping[str, Any]
-"""Arguments of predict by name.  A missing argument is None."""
+"""Mapping of predict's arguments, by name.  A missing argument is None."""
 
 
 class Body(NamedTuple):

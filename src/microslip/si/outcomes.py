@@ -37,8 +37,8 @@ SMALLEST_SHARE = 1e-2
 """Smallest tabulated value of a positive quantity, divided by the quantity's central value.  If 0
 is not a physical value, this value replaces smaller draws."""
 BISECTIONS = 12
-"""Number of bisections in the search for the limit of the accepted values.  They locate the limit
-to within 2**-12 times half a standard deviation."""
+"""Number of bisections in the search for the limit of the accepted values.  The limit is accurate
+to 2**-12 times half a standard deviation."""
 TOWARDS_ZERO = 2.0
 """Largest ratio between neighbouring nodes below the central value.  Interpolation of logarithms is
 exact for power laws.  Other functions vary little over a factor of 2."""
@@ -176,7 +176,7 @@ def _error_of_draws(outcome: np.ndarray) -> float:
 def half_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
     """Half the difference between two predictions in the field `name`.
 
-    It is infinite if one of the predictions has no solution, or a contact that runs away.
+    It is infinite if, in one prediction, there is no solution or the contact runs away.
     """
     if low is None or high is None:
         return math.inf

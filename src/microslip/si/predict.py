@@ -125,7 +125,7 @@ def predict(
         Default: "hertz".
     amplitude : quantity
         Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
-        several oscillations it is the lateral half stroke.  For a file it is a factor, 1 by
+        several oscillations, it is the lateral half stroke.  For a file it is a factor, 1 by
         default.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
         For a motion with several oscillations: half strokes of the forward motion (m), the spin

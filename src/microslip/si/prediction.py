@@ -179,8 +179,8 @@ class Prediction:
     load_N : float
         Normal force, N.
     speed_m_s : float
-        Forward speed, m/s.  Under a force it is the mean speed, which is NaN for a contact that
-        runs away.
+        Forward speed, m/s.  Under a force, it is the mean speed, which is NaN if the contact runs
+        away.
     velocity : float or None
         Dimensionless speed; None for a bore of amplitude 0.
     mu_macro, mu_macro_error : float
@@ -382,7 +382,7 @@ class Forced(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Forced, Oscillating):
-    """A contact under a force that moves, or that may move within the error estimate."""
+    """A contact that moves under a force, or may move within the error estimate."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -159,7 +159,7 @@ def _amplitudes(request: Request, _share: float) -> _Line:
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """The line of speeds, from the fastest to the slowest.  A place is minus the logarithm of the
+    """A _Line of requests with decreasing speeds.  The place is minus the logarithm of the
     speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:

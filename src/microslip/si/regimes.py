@@ -8,10 +8,10 @@ velocity is nearly constant.  If only a small part of mu F_z is needed to make t
 contact, the force is nearly constant.  A vibration along the drive reverses the force, so the
 limits are ten times stricter.
 
-The limits were tested with some hundred random drives just inside them, at amplitudes from 0.3 to
-10 and velocities from 0.01 to 3.  Friction differs by less than SAME from its value at constant
-velocity, or with the softest and lightest drive.  For a soft drive along the vibration, the limit
-is an estimate.  Here the force changes by the stiffness times the amplitude.
+The limits were tested with a few hundred random drives just inside these limits, at amplitudes from
+0.3 to 10 and velocities from 0.01 to 3.  Friction differs by less than SAME from its value at
+constant velocity, or with the softest and lightest drive.  For a soft drive along the vibration,
+the limit is an estimate.  Here the force changes by the stiffness times the amplitude.
 """
 
 from __future__ import annotations

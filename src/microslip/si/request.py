@@ -211,8 +211,7 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """A copy of the error that names the argument of predict instead of the solver's
-        argument."""
+        """Return a copy of the error in which predict's argument replaces the solver's argument."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
             return error

@@ -124,8 +124,8 @@ def predict_response(
         Columns `forward`, `lateral`, `angle`, and `load` or `indentation`, with units as in
         "forward [um]".  Columns without a unit are in SI units.
     tolerance : float
-        Largest accepted error of a force, relative to mu times the load, and of the torque,
-        relative to its value at full slip.
+        Largest accepted relative error of the forces and the torque.  Force errors are divided by
+        mu times the load, torque errors by the torque at full slip.
     decimal, encoding : str
         Decimal mark and encoding of a file.
     progress : callable or None

@@ -43,7 +43,7 @@ class Carriers:
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
-        """Return the contact with the largest load. contact: the contact with the mean load."""
+        """Return the contact with the largest load.  contact: the contact with the mean load."""
         if self.heaviest == 1.0:
             return contact
         load = contact.load * self.heaviest

@@ -23,8 +23,8 @@ CLOSEST = 64
 """One draw in 64 counts as close to the force.  Each refinement solves the static limit at the
 median amplitude of these draws."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Values below which variations are treated as rounding errors: relative range of the amplitude,
-and standard deviation of Poisson's ratio."""
+"""Variations below these values count as rounding errors: relative range of the amplitude, and
+standard deviation of Poisson's ratio."""
 
 
 def static_limits(
@@ -106,7 +106,7 @@ def static_limits(
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
-    """Slope of mu_static over Poisson's ratio. deviation: standard deviation of Poisson's ratio."""
+    """Slope of mu_static over Poisson's ratio.  deviation: standard deviation of this ratio."""
     if deviation < SAME_POISSON:
         return 0.0
     ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]

@@ -27,7 +27,7 @@ rad/s."""
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 _FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
-"""Pattern of the text after the numerator of a fraction."""
+"""Pattern for the rest of a fraction after its numerator."""
 _NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
 _POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
 _SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")

@@ -33,11 +33,11 @@ RANGE = 0.2e-9
 """Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
 """Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
-Johnson and J. A.  Greenwood, J. Colloid Interface Sci. 192, 1997)."""
+Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
 """Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""Largest value of a ratio that the theory can neglect."""
+"""Ratios up to this value are negligible in the theory."""
 STEEP = 0.2
 """Ratio above which half-spaces are a poor approximation: contact radius a divided by the bodies'
 smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
@@ -174,8 +174,8 @@ CHECKS = (
         ),
     ),
 )
-"""Groups of rules, in the order of the warnings.  In each group, the first rule that applies gives
-the warning."""
+"""Groups of rules.  The warnings have the same order as the groups.  In each group, the first rule
+that applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """Checks that need an optional property of a body, keyed by the property's name."""
 MISSING = "{what} (the {name} of {whose} is missing)"

@@ -19,8 +19,8 @@ drawn through these points looks smooth."""
 class Curve(NamedTuple):
     """Points of all model curves of a fit, one curve after another.  Arrays have shape (n,).
 
-    The abscissa is the condition with the most different values.  At least two rows whose other
-    conditions are equal share a curve.
+    The abscissa is the condition with the most different values.  Rows that differ only in the
+    abscissa share a curve if there are at least two.
 
     Attributes
     ----------

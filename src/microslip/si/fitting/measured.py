@@ -94,8 +94,8 @@ def read_measured(
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
     source : path, mapping or pandas DataFrame
-        The file, or columns by name.  A column without a unit, as in "speed [mm/s]", is in SI
-        units.
+        The file, or columns by name.  A heading can have a unit, as in "speed [mm/s]".  A column
+        without one is in SI units.
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
