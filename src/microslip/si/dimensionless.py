@@ -57,7 +57,7 @@ class RealMotion:
 
     @property
     def several(self) -> bool:
-        """True for a motion with several amplitudes, see `parts`."""
+        """True for a motion with several amplitudes; see `parts`."""
         return has_several_amplitudes(self.name)
 
     @property

@@ -14,7 +14,7 @@ from microslip.foundation.errors import InputError
 MAP = "map"
 """Model name in a Result that comes from a map."""
 REFUSED = ("force", "drive_stiffness", "contacts", "wear_coefficient")
-"""Arguments of predict that are not allowed with a map."""
+"""Arguments of `predict` that are not allowed with a map."""
 
 
 class FrictionMap:

@@ -86,7 +86,7 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True)
 class Grid:
-    """All combinations of the values of some arguments of predict.
+    """All combinations of the values of some arguments of `predict`.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Grid:
         return list(product(*(axis.values for axis in self.axes.values())))
 
     def dataset(self, answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-        """Return the predictions as a dataset over the axes, see `predict_grid`."""
+        """Return the predictions as a dataset over the axes; see `predict_grid`."""
         import xarray as xr
 
         flat = as_dataset(self.motion, self.table, answers)
@@ -134,7 +134,7 @@ class Grid:
 
 
 def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
-    """Return the grid for arguments of predict.  Ranges and sequences become axes.
+    """Return the grid for arguments of `predict`.  Ranges and sequences become axes.
 
     Raises InputError if a range is invalid, if no argument is a range or a sequence, or if there
     are too many combinations.

@@ -52,7 +52,7 @@ DEVIATIONS_OF_INTERVAL = 1.959964
 
 @dataclass(frozen=True)
 class UncertainInput:
-    """An uncertain argument of predict.
+    """An uncertain argument of `predict`.
 
     Attributes
     ----------
@@ -310,7 +310,7 @@ def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list
     """Logarithms of one input's absolute value at the nodes, in ascending order, and the states
     there.
 
-    If predict rejects a node, the last node is at the limit of the accepted values.
+    If `predict` rejects a node, the last node is at the limit of the accepted values.
     """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))

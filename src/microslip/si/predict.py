@@ -163,7 +163,7 @@ def predict(
         thousandth of the unit of speed, the error is relative to this thousandth.  The unit of
         speed is omega u_lim, or a unit defined by the motion.
     map : xarray.Dataset, optional
-        Dataset of a sweep with this motion, pressure and Poisson's ratio, see `open_map`.  It
+        Dataset of a sweep with this motion, pressure and Poisson's ratio; see `open_map`.  It
         replaces the solver: an answer takes milliseconds.  The error is the error bound of the
         map, which must be within the tolerance.
 
@@ -185,11 +185,11 @@ def predict(
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
-"""Arguments of predict except the motion, with their defaults."""
+"""Arguments of `predict` except the motion, with their defaults."""
 
 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for a mapping of predict's arguments.  It includes the uncertainty if any
+    """The Prediction for a mapping of `predict`'s arguments.  It includes the uncertainty if any
     input is uncertain."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
     prediction = answer_request(request_of(motion, plain))

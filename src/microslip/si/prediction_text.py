@@ -36,7 +36,7 @@ UNDERSTOOD = (
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     *("frequency", "rotation", "reduction", "map"),
 )
-"""Arguments of predict, in the order in which they are printed."""
+"""Arguments of `predict`, in the order in which they are printed."""
 PROBABILITIES = {
     "probability_stays": "stays",
     "probability_moves": "moves",

@@ -33,7 +33,7 @@ class RealPropulsionLine:
     Attributes
     ----------
     understood : dict of str
-        The arguments as the user wrote them, see prediction.Prediction.
+        The arguments as the user wrote them; see prediction.Prediction.
     motion : str
         The motion.
     contact_radius_m, u_lim_m : float

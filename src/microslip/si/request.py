@@ -52,18 +52,18 @@ applies to all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
 """Quantities that a search can determine."""
 ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
-"""Arguments of predict, keyed by the corresponding arguments of microslip.solve."""
+"""Arguments of `predict`, keyed by the corresponding arguments of microslip.solve."""
 NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes of real machines"
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A contact with its motion and its drive, as requested from predict.
+    """A contact with its motion and its drive, as requested from `predict`.
 
     Attributes
     ----------
     arguments : Mapping
-        Arguments of predict, as the user wrote them.
+        Arguments of `predict`, as the user wrote them.
     bodies : tuple of Body
         Bodies of the contact.
     contact, motion, drive : TwoBodies, RealMotion, RealDrive
@@ -192,7 +192,7 @@ class Request:
         ------
         InputError
             If an argument of the solver is out of range.  The message names the argument of
-            predict.
+            `predict`.
         """
         settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
@@ -211,7 +211,8 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """Return a copy of the error in which predict's argument replaces the solver's argument."""
+        """Return a copy of the error in which `predict`'s argument replaces the solver's
+        argument."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
             return error
@@ -243,7 +244,7 @@ class Request:
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The Request for a mapping of all arguments of predict.  Raises InputError."""
+    """The Request for a mapping of all arguments of `predict`.  Raises InputError."""
     if speaks_of_file(motion):
         arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():

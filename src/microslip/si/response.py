@@ -33,7 +33,7 @@ ARGUMENTS = (
     *("young", "nu", "material", "counterbody", "hardness", "density"),
     *("counter_hardness", "counter_density"),
 )
-"""Arguments of predict that describe a contact."""
+"""Arguments of `predict` that describe a contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class RealResponse:
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the area in contact that sticks, see adaptive.response.Response.
+        Fraction of the area in contact that sticks; see adaptive.response.Response.
     u_lim_m, contact_radius_m, load_N, mu : float
         Displacement at which the whole contact slides (m), contact radius (m), load of the
         reference state (N), and coefficient of friction.
@@ -129,7 +129,7 @@ def predict_response(
     decimal, encoding : str
         Decimal mark and encoding of a file.
     progress : callable or None
-        Progress callback, see `microslip.response`.
+        Progress callback; see `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
         contact.  The load is that of the reference state.

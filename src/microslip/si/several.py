@@ -1,6 +1,6 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups refer to a contact with the mean load, see solver.body_problem.  The body's
+All dimensionless groups refer to a contact with the mean load; see solver.body_problem.  The body's
 drive is divided by the number of contacts.  Computed forces are multiplied by this number.
 """
 

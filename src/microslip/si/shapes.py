@@ -78,7 +78,7 @@ class ShapedContact(TwoBodies):
         """Messages about a size or a load that differs from the value in a pressure file with
         units.
 
-        Differences within the file's reading error are accepted, see AGREES.
+        Differences within the file's reading error are accepted; see AGREES.
         """
         texts, readings = [], (self._record, *self._record.readings)
         inputs = (("contact radius", self.size, "size_m", "m"), ("load", self.load, "load_N", "N"))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "map"}
-"""Allowed columns of a file.  Each column is an argument of predict, and needs no unit in the
+"""Allowed columns of a file.  Each column is an argument of `predict`, and needs no unit in the
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
 """Text columns.  Every other column without values is numeric."""
@@ -41,10 +41,10 @@ def predict_table(
     Parameters
     ----------
     motion : str
-        Motion of all contacts, see `microslip.predict`.
+        Motion of all contacts; see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length, keyed by argument of predict, as in {"load": ["1 N", "10 N"]} or
-        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
+        Sequences of equal length, keyed by argument of `predict`, as in {"load": ["1 N", "10 N"]}
+        or {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
         sample or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".

@@ -57,7 +57,7 @@ class Rule(NamedTuple):
         of a measure.  The rule applies if all conditions are true.  A condition on a missing
         measure is false.
     text : str
-        The sentence, with measures as in {load:.2g} N, see MEASURE.
+        The sentence, with measures as in {load:.2g} N; see MEASURE.
     """
 
     where: tuple[tuple, ...]

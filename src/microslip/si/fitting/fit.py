@@ -69,7 +69,7 @@ def fit(
         optionally their standard errors friction_error or mu_error, and texts named label, name,
         id, sample or comment.
     map : xarray.Dataset, optional
-        Dataset of a sweep of this motion, see `open_map`.  Interpolation in a map is fast.
+        Dataset of a sweep of this motion; see `open_map`.  Interpolation in a map is fast.
         Without a map, the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
         Common value for all rows.  It replaces a column.

@@ -60,7 +60,7 @@ class FrictionModel:
 
 
 class MapFriction(FrictionModel):
-    """Friction interpolated in the dataset of a sweep, see datasets.query.
+    """Friction interpolated in the dataset of a sweep; see datasets.query.
 
     Parameters
     ----------
