@@ -56,7 +56,7 @@ class Motion:
         Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative; see `symmetry.reverses_forward`.
     cycles : int
-        Largest number of cycles of a component in a period.
+        Largest number of cycles that a component has in a period.
     half_disc : bool
         Whether the tractions on one half of a round contact follow by symmetry from those on the
         other half.  The symmetry is a mirror across the lateral axis for rotations, and a point

@@ -1,11 +1,10 @@
 """A problem: a motion at one velocity and amplitude, its drive, pressure and contacts.
 
-A body can rest on several contacts of the same shape.  The units of the body are those of a contact
-under the mean load: forces are divided by mu times the load of all contacts, and displacements by
-u_lim of this contact.  Under another load, the indentation and the u_lim of a contact are `extent`
-times larger.  Its radius and its stiffness change as well, but by less.  The amplitude and the
-velocity of the body are lengths, so they are divided by `extent` to convert them to the units of a
-contact.
+A body can rest on several contacts of the same shape.  In the units of the body, forces are divided
+by mu times the load of all contacts, and displacements by the u_lim of a contact under the mean
+load.  Under another load, the indentation and the u_lim of a contact are `extent` times larger.
+Its radius and its stiffness change as well, but by less.  The amplitude and the velocity of the
+body are lengths, so they are divided by `extent` to convert them to the units of a contact.
 
 All contacts move forward with the body.  At a prescribed velocity, the contacts are independent,
 and their phases have no effect.
@@ -108,7 +107,7 @@ class Problem:
                 raise InputError(name, value, "allowed is a finite number")
 
     def __str__(self) -> str:
-        """Text of the problem in one line, without defaults."""
+        """The problem as one line of text, without default values."""
         words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
         if self.amplitude is not None:
             words.append(f"amplitude={self.amplitude:.12g}")

@@ -1,4 +1,5 @@
-"""Friction from the dataset of a sweep, such as a certified map, in place of the solver."""
+"""Read friction from the dataset of a sweep, such as a certified map, instead of calling the
+solver."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True)
 class Grid:
-    """All combinations of the values of some arguments of `predict`.
+    """All combinations of values for some arguments of `predict`.
 
     Attributes
     ----------

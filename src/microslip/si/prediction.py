@@ -118,8 +118,8 @@ class Power:
     Attributes
     ----------
     vibration_power_W, vibration_power_error_W : float or None
-        Mean power of the oscillation or of the spin, W.  None with a dashpot, which dissipates an
-        unknown part of it.
+        Mean power of the oscillation or of the spin, W.  It is None with a dashpot, because the
+        dashpot dissipates an unknown part of this power.
     dissipated_power_W, dissipated_power_error_W : float
         Mean power dissipated by friction, W.  Without a dashpot, it is the sum of the oscillation's
         power and the drag power.

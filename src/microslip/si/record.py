@@ -149,7 +149,7 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np
 
 
 def _strongest(values: Mapping[str, np.ndarray]) -> float:
-    """Return how many periods of the strongest component the record contains, from its spectrum."""
+    """Number of periods of the strongest component, from the record's spectrum."""
     power = 0.0
     for one in values.values():
         x = np.linspace(-1.0, 1.0, len(one))

@@ -91,8 +91,8 @@ def fit(
     Returns
     -------
     Fit
-        Both numbers with intervals.  If the rows determine mu alone, the fit contains mu and the
-        reason.
+        Both numbers with intervals.  If the rows determine only mu, the fit contains mu and the
+        reason for this.
 
     Raises
     ------

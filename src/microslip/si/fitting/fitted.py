@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Fit:
     """Coefficient of friction and u_lim of a contact, from measured friction.
 
-    An interval includes the scatter of the rows, at a confidence level, and the error estimate of
-    the model, which is not random.
+    An interval includes the scatter of the rows at a confidence level.  It also includes the
+    model's error estimate, which is not random.
 
     Attributes
     ----------

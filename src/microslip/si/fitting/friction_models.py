@@ -30,7 +30,7 @@ PROVED = ("transverse", "bore")
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
 """Number of nodes of the coarse map per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes, and the value 0 saves
+"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes.  It is set to 0 to save
 time."""
 MOST_SOLVED = 200
 """Largest number of rows for a fit without a map."""

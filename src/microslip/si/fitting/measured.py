@@ -21,7 +21,7 @@ from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, is_table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
-"""Names of the conditions of each row."""
+"""Names of the conditions in each row."""
 COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
     "friction": Range("N", low=-math.inf),
     "friction_error": Range("N"),
