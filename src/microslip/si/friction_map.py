@@ -1,5 +1,4 @@
-"""Read friction from the dataset of a sweep, such as a certified map, instead of calling the
-solver."""
+"""Read friction from a sweep's dataset, such as a certified map, instead of calling the solver."""
 
 from __future__ import annotations
 

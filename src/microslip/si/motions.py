@@ -50,8 +50,8 @@ MOTIONS = {
 ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
 """Motions that vibrate along the drive, or have an oscillating load."""
 SAME = 1e-3
-"""Largest relative difference between two angles that count as equal.  It allows for the sampling
-of one angle at 721 phases."""
+"""Largest relative difference between two angles that count as equal.  The angles can differ
+because one of them is sampled at 721 phases."""
 
 
 def check_motion(motion: object) -> None:

@@ -22,11 +22,10 @@ PREFIXES = (
 )
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
-"""The unit of all lengths in an answer is the largest in which u_lim is at least this number.  The
-contact radius is a few hundred times larger, so its value is between 1 and a few thousand."""
+"""Lengths in an answer have the largest unit in which u_lim is at least this number.  The contact
+radius is a few hundred times larger, so its value is between 1 and a few thousand."""
 LEAST_SPEED = 0.1
-"""The unit of all speeds in an answer is the largest in which the largest speed is at least this
-number."""
+"""Speeds in an answer have the largest unit in which the highest speed is at least this number."""
 NEWTONS = 1e-2, 1e4
 """Range of forces that are printed in a unit without a prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (

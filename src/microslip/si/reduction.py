@@ -159,8 +159,7 @@ def _amplitudes(request: Request, _share: float) -> _Line:
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """A _Line of requests with decreasing speeds.  The place is minus the logarithm of the
-    speed."""
+    """A line of requests with decreasing speeds.  The place is minus the logarithm of the speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
         unit *= max(1.0, size)  # at large amplitudes the speed of the vibration is the unit

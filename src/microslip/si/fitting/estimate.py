@@ -3,8 +3,8 @@
 The unknowns are theta = (ln mu, ln scale).  For each value of one unknown, the sum of squares is
 minimised over the other unknown.  The interval contains the values for which this minimum is below
 a threshold.  The threshold is the least sum of squares plus a quantile.  If the rows have errors,
-this quantile is one of the chi-square distribution.  Otherwise it is one of the F distribution,
-times the mean square residual.  Such an interval does not depend on the parametrisation.  An
+this is a quantile of the chi-square distribution.  Otherwise, it is the mean square residual times
+a quantile of the F distribution.  Such an interval does not depend on the parametrisation.  An
 interval may be infinite on one side.
 """
 

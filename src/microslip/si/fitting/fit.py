@@ -91,8 +91,8 @@ def fit(
     Returns
     -------
     Fit
-        Both numbers with intervals.  If the rows determine only mu, the fit contains mu and the
-        reason for this.
+        Both numbers with intervals.  If the rows determine only mu, the fit contains mu, and the
+        reason why the other number is missing.
 
     Raises
     ------
