@@ -23,7 +23,7 @@ _REGISTRY = Registry(
 MOTIONS = _REGISTRY.classes
 """Name -> subclass of Motion."""
 BROKEN = _REGISTRY.broken
-"""Name of a file that cannot be used -> path of the file and error."""
+"""Path and error of each file that cannot be used, by name."""
 find = _REGISTRY.find
 motion_named = _REGISTRY.parse
 """Function that returns the motion for a text such as "elliptic:forward=0.5,phase=90" or

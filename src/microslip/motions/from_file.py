@@ -19,7 +19,7 @@ from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
 COLUMNS = (*PLANE, *NORMAL)
 ALLOWED = "some of forward,lateral,angle, and load or indentation, and time"
 EVEN = 1e-2
-"""Largest allowed distance of a time from equal spacing, divided by the spacing."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing."""
 
 
 def table_of(file: NamedFile, content: bytes) -> NumberTable:
@@ -30,7 +30,7 @@ def table_of(file: NamedFile, content: bytes) -> NumberTable:
 
 
 def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
-    """Parse the content of a file.  The table has at least one of COLUMNS.
+    """Parse the content of a file.  The table has at least one of the columns in COLUMNS.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVE
     decimal, encoding : str
         Decimal mark and encoding of the file.
     even : float
-        Largest allowed distance of a time from equal spacing, divided by the spacing.
+        Largest allowed deviation of a time from equal spacing, divided by the spacing.
 
     Raises
     ------
@@ -71,5 +71,5 @@ def _of_content(file: NamedFile, content: bytes) -> Sampled:
 
 
 read_motion = FileReader("motion", _of_content)
-"""Function that returns the motion for a text such as "file:stroke.csv".  In the motion's own name,
-a digest of the file's content replaces the path."""
+"""Function that returns the motion for a text such as "file:stroke.csv".  In the name of the
+motion, a digest of the file's content replaces the path."""

@@ -30,8 +30,8 @@ class Longitudinal(Motion):
         return stick_focus(amplitude, pressure)
 
     def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
-        """Phases at which v~ + x~ cos t changes its sign; -pi/2, pi/2 and 3 pi/2 without a
-        change."""
+        """Phases at which v~ + x~ cos t changes its sign. If its sign never changes, -pi/2, pi/2
+        and 3 pi/2."""
         back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
         return -back, back, 2.0 * np.pi - back
 

@@ -24,7 +24,7 @@ LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """Phases of two consecutive turning points of a sine."""
 WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
-"""Phases of three consecutive turning points of a sine, which span a whole period."""
+"""Phases of three consecutive turning points of a sine.  They span a whole period."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Motion:
     periodic : bool
         Whether the motion has an amplitude and the period 2 pi; otherwise it is steady.
     rotates : bool
-        Whether the contact rotates.  For rotations the tractions depend on the polar angle.
+        Whether the contact rotates.  In a rotation, the tractions depend on the polar angle.
     half_period_mirror : bool
-        Whether the second half of a period is the image of the first half under lateral ->
-        -lateral, angle -> -angle.  If False, a march covers a whole period.
+        Whether the second half of a period equals the first half with the lateral displacement and
+        the angle reversed.  If False, a march covers a whole period.
     straight : bool
         Whether the oscillation alone follows a straight line and turns at the phases -pi/2 and
         pi/2.
@@ -56,16 +56,17 @@ class Motion:
         Whether the oscillation alone can propel the contact, so that the mean friction can be
         negative; see `symmetry.reverses_forward`.
     cycles : int
-        Largest number of cycles of a component in a period.
+        Largest number of cycles that a component has in a period.
     half_disc : bool
         Whether the tractions on one half of a round contact follow by symmetry from those on the
-        other half: a mirror across the lateral axis for rotations, else point symmetry.  A rotation
-        combined with a lateral motion has neither symmetry.
+        other half.  The symmetry is a mirror across the lateral axis for rotations, and a point
+        reflection for other motions.  A rotation combined with a lateral motion has neither
+        symmetry.
     loads : bool
         Whether the normal load oscillates, as described by `depth`, `deepest` and `mean_load`.
     readings : tuple of Motion
-        Alternative motions through the same samples.  The change of friction between these motions
-        is used as an error estimate.
+        Alternative motions through the same samples.  The difference in friction between these
+        motions serves as an error estimate.
     """
 
     summary: ClassVar[str] = ""
@@ -174,7 +175,8 @@ def within_rings(radius: float) -> float:
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Stick radius of an oscillation along a line with the amplitude `reach`, in u_lim.
 
-    For a sphere it is Eq 8.  The result is None at full slip, or if the stick zone is not a circle.
+    For a sphere, it is Eq 8.  The result is None at full slip, or if the stick zone is not a
+    circle.
     """
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

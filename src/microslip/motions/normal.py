@@ -4,11 +4,11 @@
 
 With the amplitude A, the normal load divided by its reference value is 1 + A load sin(K t).  If
 `indentation` is above 0, the indentation depth divided by its reference value is 1 + A indentation
-sin(K t) instead.  Contact is lost while the load or the depth would be below 0.  In the plane the
-displacement is v~ t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim; the angle is
-sin(Q t + P) times the largest angle of a bore with the amplitude A B.  P is in degrees.  The units
-u_lim, a and mu F_z are those of the state without oscillation.  Friction is divided by mu times the
-actual mean load."""
+sin(K t) instead.  There is no contact while the formula gives a load or a depth below 0.  The
+in-plane displacement is v~ t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim.
+The angle is sin(Q t + P) times the largest angle of a bore with the amplitude A B.  P is in
+degrees.  The units u_lim, a and mu F_z are those of the state without oscillation.  Friction is
+divided by mu times the actual mean load."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class Normal(Motion):
 
     @property
     def in_plane(self) -> dict[str, int]:
-        """Name of each in-plane component that oscillates -> number of its cycles."""
+        """Number of cycles of each oscillating in-plane component, by name."""
         components = {
             "lateral": (self.lateral, self.lateral_cycles),
             "forward": (self.forward, self.forward_cycles),

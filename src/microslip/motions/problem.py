@@ -1,14 +1,13 @@
 """A problem: a motion at one velocity and amplitude, its drive, pressure and contacts.
 
-A body can rest on several contacts of the same shape.  The units of the body are those of a contact
-under the mean load: forces are divided by mu times the load of all contacts, and displacements by
-u_lim of this contact.  A contact under another load has an indentation and a u_lim that are
-`extent` times larger.  Its radius and its stiffness change as well, but by less.  The amplitude and
-the velocity of the body are lengths, so they are divided by `extent` to convert them to the units
-of a contact.
+A body can rest on several contacts of the same shape.  In the units of the body, forces are divided
+by mu times the load of all contacts, and displacements by the u_lim of a contact under the mean
+load.  Under another load, the indentation and the u_lim of a contact are `extent` times larger.
+Its radius and its stiffness change as well, but by less.  The amplitude and the velocity of the
+body are lengths, so they are divided by `extent` to convert them to the units of a contact.
 
-All contacts move forward with the body.  At a prescribed velocity the contacts are independent, and
-their phases have no effect.
+All contacts move forward with the body.  At a prescribed velocity, the contacts are independent,
+and their phases have no effect.
 """
 
 from __future__ import annotations
@@ -31,8 +30,8 @@ SMALLEST_OSCILLATION = 1e-12
 """A difference between oscillations counts as a rounding error if it is below this fraction of the
 amplitude."""
 ROUNDING = 1e-9
-"""Largest accepted difference between 1 and the mean load of several contacts.  Loads in texts have
-12 digits."""
+"""Largest accepted difference between 1 and the mean load of several contacts.  A text gives loads
+with 12 digits."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class Problem:
     motion : Motion
         The motion, such as `Transverse()` or `Elliptic(forward=0.5)`.
     velocity : float
-        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force the
+        The paper's dimensionless velocity; 0 is the limit v -> 0.  Under a prescribed force, the
         velocity is part of the result; leave this argument at 0.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.
@@ -58,8 +57,8 @@ class Problem:
     contacts : tuple of BodyContact
         Contacts that carry the body; empty for a single contact.
     backward : bool
-        Whether the forward direction is reversed.  Under a symmetric pressure, friction at the
-        velocity v is then minus the friction of the original motion at -v.
+        Whether the forward direction is reversed.  Then, under a symmetric pressure, friction at v
+        equals minus the friction of the original motion at -v.
     follows : bool
         Whether the body follows the mean forward oscillation of its contacts, as a massless body
         under a constant force does.  The mean oscillation is then subtracted from each contact's
@@ -108,7 +107,7 @@ class Problem:
                 raise InputError(name, value, "allowed is a finite number")
 
     def __str__(self) -> str:
-        """Text of the problem in one line, without defaults."""
+        """The problem as one line of text, without default values."""
         words = [f"{self.motion.name} velocity={self.velocity:.12g}"]
         if self.amplitude is not None:
             words.append(f"amplitude={self.amplitude:.12g}")
@@ -122,17 +121,17 @@ class Problem:
 
     @property
     def half_period_mirror(self) -> bool:
-        """Whether the second half of a period is the mirror image of the first half, see Motion."""
+        """Whether the second half of a period is the mirror image of the first half; see Motion."""
         return self.motion.half_period_mirror and self.pressure.mirrored
 
     @property
     def straight(self) -> bool:
-        """Whether the oscillation alone follows a straight line, see Motion."""
+        """Whether the oscillation alone follows a straight line; see Motion."""
         return self.motion.straight and not self.follows
 
     @property
     def propels(self) -> bool:
-        """Whether the oscillation alone can propel the contact, see Motion."""
+        """Whether the oscillation alone can propel the contact; see Motion."""
         return self.motion.propels and not self.follows
 
     # Kinematics
@@ -167,7 +166,7 @@ class Problem:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Phases of the turning points, see Motion.  They cover a whole period if the pressure is
+        """Phases of the turning points; see Motion.  They cover a whole period if the pressure is
         not symmetric."""
         velocity = 0.0 if self.follows else self._sign * self.velocity
         first = self.motion.turns(velocity, self.size)
@@ -202,9 +201,9 @@ class Problem:
 
     @cached_property
     def mean_speed(self) -> float:
-        """Mean speed of the oscillation, as the path length per radian of phase, in u_lim.
+        """Mean speed of the oscillation: path length per radian of phase, in u_lim.
 
-        For several contacts it is the mean weighted by their loads.
+        For several contacts, it is the mean weighted by their loads.
         """
         if self.contacts:
             return sum(part.share * part.extent * part.problem.mean_speed for part in self.parts)
@@ -223,7 +222,7 @@ class Problem:
 
     @property
     def readings(self) -> tuple[Problem, ...]:
-        """Problems with other interpolations of the same data, see Motion.readings and
+        """Problems that interpolate the same data differently; see Motion.readings and
         Pressure.readings."""
         motions = (replace(self, motion=other) for other in self.motion.readings)
         pressures = (replace(self, pressure=other) for other in self.pressure.readings)
@@ -235,7 +234,7 @@ class Problem:
     def depth(self) -> Callable[[np.ndarray], np.ndarray] | None:
         """Function of the phase that returns the indentation depth divided by its reference value.
 
-        For several contacts the function returns one row for each contact.  The attribute is None
+        For several contacts, the function returns one row for each contact.  The attribute is None
         if the load is constant.
         """
         if not self.motion.loads:
@@ -280,7 +279,7 @@ class Problem:
         """Whether the contacts form pairs such that each pair exerts no mean forward force.
 
         The oscillation changes its sign after half a period, and the phases in a pair differ by
-        half a period.  So the oscillations of both contacts in a pair are opposite.
+        half a period.  So the two contacts of a pair oscillate in opposite directions.
         """
         there = self.motion.displacement(LOOP + np.pi, 0.0, self.size, self.poisson)
         here = self.motion.displacement(LOOP, 0.0, self.size, self.poisson)
@@ -316,8 +315,8 @@ class Part:
     def oscillation(self, phase: np.ndarray) -> np.ndarray:
         """Forward, lateral and angular oscillation at a phase of the body, shape (3, ...).
 
-        Displacements are in u_lim of the body.  The angle is multiplied by the radius of this
-        contact, so it is also in u_lim of the body.
+        Displacements are in u_lim of the body.  The angle is multiplied by the contact's radius, so
+        it is also in u_lim of the body.
         """
         return self.extent * np.array(self.problem.oscillation(phase + self.lead))
 
@@ -327,7 +326,7 @@ class Part:
         return problem.motion.depth(phase + self.lead, problem.size, problem.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
-        """Phases of the body at the turning points of the contact; `still`: True for velocity 0."""
+        """The body's phases at the turning points of the contact.  still: True for velocity 0."""
         problem = replace(self.problem, velocity=0.0) if still else self.problem
         return np.array(problem.turns) - self.lead
 

@@ -1,7 +1,7 @@
 """Motions from samples: a path from the first row to the last one, or one period of any shape.
 
 A row holds the forward, lateral and angular displacement of the indenter, and the normal load or
-the indentation.  Along a path all of these quantities change linearly between rows.  A period is
+the indentation.  Along a path, all of these quantities change linearly between rows.  A period is
 interpolated by periodic cubic splines through equally spaced rows.
 """
 
@@ -74,8 +74,8 @@ class SampledPath(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any]) -> SampledPath:
-        """Create the path from columns by name, see PLANE and NORMAL; None stands for a constant
-        quantity.
+        """Create the path from named columns; see PLANE and NORMAL.  A quantity is constant if its
+        column is None.
 
         Raises
         ------
@@ -108,9 +108,10 @@ class SampledPath(_Samples):
         return float(self.depth(np.arange(len(self.rows)), amplitude, pressure).max())
 
     def lengths(self, pressure: Pressure) -> np.ndarray:
-        """Largest displacement of a contact point from row to row, in u_lim, shape (rows - 1,).
+        """Largest displacement of a contact point between consecutive rows, in u_lim, shape (rows -
+        1,).
 
-        A change of the indentation counts as a displacement by the change of the local u_lim.
+        If the indentation changes, the change in the local u_lim counts as a displacement.
         """
         forward, lateral, angle = np.abs(np.diff(self.rows, axis=0)).T
         out = np.hypot(forward, lateral) + angle
@@ -123,14 +124,14 @@ class SampledPath(_Samples):
 class Sampled(_Samples):
     """One period of a motion of any shape, from equally spaced samples.
 
-    With the amplitude A the indenter moves by A times the interpolated displacements.  A load or
+    With the amplitude A, the indenter moves by A times the interpolated displacements.  A load or
     an indentation h oscillates as 1 + A (h - 1).
 
     Attributes
     ----------
     rows : np.ndarray, shape (rows, 3)
-        Forward and lateral displacement in u_lim, angle in u_lim / a, for A = 1, without the end
-        point of the period.
+        Forward and lateral displacement in u_lim, and angle in u_lim / a, for A = 1.  The end point
+        of the period is omitted.
     height : np.ndarray or None, shape (rows,)
         Normal load or indentation divided by its reference value; None if both are constant.
     by_load : bool
@@ -146,8 +147,8 @@ class Sampled(_Samples):
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Any], text: str = "") -> Sampled:
-        """Create the motion from columns by name, see PLANE and NORMAL; None stands for a constant
-        quantity.
+        """Create the motion from named columns; see PLANE and NORMAL.  A quantity is constant if
+        its column is None.
 
         Raises
         ------
@@ -198,8 +199,8 @@ class Sampled(_Samples):
         return (Sampled(self.rows[::2], height, self.by_load, text),)
 
     def _repeats(self, signs: Sequence[float]) -> bool:
-        """Whether half a period multiplies the forward, lateral and angular displacements by these
-        signs and leaves the load unchanged."""
+        """Whether the forward, lateral and angular displacements are multiplied by these signs
+        after half a period, and the load is unchanged."""
         if len(self.rows) % 2:
             return False
         plane = self.rows - self.rows.mean(axis=0)
@@ -223,7 +224,7 @@ class Sampled(_Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root-mean-square number of cycles in a period; the largest value of all columns."""
+        """Root-mean-square number of cycles in a period, for the column where it is largest."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2
@@ -239,8 +240,8 @@ class Sampled(_Samples):
         return velocity * phase + forward, lateral, angle
 
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-        """Stick radius of a straight oscillation with the same largest distance from the centre.
-        Under an oscillating load, the smallest contact radius divided by the largest."""
+        """Stick radius of a straight oscillation that has the same largest distance from the
+        centre.  Under an oscillating load, the smallest contact radius divided by the largest."""
         if self.loads:
             least, most = self._extremes(amplitude, pressure)
             return within_rings(float(pressure.radius(least) / pressure.radius(most)))
@@ -275,12 +276,12 @@ class Sampled(_Samples):
 FEWEST_SAMPLES = 4
 """Smallest number of rows in a period.  It also applies to the motion through every second row."""
 ROUNDING = 1e-9
-"""Largest deviation of samples from a symmetry, divided by the largest sample."""
+"""Largest accepted deviation of samples from a symmetry, divided by the largest sample."""
 
 
 def uneven_row(time: np.ndarray, most: float) -> int | None:
     """Index of the time that is farthest from equal spacing.  It is None if the times increase and
-    all deviate by at most `most` spacings."""
+    no time deviates by more than `most` spacings."""
     even = np.linspace(time[0], time[-1], len(time))
     distance = np.abs(time - even)
     step = (time[-1] - time[0]) / max(len(time) - 1, 1)

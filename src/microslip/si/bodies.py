@@ -16,8 +16,8 @@ class TwoBodies:
     """A sphere pressed against a flat or a second sphere.  At least one of the bodies is elastic.
 
     For tangential loads, two half-spaces are equivalent to one half-space whose compliance is the
-    sum of both compliances.  G and Poisson's ratio of the equivalent half-space follow from the
-    sums of 1/G and nu/G.  The normal and the tangential problem are assumed to be uncoupled.
+    sum of both compliances.  The sums of 1/G and nu/G give G and Poisson's ratio of the equivalent
+    half-space.  The normal and the tangential problem are assumed to be uncoupled.
 
     Attributes
     ----------
@@ -120,8 +120,8 @@ class TwoBodies:
     def mismatch(self) -> float:
         """Dundurs' constant beta, dimensionless; 0 for equal bodies.
 
-        It is half the difference in (1 - 2 nu)/G between the bodies, divided by their sum of (1 -
-        nu)/G.  It is a measure of the tangential displacement caused by pressure.
+        With p = (1 - 2 nu)/G and q = (1 - nu)/G of each body, it is (p1 - p2) / (2 (q1 + q2)).  It
+        is a measure of the tangential displacement caused by pressure.
         """
         first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
         both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)

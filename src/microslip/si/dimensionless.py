@@ -57,7 +57,7 @@ class RealMotion:
 
     @property
     def several(self) -> bool:
-        """True for a motion with several amplitudes, see `parts`."""
+        """True for a motion with several amplitudes; see `parts`."""
         return has_several_amplitudes(self.name)
 
     @property
@@ -82,7 +82,7 @@ class RealMotion:
 
     @property
     def pace(self) -> tuple[float, float]:
-        """Largest tangential speed, m, and largest angular speed, rad, of the oscillation.  Both
+        """Largest tangential speed and largest angular speed of the oscillation, m and rad.  Both
         are divided by the angular frequency."""
         return self.swing if self.stroke is None else self._times_factor(self.stroke.pace)
 
@@ -188,7 +188,7 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
 
 
 def _over(speed: float, unit: float) -> float:
-    """A speed divided by the unit of speed, which can be 0."""
+    """A speed divided by the unit of speed.  The unit can be 0."""
     if speed == 0.0:
         return 0.0
     return speed / unit if unit > 0.0 else math.inf

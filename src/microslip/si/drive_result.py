@@ -21,7 +21,7 @@ smaller."""
 
 
 def answer_of(request: Request, limit: Result | None, threshold: Estimate | None) -> Result:
-    """Friction at the speed, or the velocity under the force.
+    """The friction at a prescribed speed, or the velocity under a prescribed force.
 
     If the force is below the threshold by more than the threshold's error, the contact comes to
     rest, and no drift is computed.  If the force is within this error of the threshold, the result
@@ -65,9 +65,9 @@ def answer_of(request: Request, limit: Result | None, threshold: Estimate | None
 def within_range(drive: dict[str, float]) -> dict[str, float]:
     """The dimensionless drive, reduced to the range of the solver.
 
-    Above the largest force of this range, the contact runs away.  A body that is too heavy or too
-    stiff hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves
-    the natural frequency.
+    If the force exceeds this range, the contact runs away.  A body that is too heavy or too stiff
+    hardly moves.  Its mass, stiffness and damping are scaled by one factor, which preserves the
+    natural frequency.
     """
     body = {name: value for name, value in drive.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)

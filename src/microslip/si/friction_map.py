@@ -1,4 +1,4 @@
-"""Friction from the dataset of a sweep, such as a certified map, in place of the solver."""
+"""Read friction from a sweep's dataset, such as a certified map, instead of calling the solver."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from microslip.foundation.errors import InputError
 MAP = "map"
 """Model name in a Result that comes from a map."""
 REFUSED = ("force", "drive_stiffness", "contacts", "wear_coefficient")
-"""Arguments of predict that are not allowed with a map."""
+"""Arguments of `predict` that are not allowed with a map."""
 
 
 class FrictionMap:

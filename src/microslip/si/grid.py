@@ -86,7 +86,7 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True)
 class Grid:
-    """All combinations of the values of some arguments of predict.
+    """All combinations of values for some arguments of `predict`.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Grid:
         return list(product(*(axis.values for axis in self.axes.values())))
 
     def dataset(self, answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:
-        """Return the predictions as a dataset over the axes, see `predict_grid`."""
+        """Return the predictions as a dataset over the axes; see `predict_grid`."""
         import xarray as xr
 
         flat = as_dataset(self.motion, self.table, answers)
@@ -134,7 +134,7 @@ class Grid:
 
 
 def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
-    """Return the grid for arguments of predict.  Ranges and sequences become axes.
+    """Return the grid for arguments of `predict`.  Ranges and sequences become axes.
 
     Raises InputError if a range is invalid, if no argument is a range or a sequence, or if there
     are too many combinations.
@@ -194,8 +194,8 @@ def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
 def interpolation_error(values: xr.DataArray) -> float:
     """Largest difference between a value and the linear interpolation of its neighbours.
 
-    The largest differences along all axes with three or more values are added.  Where the values
-    are smooth, linear interpolation between them has an error of a quarter of this sum.
+    It is the sum of the largest differences along each axis with three or more values.  Where the
+    values are smooth, linear interpolation between them has an error of a quarter of this sum.
     """
     total = 0.0
     for name in values.dims:
@@ -207,5 +207,5 @@ def interpolation_error(values: xr.DataArray) -> float:
 
 
 def _coordinate(name: str, unit: str) -> str:
-    """Return the name of a coordinate, in the form of the column names of a Prediction."""
+    """Return the name of a coordinate, in the same form as a Prediction's column names."""
     return "amplitude_si" if name == "amplitude" else "_".join([name, *re.findall(r"\w+", unit)])

@@ -63,8 +63,8 @@ QUANTITIES = {
     "reduction": Range("", high=1.0),
     "wear_coefficient": Range("m^2/N", low_open=False),
 }
-"""Units and ranges of the quantities among predict's arguments.  The amplitude of a rotation is an
-angle, in rad."""
+"""Units and ranges of the quantities among `predict`'s arguments.  The amplitude of a rotation is
+an angle, in rad."""
 
 
 def read_argument(
@@ -80,7 +80,7 @@ def read_argument(
 
 
 Arguments = Mapping[str, Any]
-"""Arguments of predict by name.  A missing argument is None."""
+"""Mapping of `predict`'s arguments, by name.  A missing argument is None."""
 
 
 class Body(NamedTuple):
@@ -188,7 +188,7 @@ def read_contact(
     bodies : tuple of Body
         The body and the counterbody.
     arguments : mapping
-        Arguments of predict.  This function reads the shape and mu.
+        Arguments of `predict`.  This function reads the shape and mu.
     load : quantity
         Total load of all contacts.
     contacts : int
@@ -342,8 +342,8 @@ def read_motion(
 ) -> tuple[RealMotion, dict[str, str]]:
     """The motion, and a dict with the text of each argument.  Raises InputError.
 
-    sought: name of the quantity that a search determines, or None.  This quantity may be missing,
-    and so may the speed.
+    sought: name of the quantity that a search determines, or None.  This quantity and the speed may
+    be missing.
     """
     motions.check_motion(motion)
     steady = motions.is_steady(motion)
@@ -374,14 +374,14 @@ def read_motion(
 
 
 MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")
-"""Arguments of predict that describe the motion, except the speed."""
+"""Arguments of `predict` that describe the motion, except the speed."""
 DRIVE_FIELDS = {
     "force": "force",
     "drive_stiffness": "stiffness",
     "mass": "mass",
     "damping": "damping",
 }
-"""Fields of RealDrive, keyed by the corresponding argument of predict.  The speed is not
+"""Fields of RealDrive, keyed by the corresponding argument of `predict`.  The speed is not
 included."""
 
 

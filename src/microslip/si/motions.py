@@ -32,7 +32,7 @@ PARTS = {
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""For each of these amplitudes: the name in a motion text for the solver, and the SI unit."""
+"""For each of these amplitudes, its name in the solver's motion text, and its SI unit."""
 TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
 """Allowed arguments of the motions with several oscillations."""
@@ -50,8 +50,8 @@ MOTIONS = {
 ALONG_THE_DRIVE = ("longitudinal", "elliptic", "normal")
 """Motions that vibrate along the drive, or have an oscillating load."""
 SAME = 1e-3
-"""Largest relative difference between two angles that count as equal.  One of these angles is
-sampled at 721 phases."""
+"""Largest relative difference between two angles that count as equal.  The angles can differ
+because one of them is sampled at 721 phases."""
 
 
 def check_motion(motion: object) -> None:
@@ -89,7 +89,7 @@ def unit_of_amplitude(motion: str) -> str | None:
 
 
 def is_along_the_drive(motion: str) -> bool:
-    """True if the vibration is, or can be, along the drive."""
+    """True if the vibration may have a component along the drive."""
     if motion in MOTIONS:
         return motion in ALONG_THE_DRIVE
     if speaks_of_file(motion):

@@ -2,8 +2,9 @@
 
 The uncertain inputs are independent and normally distributed.  The draws form a low-discrepancy
 sequence, so that equal requests have equal draws.  Forces and amplitudes are tabulated as functions
-of one input at a time.  The changes in their logarithms are then added, which is exact for power
-laws, as in Hertz's theory.  The static limit is solved at a few amplitudes and interpolated.
+of one input at a time.  The changes in their logarithms are then added.  This is exact for power
+laws, such as those of Hertz's theory.  The static limit is solved at a few amplitudes and
+interpolated.
 
 A draw outside the physical range is replaced by the closest physical value.  For example, a
 negative load becomes 0, and a Poisson's ratio above 0.5 becomes 0.5.
@@ -33,14 +34,14 @@ DEVIATIONS = np.linspace(-4.0, 4.0, 17)
 """Nodes of the table along one input, in standard deviations from its central value.  One draw in
 16000 is outside the table."""
 SMALLEST_SHARE = 1e-2
-"""Smallest tabulated value of a positive quantity, divided by its central value.  Smaller draws are
-replaced by this value if 0 is not a physical value."""
+"""Smallest tabulated value of a positive quantity, divided by the quantity's central value.  If 0
+is not a physical value, this value replaces smaller draws."""
 BISECTIONS = 12
-"""Number of bisections in the search for the limit of the accepted values.  Its error is 2**-12
-times half a standard deviation."""
+"""Number of bisections in the search for the limit of the accepted values.  The limit is accurate
+to 2**-12 times half a standard deviation."""
 TOWARDS_ZERO = 2.0
-"""Largest ratio between neighbouring nodes below the central value.  The interpolation of
-logarithms is exact for power laws; other functions vary little over a factor of 2."""
+"""Largest ratio between neighbouring nodes below the central value.  Interpolation of logarithms is
+exact for power laws.  Other functions vary little over a factor of 2."""
 SAME_SHARE = 9
 """Number of decimals used to compare amplitude ratios.  Further digits are rounding errors."""
 INTERVAL = 0.025, 0.975
@@ -51,7 +52,7 @@ DEVIATIONS_OF_INTERVAL = 1.959964
 
 @dataclass(frozen=True)
 class UncertainInput:
-    """An uncertain argument of predict.
+    """An uncertain argument of `predict`.
 
     Attributes
     ----------
@@ -90,7 +91,7 @@ class _State:
     ----------
     still, largest, force : float
         Friction without vibration, smallest force at which the contact runs away, and prescribed
-        force, N.  The prescribed force can be None.
+        force; all in N.  The prescribed force can be None.
     amplitude : float or None
         Dimensionless amplitude.
     mu, poisson : float
@@ -175,8 +176,7 @@ def _error_of_draws(outcome: np.ndarray) -> float:
 def half_difference(low: Prediction | None, high: Prediction | None, name: str) -> float:
     """Half the difference between two predictions in the field `name`.
 
-    It is infinite if one prediction has no value, because there is no solution or the contact runs
-    away.
+    It is infinite if, in one prediction, there is no solution or the contact runs away.
     """
     if low is None or high is None:
         return math.inf
@@ -204,7 +204,7 @@ def _normal_intervals(
 
 
 def _ratio(threshold: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Threshold divided by force.  It is infinite for a force of 0, and 0 if both are 0."""
+    """Threshold divided by force.  It is infinite if only the force is 0, and 0 if both are 0."""
     without = np.where(threshold > 0.0, math.inf, 0.0)
     return np.divide(threshold, force, out=without, where=force > 0.0)
 
@@ -222,7 +222,7 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
 def _draws(count: int) -> np.ndarray:
     """Draws of independent standard normal numbers, shape (DRAWS, count).
 
-    They form a Kronecker sequence, whose irrational numbers are powers of the root of x^(count + 1)
+    They form a Kronecker sequence.  Its irrational numbers are powers of the root of x^(count + 1)
     = x + 1.
     """
     from scipy.special import ndtri
@@ -307,10 +307,10 @@ def _log(value: float) -> float:
 
 
 def _along(one: UncertainInput, request_at: RequestAt) -> tuple[np.ndarray, list[_State]]:
-    """Nodes along one input: ascending logarithms of the input's absolute value, and the states at
-    the nodes.
+    """Logarithms of one input's absolute value at the nodes, in ascending order, and the states
+    there.
 
-    If predict rejects a node, the last node is placed at the limit of the accepted values.
+    If `predict` rejects a node, the last node is at the limit of the accepted values.
     """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))

@@ -46,8 +46,8 @@ UNKNOWN_WITHOUT = {
         "friction_force_still_N",
     ),
 }
-"""Fields of a Prediction that are NaN if the search has no solution, keyed by the quantity that is
-searched."""
+"""Fields of a Prediction that are NaN if the search has no solution.  The keys are the quantities
+that a search can determine."""
 
 
 def predict(
@@ -125,12 +125,12 @@ def predict(
         Default: "hertz".
     amplitude : quantity
         Half stroke of the oscillation: an angle for a bore, otherwise a length.  For a motion with
-        several oscillations it is the lateral half stroke.  For a file it is a factor, 1 by
+        several oscillations, it is the lateral half stroke.  For a file it is a factor, 1 by
         default.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
         For a motion with several oscillations: half strokes of the forward motion (m), the spin
-        (rad) and the load (N), and the phase (rad).  The phase applies to the forward oscillation
-        of "elliptic", the rotation of "transverse-bore" and the displacement of "normal".  These
+        (rad) and the load (N), and the phase (rad).  The phase is that of the forward oscillation
+        in "elliptic", the rotation in "transverse-bore", and the displacement in "normal".  These
         oscillations follow sin(omega t + phase).  The other oscillations follow sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps) or angular (rad/s, deg/s, rpm, turn/s).  A
@@ -163,7 +163,7 @@ def predict(
         thousandth of the unit of speed, the error is relative to this thousandth.  The unit of
         speed is omega u_lim, or a unit defined by the motion.
     map : xarray.Dataset, optional
-        Dataset of a sweep with this motion, pressure and Poisson's ratio, see `open_map`.  It
+        Dataset of a sweep with this motion, pressure and Poisson's ratio; see `open_map`.  It
         replaces the solver: an answer takes milliseconds.  The error is the error bound of the
         map, which must be within the tolerance.
 
@@ -176,8 +176,8 @@ def predict(
     Raises
     ------
     InputError
-        If an input is missing, ambiguous or out of range.  Also if the contact radius exceeds half
-        the radius of a body, or if no solution has the requested reduction.  InputError is a
+        If an input is missing, ambiguous or out of range, if the contact radius exceeds half the
+        radius of a body, or if no solution has the requested reduction.  InputError is a
         ValueError.  The message names the argument, its value and the allowed values.
     """
     arguments = dict(locals())  # before any other local variable
@@ -185,11 +185,11 @@ def predict(
 
 
 NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters if name != "motion"}
-"""Arguments of predict except the motion, with their defaults."""
+"""Arguments of `predict` except the motion, with their defaults."""
 
 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
-    """The Prediction for a mapping of predict's arguments.  It includes the uncertainty if any
+    """The Prediction for a mapping of `predict`'s arguments.  It includes the uncertainty if any
     input is uncertain."""
     plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
     prediction = answer_request(request_of(motion, plain))
@@ -242,8 +242,7 @@ def answer_request(request: Request) -> Prediction:
 
 
 def without_solution(request: Request, reason: str) -> Prediction:
-    """The Prediction for a search without a solution.  Fields that depend on the solution are
-    NaN."""
+    """The Prediction if a search has no solution.  Fields that depend on the solution are NaN."""
     assert request.sought is not None  # the request has a reduction
     nothing: dict[str, Any] = {"motion": request.motion.name, "pressure": request.contact.pressure}
     nothing |= {"model": "none", "reason": reason, "amplitude": math.nan, "poisson": math.nan}

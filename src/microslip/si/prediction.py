@@ -41,7 +41,7 @@ COLUMNS = tuple(_NAMES.split())
 EMPTY: dict[str, Any] = dict.fromkeys(COLUMNS) | {"mu_static_reason": "", "displacement_reason": ""}
 """Default values of missing columns."""
 PARTS = ("body", "travel", "search", "power", "wear", "uncertainty")
-"""Fields that are records with columns of their own."""
+"""Fields that contain a record, which has its own columns."""
 
 UNITS = {
     **{"_N_m": "N m", "_N_s_m": "N s m-1", "_m_s": "m s-1", "_rad_s": "rad s-1", "_Pa": "Pa"},
@@ -118,8 +118,8 @@ class Power:
     Attributes
     ----------
     vibration_power_W, vibration_power_error_W : float or None
-        Mean power of the oscillation or of the spin, W.  None with a dashpot, which dissipates an
-        unknown part of it.
+        Mean power of the oscillation or of the spin, W.  It is None with a dashpot, because the
+        dashpot dissipates an unknown part of this power.
     dissipated_power_W, dissipated_power_error_W : float
         Mean power dissipated by friction, W.  Without a dashpot, it is the sum of the oscillation's
         power and the drag power.
@@ -179,12 +179,12 @@ class Prediction:
     load_N : float
         Normal force, N.
     speed_m_s : float
-        Forward speed, m/s.  Under a force it is the mean speed, which is NaN for a contact that
-        runs away.
+        Forward speed, m/s.  Under a force, it is the mean speed, which is NaN if the contact runs
+        away.
     velocity : float or None
         Dimensionless speed; None for a bore of amplitude 0.
     mu_macro, mu_macro_error : float
-        Mean forward force with vibration divided by mu F_z, the force without vibration;
+        Mean forward force with vibration divided by the force without vibration, mu F_z;
         dimensionless.
     mu_apparent, mu_apparent_error : float
         Coefficient of friction with vibration, mu times mu_macro; dimensionless.
@@ -382,7 +382,7 @@ class Forced(Prediction):
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Forced, Oscillating):
-    """A contact under a force that moves, or that may move within the error estimate."""
+    """A contact that moves under a force, or may move within the error estimate."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -392,12 +392,12 @@ class Rest(Forced, Oscillating):
     Attributes
     ----------
     displacement_m, displacement_error_m : float or None
-        Forward displacement until the contact rests, m.  It is None for a body with a mass, and
-        for a contact that is not round.
+        Forward displacement until the contact rests, m.  It is None if the body has a mass, or if
+        the contact is not round.
     cycles_to_rest : float or None
         Number of periods until the vibration has caused nine tenths of the displacement.
     displacement_reason : str
-        Why the displacement is unknown; else empty.
+        Why the displacement is unknown; empty if it is known.
     """
 
     displacement_m: float | None = None
@@ -413,7 +413,7 @@ class SpinDrift(Forced, SteadySpin):
 
 @dataclass(frozen=True)
 class NoPrediction:
-    """A case in a table that has no prediction.
+    """A case without a prediction in a table.
 
     Attributes
     ----------

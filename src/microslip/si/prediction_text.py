@@ -1,4 +1,4 @@
-"""A Prediction in words: the output of `microslip predict` and of print()."""
+"""A Prediction in words, as printed by `microslip predict` and print()."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ UNDERSTOOD = (
     *("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     *("frequency", "rotation", "reduction", "map"),
 )
-"""Arguments of predict, in the order in which they are printed."""
+"""Arguments of `predict`, in the order in which they are printed."""
 PROBABILITIES = {
     "probability_stays": "stays",
     "probability_moves": "moves",
@@ -74,10 +74,10 @@ FROM_LINEAR_MODEL = (
 )
 """Texts for the two methods of computing an interval: quantiles, and first order."""
 NO_SPREAD_OF_SPEED = "none of the speed: the contact can run away"
-"""Text for a contact that runs away for some values of the inputs within their uncertainty."""
+"""Text for a contact that can run away if the inputs vary within their uncertainty."""
 STAYS_WITHIN_SPREADS = "none of the speed: the contact can move"
-"""Text for a contact that stays at rest for inputs within one standard deviation, but can move for
-other inputs."""
+"""Text for a contact that stays at rest if every input is within one standard deviation, but can
+move otherwise."""
 OUTCOMES = {
     "moves": "it moves, cycle by cycle",
     "stays": "it stays: the force is below the threshold",
@@ -220,7 +220,7 @@ def _spread(record: Any, show: Show) -> list[str]:
 
 
 def _largest_speed(record: Any) -> float:
-    """Largest speed within the error estimate, m/s."""
+    """Magnitude of the speed plus its error estimate, m/s."""
     return abs(record.speed_m_s) + (getattr(record, "speed_error_m_s", None) or 0.0)
 
 
@@ -311,6 +311,6 @@ class _Texts(dict[str, Any]):
 
 
 ENDS = ("_m_s", "_N_m", "_m", "_N", "_W", "_J", "_Pa", "_s")
-"""Suffixes of column names, which state the unit."""
+"""Column-name suffixes that state the unit."""
 Show = Callable[..., list[str]]
 """Function show(title, template, when) -> lines."""

@@ -22,11 +22,10 @@ PREFIXES = (
 )
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 LEAST_LENGTH = 1e-2
-"""Smallest printed value of u_lim; it determines the unit of all lengths in an answer.  The contact
+"""Lengths in an answer have the largest unit in which u_lim is at least this number.  The contact
 radius is a few hundred times larger, so its value is between 1 and a few thousand."""
 LEAST_SPEED = 0.1
-"""Smallest printed value of the largest speed; it determines the unit of all speeds in an
-answer."""
+"""Speeds in an answer have the largest unit in which the highest speed is at least this number."""
 NEWTONS = 1e-2, 1e4
 """Range of forces that are printed in a unit without a prefix, N."""
 REFERENCE_LOADS_OF_DRIVING = (
@@ -47,13 +46,13 @@ def line(title: str, text: str) -> str:
 
 
 def unit_for(value: float, units: tuple, least: float = 1.0) -> tuple[str, float]:
-    """The largest unit (name, size) in `units` in which a value is at least `least`."""
+    """Select the largest unit (name, size) for which the value is at least `least`."""
     return next((one for one in units if abs(value) >= least * one[1]), units[-1])
 
 
 def prefixed(value: float, base: str, least: float = 1.0) -> tuple[str, float]:
-    """The unit with the largest prefix in which a value is at least `least`.  For 0, the unit has
-    no prefix."""
+    """The unit with the largest metric prefix that leaves the value at least `least`.  For 0, the
+    unit has no prefix."""
     prefix, size = unit_for(value or 1.0, PREFIXES, least)
     return f"{prefix}{base}", size
 
@@ -68,8 +67,8 @@ def force_unit(newtons: float) -> tuple[str, float]:
 def probability_text(chance: float, error: float) -> str:
     """Format a probability in per cent with its error, or as a bound if it is close to 0 or 1.
 
-    Close means that the distance is below EXCLUDED or below the error.  The bound includes the
-    error.
+    A probability is close to 0 or 1 if the distance is below EXCLUDED or below the error.  The
+    bound includes the error.
     """
     distance = min(chance, 1.0 - chance)
     if distance >= max(EXCLUDED, error):

@@ -33,7 +33,7 @@ class RealPropulsionLine:
     Attributes
     ----------
     understood : dict of str
-        The arguments as the user wrote them, see prediction.Prediction.
+        The arguments as the user wrote them; see prediction.Prediction.
     motion : str
         The motion.
     contact_radius_m, u_lim_m : float
@@ -133,8 +133,8 @@ def predict_propulsion(
         A self-propelled motion of `microslip.propulsion` without a rotation.
     amplitude : quantity
         Half stroke, m, of a component whose number in `motion` is 1.  For an oscillating normal
-        load, `load` is the load without oscillation.  The load's amplitude is its number in
-        `motion`, times `load`, times the amplitude divided by u_lim.
+        load, `load` is the load without oscillation.  The load's amplitude is `load` times its
+        number in `motion`, times amplitude / u_lim.
     tolerance : quantity
         Largest accepted error of a force, relative to mu times the mean load.
     points : int

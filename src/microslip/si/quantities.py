@@ -1,8 +1,8 @@
 """Convert texts with units, such as "210 GPa", to values in SI units, by a strict grammar.
 
-A text is one number and one unit.  The number must be one that Python's float accepts, with the
-digits 0 to 9 and without underscores.  A Unicode minus is also accepted.  The module `units` reads
-the unit.  Every other text raises InputError.
+A text is one number and one unit.  The number has the format of Python's float, but only the digits
+0 to 9 and no underscores.  A Unicode minus is also accepted.  The module `units` reads the unit.
+Every other text raises InputError.
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ def _from_text(text: str, unit: str) -> Quantity:
 
 
 def _with_unit(digits: str, rest: str, unit: str) -> tuple[float, str]:
-    """SI value of a number with a unit, and the text to append to the user's text."""
+    """SI value of a number with a unit, and the addition to the user's text."""
     if not rest and Decimal(digits) == 0:  # 0 is the same in all units
         return 0.0, f" {unit}"
     if not rest:

@@ -1,9 +1,8 @@
 """One period of a motion from a long record, such as that of a laser vibrometer.
 
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
-period, since the moving mean of a periodic motion is constant.  The difference from the drift is
-averaged over all whole periods.  The scatter between the periods gives the standard error of the
-average.
+period.  For a periodic motion it is constant.  The difference from the drift is averaged over all
+whole periods.  The scatter between the periods gives the standard error of the average.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ ROWS, MOST_ROWS = 32, 10_000
 """Default and largest number of samples in the period.  More samples keep more harmonics, and more
 noise."""
 REFINEMENTS = 3
-"""Number of corrections of the frequency.  Each one reduces the frequency's error to that of the
-phases."""
+"""Number of corrections of the frequency.  After each correction, only the error of the phases
+remains."""
 JITTER = 0.4
 """Largest allowed deviation of a time from equal spacing, divided by the spacing.  Exported times
-are rounded.  In contrast, a missing sample shifts some times by at least half a spacing."""
+are rounded.  A missing sample, however, shifts some times by at least half a spacing."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
@@ -150,7 +149,7 @@ def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np
 
 
 def _strongest(values: Mapping[str, np.ndarray]) -> float:
-    """Return how many periods of the strongest component the record contains, from its spectrum."""
+    """Number of periods of the strongest component, from the record's spectrum."""
     power = 0.0
     for one in values.values():
         x = np.linspace(-1.0, 1.0, len(one))

@@ -19,8 +19,8 @@ SPEEDS = 1e-9, 1e6
 """Smallest and largest dimensionless velocity of the search.  For a translation with an amplitude
 above 1, the velocity is divided by the amplitude."""
 STRIDE = 0.05
-"""Step of the finite difference for the slope of friction.  It is a step in the logarithm of the
-unknown."""
+"""Step of the finite difference for the slope of friction.  The difference is taken in the
+logarithm of the unknown."""
 
 
 class NotAttainedError(InputError):
@@ -34,23 +34,24 @@ class _NoAnswerError(Exception):
 
 @dataclass(frozen=True)
 class _Line:
-    """A family of requests along which friction decreases.  A place on this line is a real number.
+    """A one-parameter family of requests with decreasing friction.  The parameter is a real number,
+    called the place.
 
     Attributes
     ----------
     at : callable
         Function at(place) -> Request.
     low, start, high : float
-        First place of the search, first trial for the upper end of the bracket, and last place.
+        First place of the search, initial guess of the bracket's upper end, and last place.
     size : callable
-        Function size(place) -> quantity at this place, in its SI unit.
+        Function size(place) -> the quantity in its SI unit.
     every, none : str
-        Subjects of two error messages.  `every` is used if the reduction is already too large at
-        `low`, and `none` if the reduction is too small at all places.
+        Subjects of two error messages.  If the reduction is already too large at `low`, the subject
+        is `every`.  If the reduction is too small everywhere, the subject is `none`.
     end : float or None
         Place with the least friction; None if this place is unknown.
     rate : float
-        Derivative of the logarithm of the size with respect to the place.
+        Derivative of log(size) with respect to the place.
     """
 
     at: Callable[[float], Request]
@@ -70,8 +71,8 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
     Returns
     -------
     tuple of Request and float
-        The request with this quantity, and the error estimate of the quantity in its SI unit.  If
-        the solver fails, the tuple contains the request at which it failed, and NaN.
+        The request that contains the solution, and the solution's error estimate in the SI unit.
+        If the solver fails, the request at which it failed, and NaN.
 
     Raises
     ------
@@ -158,8 +159,7 @@ def _amplitudes(request: Request, _share: float) -> _Line:
 
 
 def _speeds(request: Request, _share: float) -> _Line:
-    """The line of speeds, from the fastest to the slowest.  A place is minus the logarithm of the
-    speed."""
+    """A line of requests with decreasing speeds.  The place is minus the logarithm of the speed."""
     size, unit = request.groups[1], request.speed_unit
     if not request.motion.spins and size is not None:
         unit *= max(1.0, size)  # at large amplitudes the speed of the vibration is the unit

@@ -2,16 +2,16 @@
 force.
 
 A vibration makes the forward force oscillate, by up to mu F_z, at multiples n of a basic frequency.
-The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless.  The stiffness of
-the contact is 1.5.  If the body is ten times as stiff as the contact at all relevant n, its
-velocity is nearly constant.  If the force needed to make the body follow the contact is small
-compared with mu F_z, the force is nearly constant.  A vibration along the drive reverses the force,
-so the limits are ten times stricter.
+The dynamic stiffness of the driven body is |k - m n^2 + i c n|, dimensionless.  The contact's
+stiffness is 1.5.  If the body is ten times as stiff as the contact at all relevant n, the body's
+velocity is nearly constant.  If only a small part of mu F_z is needed to make the body follow the
+contact, the force is nearly constant.  A vibration along the drive reverses the force, so the
+limits are ten times stricter.
 
-The limits were tested with some hundred random drives just inside them, at amplitudes from 0.3 to
-10 and velocities from 0.01 to 3.  Friction differs by less than SAME from friction at constant
-velocity, or from friction with the softest and lightest drive.  The limit for a soft drive along
-the vibration is an estimate: the force changes by the stiffness times the amplitude.
+The limits were tested with a few hundred random drives just inside these limits, at amplitudes from
+0.3 to 10 and velocities from 0.01 to 3.  Friction differs by less than SAME from its value at
+constant velocity, or with the softest and lightest drive.  For a soft drive along the vibration,
+the limit is an estimate.  Here the force changes by the stiffness times the amplitude.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from microslip.motions.drive import Drive
 from microslip.si.motions import is_along_the_drive
 
 SAME = 0.01
-"""Largest difference in mu_macro between equivalent drives, dimensionless."""
+"""Largest difference in mu_macro between two drives that count as equivalent."""
 CONTACT_STIFFNESS = 1.5
-"""Stiffness of a sticking Hertz contact, 2 G* a divided by mu F_z / u_lim."""
+"""Stiffness 2 G* a of a sticking Hertz contact, divided by mu F_z / u_lim."""
 STIFFER = 10.0
 """Smallest stiffness of a body with a nearly constant velocity, divided by the stiffness of the
 contact."""
@@ -68,7 +68,7 @@ def regime(motion: str, amplitude: float, drive: Drive) -> str:
 def natural_frequency(drive: Drive) -> float | None:
     """Natural frequency of the body on its spring and the sticking contact.
 
-    It is divided by the frequency of the vibration.  It is None without a mass.
+    It is relative to the frequency of the vibration.  It is None without a mass.
     """
     if drive.mass == 0.0:
         return None

@@ -47,23 +47,23 @@ LARGEST_TOLERANCE = 0.1
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Default tolerance of mu_macro, and default tolerance of the speed under a force."""
 ANY_LOAD = 1e-12
-"""Placeholder for the load that a search determines, N.  It is small enough for Hertz's theory to
-apply to all bodies."""
+"""Placeholder, N, for a load that is determined by a search.  It is so small that Hertz's theory
+applies to all bodies."""
 SOUGHT = ("amplitude", "speed", "load")
 """Quantities that a search can determine."""
 ARGUMENTS = {"velocity": "speed"} | {group: name for name, group in DRIVE_FIELDS.items()}
-"""Arguments of predict, keyed by the corresponding arguments of microslip.solve."""
+"""Arguments of `predict`, keyed by the corresponding arguments of microslip.solve."""
 NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes of real machines"
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A contact with its motion and its drive, as requested from predict.
+    """A contact with its motion and its drive, as requested from `predict`.
 
     Attributes
     ----------
     arguments : Mapping
-        Arguments of predict, as the user wrote them.
+        Arguments of `predict`, as the user wrote them.
     bodies : tuple of Body
         Bodies of the contact.
     contact, motion, drive : TwoBodies, RealMotion, RealDrive
@@ -184,7 +184,7 @@ class Request:
         tolerance : float
             Largest accepted error.
         amplitude, poisson : float, optional
-            Values that replace those of the request.
+            They replace the values of the request.
         **drive : float
             Dimensionless force, stiffness, mass and damping.
 
@@ -192,7 +192,7 @@ class Request:
         ------
         InputError
             If an argument of the solver is out of range.  The message names the argument of
-            predict.
+            `predict`.
         """
         settings = self.settings | drive | {"tolerance": tolerance}
         if poisson is not None:
@@ -211,7 +211,7 @@ class Request:
             raise (self._in_si(error) if drive else error) from None
 
     def _in_si(self, error: InputError) -> InputError:
-        """A copy of the error that names the argument of predict instead of the solver's
+        """Return a copy of the error in which `predict`'s argument replaces the solver's
         argument."""
         name = ARGUMENTS.get(error.argument)
         if name is None or self.arguments[name] is None:
@@ -244,7 +244,7 @@ class Request:
 
 
 def request_of(motion: str, arguments: Arguments) -> Request:
-    """The Request for a mapping of all arguments of predict.  Raises InputError."""
+    """The Request for a mapping of all arguments of `predict`.  Raises InputError."""
     if speaks_of_file(motion):
         arguments = with_stroke(read_stroke(motion), arguments)
     for name, value in arguments.items():

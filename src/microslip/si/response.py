@@ -33,7 +33,7 @@ ARGUMENTS = (
     *("young", "nu", "material", "counterbody", "hardness", "density"),
     *("counter_hardness", "counter_density"),
 )
-"""Arguments of predict that describe a contact."""
+"""Arguments of `predict` that describe a contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +48,11 @@ class RealResponse:
         Forces and torque.  They are positive in the direction of the displacement that they
         resist.
     force_error_N, torque_error_N_m : np.ndarray, shape (rows,)
-        Error estimate of both forces (the larger of the two), and error estimate of the torque.
+        Larger error estimate of the two forces, and error estimate of the torque.
     dissipated_energy_J, dissipated_energy_error_J : np.ndarray, shape (rows,)
         Energy dissipated by friction since the first row, and its error estimate.
     stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the area in contact that sticks, see adaptive.response.Response.
+        Fraction of the area in contact that sticks; see adaptive.response.Response.
     u_lim_m, contact_radius_m, load_N, mu : float
         Displacement at which the whole contact slides (m), contact radius (m), load of the
         reference state (N), and coefficient of friction.
@@ -61,7 +61,7 @@ class RealResponse:
     converged : bool
         Whether every error is within the tolerance.
     reason : str
-        Why the response is not converged, else empty.
+        Why the response is not converged; empty if it is.
     """
 
     path: dict[str, np.ndarray]
@@ -124,15 +124,15 @@ def predict_response(
         Columns `forward`, `lateral`, `angle`, and `load` or `indentation`, with units as in
         "forward [um]".  Columns without a unit are in SI units.
     tolerance : float
-        Largest accepted error of a force, relative to mu times the load, and of the torque,
-        relative to its value at full slip.
+        Largest accepted relative error of the forces and the torque.  Force errors are divided by
+        mu times the load, torque errors by the torque at full slip.
     decimal, encoding : str
         Decimal mark and encoding of a file.
     progress : callable or None
-        Progress callback, see `microslip.response`.
+        Progress callback; see `microslip.response`.
     **contact : quantity
         mu, load, radius, material and the other arguments of `microslip.predict` that describe a
-        contact.  The load belongs to the reference state.
+        contact.  The load is that of the reference state.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def predict_response(
 
 
 def contact_of(contact: Mapping[str, object]) -> TwoBodies:
-    """The contact for some of ARGUMENTS by name.  Raises InputError."""
+    """The contact described by a mapping with keys from ARGUMENTS.  Raises InputError."""
     strange = sorted(contact.keys() - set(ARGUMENTS))
     if strange:
         allowed = f"allowed are {', '.join(ARGUMENTS)}"

@@ -1,6 +1,6 @@
 """A body on several contacts in SI units.
 
-All dimensionless groups refer to a contact with the mean load, see solver.body_problem.  The body's
+All dimensionless groups refer to a contact with the mean load; see solver.body_problem.  The body's
 drive is divided by the number of contacts.  Computed forces are multiplied by this number.
 """
 
@@ -24,12 +24,12 @@ class Carriers:
     Attributes
     ----------
     text : str or None
-        Text for microslip.solve; None for a single contact.
+        The contacts as text for microslip.solve; None for a single contact.
     count : int
         Number of contacts.
     heaviest, widest : float
-        Largest load of any contact divided by the mean load, and largest amplitude of any contact
-        divided by the body's amplitude.
+        Largest load of a contact, divided by the mean load; largest amplitude of a contact, divided
+        by the body's amplitude.
     """
 
     text: str | None = None
@@ -43,7 +43,7 @@ class Carriers:
         return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
-        """The contact with the largest load.  contact: the contact with the mean load."""
+        """Return the contact with the largest load.  contact: the contact with the mean load."""
         if self.heaviest == 1.0:
             return contact
         load = contact.load * self.heaviest

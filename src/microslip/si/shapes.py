@@ -1,4 +1,4 @@
-"""Contacts that are not round, or have a prescribed size and pressure, in SI units."""
+"""Contacts, in SI units, that are not round or have a prescribed size and pressure."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class ShapedContact(TwoBodies):
     size: float = 0.0
 
     def with_load(self, load: float) -> TwoBodies:
-        """A copy under another load, N.  A prescribed size stays constant."""
+        """A copy with another load, N.  A prescribed size stays constant."""
         over = load / self.load
         if self.radii:  # the size of Hertz's ellipse depends on the load
             return replace(self, load=load, size=self.size * over ** (1.0 / 3.0))
@@ -78,7 +78,7 @@ class ShapedContact(TwoBodies):
         """Messages about a size or a load that differs from the value in a pressure file with
         units.
 
-        Differences within the file's reading error are accepted, see AGREES.
+        Differences within the file's reading error are accepted; see AGREES.
         """
         texts, readings = [], (self._record, *self._record.readings)
         inputs = (("contact radius", self.size, "size_m", "m"), ("load", self.load, "load_N", "N"))
@@ -106,7 +106,7 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        The ratio b/a, at most 1, and the semi-axis a divided by (3 F R / (4 E*))^(1/3).  R is the
+        The ratio b/a, at most 1; the semi-axis a, divided by (3 F R / (4 E*))^(1/3).  R is the
         larger radius (K. L. Johnson, Contact Mechanics, 4.2).
     """
     from scipy.optimize import brentq

@@ -14,17 +14,17 @@ from microslip.si.request import Request
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
 DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
-"""Amplitudes at which the static limit is solved: quantiles of the drawn amplitudes, in standard
+"""The static limit is solved at these quantiles of the drawn amplitudes, given in standard
 deviations of a normal distribution.  The ends of a 95 % interval are at 1.96."""
 REFINEMENTS = 3
-"""Number of additional amplitudes at which the static limit is close to the force.  Also the number
+"""Number of additional solved amplitudes with a static limit close to the force.  Also the number
 of bisections for the smallest amplitude with a static limit of 0."""
 CLOSEST = 64
 """One draw in 64 counts as close to the force.  Each refinement solves the static limit at the
 median amplitude of these draws."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Values below which variations are treated as rounding errors: relative range of the amplitude,
-and standard deviation of Poisson's ratio."""
+"""Variations below these values count as rounding errors: relative range of the amplitude, and
+standard deviation of Poisson's ratio."""
 
 
 def static_limits(
@@ -41,8 +41,8 @@ def static_limits(
     request : request.Request
         The request for the central values.
     centre : tuple of float
-        Amplitude, Poisson's ratio, mu_static and its error estimate for the central values, all
-        dimensionless.
+        Amplitude, Poisson's ratio, mu_static and the error estimate of mu_static for the central
+        values; all dimensionless.
     amplitudes, poisson : np.ndarray, shape (draws,)
         Dimensionless amplitude and Poisson's ratio of each draw.
     forces : tuple of np.ndarray or None
@@ -106,8 +106,7 @@ def static_limits(
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
-    """Derivative of mu_static with respect to Poisson's ratio.  deviation: standard deviation of
-    Poisson's ratio."""
+    """Slope of mu_static over Poisson's ratio.  deviation: standard deviation of this ratio."""
     if deviation < SAME_POISSON:
         return 0.0
     ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]

@@ -39,7 +39,7 @@ def equals_static_limit(request: Request) -> bool | float | None:
     """Return True if the force threshold equals the static limit, else the value of the threshold.
 
     The threshold equals the static limit if the oscillation exerts no forward force, or if the
-    forward forces of several contacts cancel.  Otherwise a contact without mass follows the
+    forward forces of several contacts cancel.  Otherwise, a contact without mass follows the
     forward oscillation.  If there is no other oscillation, the threshold is mu F_z.
 
     Returns
@@ -60,8 +60,8 @@ def equals_static_limit(request: Request) -> bool | float | None:
 def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, divided by mu F_z.
 
-    A contact without mass follows the forward oscillation.  Its threshold is the static limit of
-    the other components.  This limit is computed only under a force.
+    A contact without mass follows the forward oscillation.  The contact's threshold is the static
+    limit of the other components.  This limit is computed only under a force.
 
     Parameters
     ----------

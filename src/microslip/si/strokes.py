@@ -53,8 +53,8 @@ class Stroke:
         return float(self.columns["load"].mean()) if "load" in self.columns else None
 
     def deviations(self, contact: TwoBodies) -> dict[str, np.ndarray]:
-        """Return the columns in the units of `microslip.Sampled`, with 1 subtracted from load and
-        indentation."""
+        """Return the columns in the units of `microslip.Sampled`.  The load and the indentation are
+        reduced by 1."""
         units = scales(contact, self.columns)
         over = {name: values / units[name] for name, values in self.columns.items()}
         return {name: one - 1.0 if name in NORMAL else one for name, one in over.items()}

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 NAMES = {name: False for name in NOTHING if name != "map"}
-"""Allowed columns of a file.  Each column is an argument of predict, and needs no unit in the
+"""Allowed columns of a file.  Each column is an argument of `predict`, and needs no unit in the
 heading."""
 TEXTS = ("outcome", "regime", "sought", "contacts", "interval_method")
-"""Text columns.  Any other column is numeric if it has no value."""
+"""Text columns.  Every other column without values is numeric."""
 
 
 def predict_table(
@@ -41,10 +41,10 @@ def predict_table(
     Parameters
     ----------
     motion : str
-        Motion of all contacts, see `microslip.predict`.
+        Motion of all contacts; see `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
-        Sequences of equal length, keyed by argument of predict, as in {"load": ["1 N", "10 N"]} or
-        {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
+        Sequences of equal length, keyed by argument of `predict`, as in {"load": ["1 N", "10 N"]}
+        or {"load [N]": [1, 10]}.  None and NaN are missing values.  Columns named label, name, id,
         sample or comment are copied to the dataset.
     decimal, encoding : str
         Decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
@@ -55,8 +55,8 @@ def predict_table(
     -------
     xarray.Dataset
         Every column of a Prediction, over the dimension `case`, with units.  Missing values are
-        NaN. Lists of texts are joined by semicolons.  `case_NAME` is the input NAME.  `error` is
-        the error message of a case without a prediction, else empty.
+        NaN. Lists of texts are joined by semicolons.  `case_NAME` contains the input column NAME.
+        `error` is the error message of a case without a prediction, else empty.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def as_dataset(motion: str, table: Table, cases: Sequence[Prediction | NoPredict
 
 
 def _variable(name: str, values: list[Any]) -> tuple[str, list, dict[str, str]]:
-    """A variable over the cases.  Numbers have a unit."""
+    """Return a dataset variable along the dimension `case`.  Numbers have a unit."""
     if name in ("warnings", "not_checked"):
         return "case", ["; ".join(texts) for texts in values], {}
     if any(isinstance(value, bool) for value in values):

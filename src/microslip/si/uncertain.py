@@ -34,14 +34,14 @@ SPREADS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Columns of the standard uncertainties, keyed by the corresponding attributes of a Prediction."""
+"""Columns with the standard uncertainties, keyed by attributes of a Prediction."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
 def without_uncertainty(
     motion: object, arguments: Mapping[str, Any]
 ) -> tuple[dict[str, Any], list[UncertainInput]]:
-    """Central values of the arguments of predict, and a list of the uncertain inputs.
+    """Central values of the arguments of `predict`, and a list of the uncertain inputs.
 
     Raises InputError for a text with an invalid uncertainty.
     """
@@ -104,7 +104,7 @@ def with_uncertainty(
     motion : str
         The motion.
     plain : mapping
-        Arguments of predict with the central values.
+        Arguments of `predict` with the central values.
     uncertain : list of UncertainInput
         The uncertain arguments.
     answer : callable

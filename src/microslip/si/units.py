@@ -15,10 +15,11 @@ DEFINITIONS = Path(__file__).with_name("units.txt")
 PREFIXES = ("", "p", "n", "µ", "m", "c", "d", "da", "h", "k", "M", "G", "T")
 """Symbols of the metric prefixes, used in hints."""
 MOST_FACTORS = 12
-"""Largest number of factors in a unit, since pint parses long products by recursion."""
+"""Largest number of factors in a unit.  It is limited because pint parses long products by
+recursion."""
 PLURALS = frozenset({"lb", "oz"})
-"""Symbols with a plural.  After other symbols, an s could be mistaken for a second, as in Pas for
-Pa*s."""
+"""Symbols with a plural.  Other symbols take no plural s, because it could be mistaken for a
+second: Pas for Pa*s."""
 CYCLIC = ("hertz", "counts_per_second")
 """Suffixes of pint's names for cyclic frequencies.  Here, 1 Hz is one turn per second, or 2 pi
 rad/s."""
@@ -26,7 +27,7 @@ rad/s."""
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 _FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
-"""Pattern of the text after the numerator of a fraction."""
+"""Pattern for the rest of a fraction after its numerator."""
 _NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
 _POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
 _SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
@@ -35,8 +36,8 @@ _EXACT = Context(prec=40)
 
 
 class UnitError(Exception):
-    """Error for a text or an object that is not a quantity.  The message is the reason, as part of
-    a sentence."""
+    """Error for a text or an object that is not a quantity.  The message states the reason as part
+    of a sentence."""
 
 
 @dataclass(frozen=True)
@@ -174,13 +175,14 @@ def si_unit(text: str) -> Unit:
 
 
 def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
-    """number * ratio / over as a float.  Only the conversion to a float rounds."""
+    """number * ratio / over as a float.  Rounding occurs only in the conversion to a float."""
     with localcontext(_EXACT):
         return float(number * ratio / over)
 
 
 def split_number(text: str) -> tuple[str, str]:
-    """Split a text into the number at its start, as a text that float accepts, and the rest."""
+    """Split a text after the number at its start.  Return the number, as a text that float accepts,
+    and the rest."""
     text = text.strip()
     number = _NUMBER.match(text)
     if _NOT_FINITE.match(text):
@@ -204,5 +206,5 @@ def stopped(read_so_far: str, rest: str) -> str:
 
 
 def _of_other_digits(text: str) -> str:
-    """A hint if a text begins with a digit other than 0 to 9."""
+    """A hint if a text begins with a non-ASCII digit."""
     return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""

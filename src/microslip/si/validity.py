@@ -1,7 +1,7 @@
 """Warnings if a real contact violates an assumption of the theory.
 
-The measures of a contact are numbers by name.  A rule has a limit for a measure, and a sentence for
-contacts beyond this limit.  The explorer's web page also evaluates these rules.
+Each measure is a named number that describes a contact.  A rule has a limit for a measure, and a
+warning for contacts beyond this limit.  The explorer's web page also evaluates these rules.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ this onset, the pressure is 1.6 times the yield stress.  The hardness is 2.8 tim
 (K. L. Johnson, Contact Mechanics, 6.1 and 6.3)."""
 HARDEST = 0.1
 """Largest hardness of metals, ceramics and glasses, divided by Young's modulus.  The hardness is
-2.8 times the yield stress, which is at most a few per cent of the modulus."""
+2.8 times the yield stress.  The yield stress is at most a few per cent of the modulus."""
 RUBBERY = 0.45
-"""Smallest Poisson's ratio of a rubber.  A rubber does not yield but has internal losses, and its
+"""Smallest Poisson's ratio of a rubber.  Rubber does not yield.  It has internal losses, and its
 modulus increases with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
 """Typical work of adhesion between clean smooth surfaces due to van der Waals forces, N/m (J. N.
@@ -32,20 +32,19 @@ Israelachvili, Intermolecular and Surface Forces)."""
 RANGE = 0.2e-9
 """Range of van der Waals forces, m.  It is of the order of the distance between atoms."""
 SHORT, LONG = 5.0, 0.1
-"""Smallest Tabor number for JKR's theory, and largest one for DMT's theory (K. L. Johnson and J. A.
-Greenwood, J. Colloid Interface Sci. 192, 1997)."""
+"""Smallest Tabor number for the JKR theory, and largest Tabor number for the DMT theory (K. L.
+Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
 LARGE_MU = 1.0
 """Coefficient of friction above which Coulomb's law is doubtful."""
 SMALL = 0.1
-"""Largest value of a ratio that the theory can neglect."""
+"""Ratios up to this value are negligible in the theory."""
 STEEP = 0.2
 """Ratio above which half-spaces are a poor approximation: contact radius a divided by the bodies'
 smaller radius, or by the radius R of relative curvature.  Hertz's theory assumes a << R1, R2 and a
 << R (K. L. Johnson, Contact Mechanics, 4.2)."""
 SENSELESS = 0.5
-"""Ratio above which predict raises an error: contact radius divided by the bodies' smaller radius.
-At this ratio, the surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than
-Hertz's parabola."""
+"""Largest accepted contact radius, divided by the bodies' smaller radius.  At this ratio, the
+surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper than Hertz's parabola."""
 
 
 class Rule(NamedTuple):
@@ -54,11 +53,11 @@ class Rule(NamedTuple):
     Attributes
     ----------
     where : tuple of tuple
-        Conditions (left, factor, right), which mean left > factor * right.  Each side is a number
-        or the name of a measure.  The rule applies if all conditions are true.  A condition on a
-        missing measure is false.
+        Conditions (left, factor, right): left > factor * right.  Each side is a number or the name
+        of a measure.  The rule applies if all conditions are true.  A condition on a missing
+        measure is false.
     text : str
-        The sentence, with measures as in {load:.2g} N, see MEASURE.
+        The sentence, with measures as in {load:.2g} N; see MEASURE.
     """
 
     where: tuple[tuple, ...]
@@ -175,8 +174,8 @@ CHECKS = (
         ),
     ),
 )
-"""Groups of rules, in the order of the warnings.  In each group, the first rule that applies gives
-the warning."""
+"""Groups of rules.  The warnings have the same order as the groups.  In each group, the first rule
+that applies gives the warning."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """Checks that need an optional property of a body, keyed by the property's name."""
 MISSING = "{what} (the {name} of {whose} is missing)"
@@ -228,7 +227,7 @@ def unchecked(contact: TwoBodies) -> list[str]:
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
     """Measures of a contact by name.  A measure that is unknown or does not apply is None.
 
-    Pressures and the contact radius are those at the largest load in a period.
+    Pressures and the contact radius are evaluated at the largest load in a period.
     """
     largest = contact.with_load(contact.load + (motion.load_amplitude or 0.0))
     bodies = _of_bodies(largest) | {"load": contact.load}

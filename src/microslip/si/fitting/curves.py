@@ -12,15 +12,15 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Scale
 
 PIECES = 60
-"""Number of points in equal steps on a curve, and number of points in equal ratios.  A curve drawn
-through these points looks smooth."""
+"""Number of equally spaced points on a curve, and number of logarithmically spaced points.  A curve
+drawn through these points looks smooth."""
 
 
 class Curve(NamedTuple):
     """Points of all model curves of a fit, one curve after another.  Arrays have shape (n,).
 
-    The abscissa is the condition with the most different values.  At least two rows whose other
-    conditions are equal share a curve.
+    The abscissa is the condition with the most different values.  Rows that differ only in the
+    abscissa share a curve if there are at least two.
 
     Attributes
     ----------
@@ -39,7 +39,8 @@ class Curve(NamedTuple):
 
 
 def abscissa(conditions: Mapping[str, np.ndarray]) -> str:
-    """Name of the condition with the most distinct values.  In a tie, the first such condition."""
+    """Name of the condition with the most distinct values.  In a tie, it is the first of these
+    conditions."""
     return max(conditions, key=lambda name: len(np.unique(conditions[name])))
 
 
@@ -49,7 +50,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
     Parameters
     ----------
     scale : Scale
-        The second unknown, with the rows.
+        The second unknown, with the measured rows.
     model : FrictionModel
         The model, corrected at the best fit.
     mu, size : float
@@ -83,7 +84,7 @@ def curve_of(scale: Scale, model: FrictionModel, mu: float, size: float) -> Curv
 
 
 def _axis(values: np.ndarray) -> np.ndarray:
-    """The sorted values, with additional values between them in equal steps and in equal ratios."""
+    """The sorted values, with additional equally and logarithmically spaced values between them."""
     least, most = values[values > 0.0][0], values[-1]
     even = np.linspace(values[0], most, PIECES), np.geomspace(least, most, PIECES)
     return np.unique(np.clip(np.concatenate([values, *even]), values[0], most))

@@ -3,9 +3,9 @@
 The unknowns are theta = (ln mu, ln scale).  For each value of one unknown, the sum of squares is
 minimised over the other unknown.  The interval contains the values for which this minimum is below
 a threshold.  The threshold is the least sum of squares plus a quantile.  If the rows have errors,
-this is a quantile of chi square.  Otherwise it is a quantile of the F distribution times the mean
-square residual.  Such an interval does not depend on the parametrisation.  An interval may be
-infinite on one side.
+this is a quantile of the chi-square distribution.  Otherwise, it is the mean square residual times
+a quantile of the F distribution.  Such an interval does not depend on the parametrisation.  An
+interval may be infinite on one side.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GUESSED_MU = 0.3
 PASSES = 3
 """Number of linear fits of mu in the scan."""
 STILL = 1e-10
-"""Smallest change of theta that is not treated as zero."""
+"""Changes of theta below this value count as zero."""
 FIRST_STEP = 0.1
 """First step from the best fit towards an end of an interval, used if the curvature is singular."""
 DOUBLINGS = 12
@@ -39,9 +39,9 @@ class Rows:
     Attributes
     ----------
     ratios : callable
-        Function that takes thetas, shape (k, 2), and returns the ratios, shape (k, n).
+        Function ratios(thetas), from shape (k, 2) to shape (k, n).
     value, weight : np.ndarray, shape (n,)
-        Measured values, in any unit, and factors that convert mu to the unit of the values.
+        Measured values in any unit, and factors that convert mu to this unit.
     error : np.ndarray, shape (n,)
         Standard errors in the unit of the values.  If the errors are unknown, all are set to the
         same arbitrary value.
@@ -113,7 +113,7 @@ def best_near(rows: Rows, theta: np.ndarray, free: Sequence[int] = (0, 1)) -> Be
 
 
 def starts(rows: Rows) -> list[np.ndarray]:
-    """Initial guesses of theta from a scan over all scales, the best one first."""
+    """Initial guesses of theta, the best one first.  They come from a scan over the scale."""
     thetas = np.empty((SCANNED, 2))
     thetas[:, 0] = np.clip(np.log(GUESSED_MU), rows.lower[0], rows.upper[0])
     thetas[:, 1] = np.linspace(rows.lower[1], rows.upper[1], SCANNED)
@@ -136,8 +136,8 @@ def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> f
     Parameters
     ----------
     model : np.ndarray, shape (n,)
-        Largest error of the model in each row, divided by the error of the row.  The threshold is
-        at least the mean square of these ratios.
+        Largest error of the model in each row, divided by the row's standard error.  The threshold
+        is at least the mean square of these ratios.
     """
     from scipy.stats import chi2, f
 
@@ -156,7 +156,7 @@ def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float,
     Parameters
     ----------
     which : int
-        0 for mu, 1 for the scale.
+        Index of the unknown: 0 for mu, 1 for the scale.
     allowed : float
         The value of `threshold`.
     """
@@ -169,8 +169,8 @@ def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> flo
     last = best.theta
 
     def excess(value: float) -> float:
-        """Least sum of squares at a fixed value of the unknown, minus the largest sum inside the
-        interval."""
+        """Least sum of squares for a fixed value of the unknown, minus the largest sum allowed in
+        the interval."""
         nonlocal last
         start = np.where(np.arange(2) == which, value, last)
         minimum = best_near(rows, start, free=[1 - which])
@@ -199,14 +199,14 @@ def _first_step(best: Best, which: int, allowed: float) -> float:
 
 
 def shifts(best: Best, model: np.ndarray, determined: list[int]) -> np.ndarray:
-    """Largest change of theta due to model errors, to first order, shape (2,).
+    """Largest change of theta that model errors cause, to first order, shape (2,).
 
     Parameters
     ----------
     model : np.ndarray, shape (n,)
-        Largest error of the model in each row, divided by the error of the row.
+        Largest error of the model in each row, divided by the row's standard error.
     determined : list of int
-        Indices of the unknowns that the rows determine.  The change is 0 for other unknowns.
+        Indices of the unknowns that the rows determine.  The other unknowns do not change.
     """
     shift = np.zeros(2)
     shift[determined] = np.abs(np.linalg.pinv(best.slopes[:, determined])) @ model

@@ -69,7 +69,7 @@ def fit(
         optionally their standard errors friction_error or mu_error, and texts named label, name,
         id, sample or comment.
     map : xarray.Dataset, optional
-        Dataset of a sweep of this motion, see `open_map`.  Interpolation in a map is fast.
+        Dataset of a sweep of this motion; see `open_map`.  Interpolation in a map is fast.
         Without a map, the solver computes every point.
     speed, amplitude, frequency, load : quantity, optional
         Common value for all rows.  It replaces a column.
@@ -91,8 +91,8 @@ def fit(
     Returns
     -------
     Fit
-        Both numbers with intervals.  If the rows determine mu alone, the fit contains mu and the
-        reason.
+        Both numbers with intervals.  If the rows determine only mu, the fit contains mu, and the
+        reason why the other number is missing.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def _refuse_too_few(rows: Measured, table: object) -> None:
 def _scale(
     motion: str, rows: Measured, nu: object, radius: object, counterbody: object
 ) -> tuple[Scale, dict[str, str]]:
-    """The second unknown, and the texts of the related inputs."""
+    """The second unknown, and its inputs as text."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
@@ -176,7 +176,7 @@ def _scale(
 def _rows(
     rows: Measured, scale: Scale, model: FrictionModel, ends: tuple[float, float]
 ) -> estimate.Rows:
-    """The rows for the least squares, with their weights and the bounds of the unknowns."""
+    """The least-squares rows, with their weights, and the bounds of the unknowns."""
 
     def ratios(thetas: np.ndarray) -> np.ndarray:
         """Compute the ratios for all guesses in one call, which is faster with a map."""
@@ -196,8 +196,8 @@ def _rows(
 
 
 def _fits(rows: estimate.Rows, scale: Scale, model: FrictionModel) -> list[estimate.Best]:
-    """The best fit, then the fits from other initial guesses.  The model is corrected at the best
-    fit."""
+    """The best fit, followed by the fits from other initial guesses.  The model is corrected at the
+    best fit."""
     fits = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
     best, *others = sorted(fits, key=lambda one: one.squares)
     for _ in range(MOST_PASSES):

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Fit:
     """Coefficient of friction and u_lim of a contact, from measured friction.
 
-    An interval includes the scatter of the rows, at a confidence level, and the error estimate of
-    the model, which is not random.
+    An interval includes the scatter of the rows at a confidence level.  It also includes the
+    model's error estimate, which is not random.
 
     Attributes
     ----------
@@ -41,8 +41,8 @@ class Fit:
     confidence : float
         Confidence level of the intervals, 0 to 1.
     mu_model_share, scale_model_share : float
-        Largest relative change in mu, and in u_lim or the shear modulus, due to model errors.  The
-        intervals include this change.
+        Largest relative changes in mu and in the second unknown (u_lim or the shear modulus) due to
+        model errors.  The intervals include these changes.
     standard_error : float or None
         Standard error of one row, from the residuals of the fit, in the unit of the rows.  None for
         rows with standard errors.

@@ -1,7 +1,6 @@
-"""Compute the friction for the rows of a fit, from an existing map or from the solver and a coarse
-map.
+"""Friction of a fit's rows, from an existing map, or from the solver and a coarse map.
 
-A fit needs the friction of all rows for hundreds of values of both unknowns.  The solver first
+A fit evaluates the friction of all rows for hundreds of pairs of unknowns.  The solver first
 computes a coarse map.  This map gives the change of friction between two guesses.  Then the solver
 computes the rows at the best guess so far, which corrects the coarse map at this guess.  At the
 end, the remaining error of the coarse map is of second order.
@@ -24,26 +23,26 @@ LEAST, MOST = 0.03, 20.0
 """Smallest and largest amplitude of the coarse map.  At smaller amplitudes, nearly the whole
 contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
-"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, the velocity
-itself."""
+"""Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, smallest and
+largest velocity."""
 PROVED = ("transverse", "bore")
 """Motions whose maps can be evaluated outside the tabulated range, for Poisson's ratio 0."""
 NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
 """Number of nodes of the coarse map per decade."""
 COARSE = {"poisson": 0.0, "tolerance": 5e-3}
-"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes, and the value 0 saves
+"""Settings of the coarse map.  Poisson's ratio hardly changes the slopes.  It is set to 0 to save
 time."""
 MOST_SOLVED = 200
 """Largest number of rows for a fit without a map."""
 
 
 class FrictionModel:
-    """A model that computes mu_macro and its error estimate for the rows, shape (n,) each."""
+    """A model of mu_macro and its error estimate in each row, both of shape (n,)."""
 
     def at(self, points: Points) -> np.ndarray:
         """mu_macro of all rows for each guess.
 
-        Errors far from the best guess affect only the path of the iteration.
+        Errors far from the best guess affect the iterations but not the result.
         """
         raise NotImplementedError
 
@@ -55,12 +54,13 @@ class FrictionModel:
         """Compute corrections at the points of the best guess so far."""
 
     def errors(self, points: Points) -> np.ndarray:
-        """Error estimates of `at` near the points of the last correction."""
+        """Error estimates of the friction that `at` returns, near the points of the last
+        correction."""
         raise NotImplementedError
 
 
 class MapFriction(FrictionModel):
-    """Friction interpolated in the dataset of a sweep, see datasets.query.
+    """Friction interpolated in the dataset of a sweep; see datasets.query.
 
     Parameters
     ----------
@@ -115,7 +115,8 @@ class SolvedFriction(FrictionModel):
     poisson, tolerance : float
         Arguments of microslip.solve.
     ends : list of Points
-        Points of the rows for the smallest and for the largest value of the second unknown.
+        Points of all rows, first for the smallest value of the second unknown, then for the
+        largest.
 
     Raises
     ------

@@ -21,7 +21,7 @@ from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, is_table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
-"""Names of the conditions of each row."""
+"""Names of the conditions in each row."""
 COLUMNS = {name: QUANTITIES[name] for name in CONDITIONS} | {
     "friction": Range("N", low=-math.inf),
     "friction_error": Range("N"),
@@ -42,7 +42,7 @@ class Measured:
     speed, amplitude, frequency, load : np.ndarray
         Conditions of each row, in m/s, m (rad for a bore), Hz and N.
     value, error : np.ndarray
-        Measured friction, N or dimensionless, and its standard error; NaN if unknown.
+        Measured friction and its standard error, N or dimensionless.  An unknown error is NaN.
     quantity : str
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
@@ -94,8 +94,8 @@ def read_measured(
     motion : str
         One of motions.UNIT_OF_AMPLITUDE.
     source : path, mapping or pandas DataFrame
-        The file, or columns by name.  A column without a unit, as in "speed [mm/s]", is in SI
-        units.
+        The file, or columns by name.  A heading can have a unit, as in "speed [mm/s]".  A column
+        without one is in SI units.
     decimal, encoding : str
         The decimal mark and the encoding of the file.
     shared : quantity or None
@@ -140,7 +140,8 @@ def read_measured(
 def _numbers(
     table: Table, source: object, units: Mapping[str, str]
 ) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
-    """Columns in SI units, columns of labels, and messages about unreadable lines in a file.
+    """Numeric columns in SI units, label columns, and messages about the unreadable lines of a
+    file.
 
     Empty rows, and unreadable lines of a file, are omitted.  In a table that is not a file, an
     unreadable value raises InputError.

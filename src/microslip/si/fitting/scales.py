@@ -55,7 +55,7 @@ class Scale:
         raise NotImplementedError
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown for which all amplitudes are between `least` and `most`."""
+        """Range of the second unknown, for amplitudes between `least` and `most`."""
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
@@ -78,8 +78,8 @@ class Displacement(Scale):
     def bounds(self, least: float, most: float) -> tuple[float, float]:
         """Range of u_lim for amplitudes between `least` and `most`.
 
-        At one end of the range, all positive amplitudes are at most `least`.  At the other end, all
-        are at least `most`.
+        At one end of the range, no amplitude exceeds `least`.  At the other end, all positive
+        amplitudes are at least `most`.
         """
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
@@ -126,7 +126,7 @@ class Modulus(Scale):
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Smallest and largest shear modulus of solid bodies, regardless of the amplitudes."""
+        """Smallest and largest shear modulus of solids.  They do not depend on the amplitudes."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:
