@@ -36,7 +36,7 @@ def checked_problem(
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
 ) -> Problem:
-    """Check the arguments of one contact at a prescribed velocity, and parse texts.
+    """Check the arguments for one contact at a prescribed velocity, and parse strings.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def checked_driven_problem(
     contacts: str | None = None,
     **drive: float | None,
 ) -> Problem:
-    """Check the arguments of one or several contacts with any drive, and parse texts.
+    """Check the arguments for one or several contacts with any drive, and parse strings.
 
     Parameters
     ----------

@@ -19,12 +19,12 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
     modes are chosen for other motions of a round contact, and squares in all other cases.  Squares
     are also chosen for the static limit of a contact without symmetry, because its stick zone is
     not round.  The slider and the rigid contact are never chosen.  Bounding their model error would
-    need a run of the rings, and this run already gives the result.
+    need a run of the rings, which already gives the result.
 
     Parameters
     ----------
     problem : problem.Problem
-        The problem.  At velocity 0 without a drive its result is the static limit.
+        The problem.  At velocity 0 without a drive, the result is the static limit.
     model : str
         "auto", or a name in models.registry.MODELS.
 

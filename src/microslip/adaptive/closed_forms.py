@@ -15,14 +15,14 @@ from microslip.theory import hertz, masing, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 CLOSED_FORM = "closed-form"
-"""Name of the model in results that are not marched."""
+"""Model name in results that need no run."""
 QUADRATURE = 1e-7
-"""Quadrature error in Eqs 17 and 18 for pressures other than Hertz.  Such pressures can have
+"""Error of the quadrature in Eqs 17 and 18 for pressures other than Hertz.  Such pressures can have
 kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
-"""Errors of closed forms with a quadrature.  For a sphere it is a quadrature over the motion; for
-another indenter it is also over the pressure."""
+"""Errors of closed forms with a quadrature.  For a sphere, the quadrature is over the motion only;
+for another indenter, it is also over the pressure."""
 ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 

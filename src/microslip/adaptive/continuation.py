@@ -1,6 +1,6 @@
 """Second attempt at a run that did not converge: continuation in the velocity.
 
-The slower the forward motion, the longer its transients.  In long transients even small errors of
+The slower the forward motion, the longer its transients.  In long transients, even small errors of
 the steps accumulate to a wrong state, and the search needs a better initial guess.  So the second
 attempt solves the steps to a tighter tolerance.  It first finds the periodic state at a higher
 velocity, where this is easier.  Then it lowers the velocity step by step, and each run starts from
@@ -16,7 +16,7 @@ from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
-"""Ratio of successive velocities.  After a failure the ratio is replaced by its square root, down
+"""Ratio of successive velocities.  After a failure, the ratio is replaced by its square root, down
 to SMALLEST_FACTOR."""
 MOST_STEPS = 12
 """Largest number of increases of the velocity."""

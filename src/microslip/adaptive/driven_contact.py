@@ -44,7 +44,7 @@ from microslip.theory.exact import LARGEST_DROPS
 STEADY_ERROR = 1e-9
 """Error estimate of the velocity v of a steady motion under a force, divided by max(1, v)."""
 COARSE_TOLERANCE = 1e-2
-"""Tolerance of the coarse runs that find the approximate velocity under a force."""
+"""Tolerance of the coarse runs that estimate the velocity under a force."""
 COARSEST = Resolution(cells=8, angles=4, steps=4)
 """Resolution at which the contact's stiffness is computed.  For a body with mass, the time steps
 depend on this stiffness."""
@@ -62,7 +62,7 @@ STATIC_TOLERANCE = 1e-3
 """Largest accepted error of the static limit when the force is close to it.  The SI layer uses the
 same value, so both agree on which forces are below the threshold."""
 GAP_MARGIN = 2.0
-"""The contact certainly moves at this distance above the static limit, in units of the limit's
+"""Distance above the static limit at which the contact certainly moves, in units of the limit's
 error."""
 
 
@@ -298,8 +298,8 @@ def _moving(request: Request, moving_force: float) -> Result:
 def _near(request: Request) -> Near:
     """Estimate the velocity under the force by coarse runs.
 
-    Runs at prescribed velocities bracket the velocity.  A run under the force then improves the
-    estimate, unless its velocity is too low to be resolved.
+    Runs at prescribed velocities bracket the velocity under the force.  A run under the force then
+    improves the estimate, unless its velocity is too low to be resolved.
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)

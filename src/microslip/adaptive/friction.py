@@ -33,7 +33,7 @@ class Plan(NamedTuple):
     ladder : ladder.Ladder
         Ladder of resolutions.
     readings : list of callable
-        Functions like `run`, for other interpolations of the same data, see Problem.readings.
+        Functions like `run` that use other interpolations of the same data, see Problem.readings.
     """
 
     run: Callable

@@ -43,11 +43,11 @@ class History:
     Attributes
     ----------
     phase : np.ndarray
-        Phase omega t, or for steady motions the angle of rotation in u_lim / a.
+        Phase omega t; for steady motions, the angle of rotation in u_lim / a.
     displacement_forward : np.ndarray
         Forward displacement in u_lim.
     force_forward, force_lateral : np.ndarray
-        Forces on the flat divided by mu F_z, positive in the direction of motion of the sphere.
+        Forces on the flat divided by mu F_z, positive in the sphere's direction of motion.
     torque : np.ndarray
         Torque divided by its full-slip value.
     """
@@ -82,7 +82,8 @@ def history(
     cells : int or None
         Number of rings, or of squares along a side, at least 2.  Defaults to 32.
     steps : int or None
-        Number of steps in a period, or for steady motions over the whole travel.  Defaults to 256.
+        Number of steps in a period; for steady motions, number of steps over the whole travel.
+        Defaults to 256.
     start : str
         "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
         (rotational slip everywhere).

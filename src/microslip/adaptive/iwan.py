@@ -18,7 +18,7 @@ TOLERANCE = 1e-3
 """Default tolerance of the discretisation, and tolerance of the full contact in the comparison."""
 MOST_ELEMENTS = 10_000
 BEYOND_FULL_SLIP = 1.2
-"""Turning points of the comparison's loop are at plus and minus this displacement, in u_lim."""
+"""The loop of the comparison turns at plus and minus this displacement, in u_lim."""
 ROWS = 13
 """Number of rows in the first loading of the comparison.  A branch of the loop has twice as many
 intervals."""
@@ -33,8 +33,8 @@ def iwan(
 ) -> Iwan:
     """Iwan model of a contact that moves along a line: parallel springs with sliders.
 
-    At nu = 0 the model with many elements is exact.  At nu > 0 it is compared with the full contact
-    on a first loading and a loop, and the difference is part of the error.
+    At nu = 0, the model with many elements is exact.  At nu > 0, it is compared with the full
+    contact on a first loading and a loop, and the difference is part of the error.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ def iwan(
     elements : int or None
         Number of elements.
     tolerance : float or None
-        Largest error due to the number of elements, divided by mu F_z; give either this (1e-3) or
-        `elements`.
+        Largest error due to the number of elements, divided by mu F_z.  Defaults to 1e-3.  Give
+        either this or `elements`.
 
     Returns
     -------
     Iwan
-        Elements whose displacements are divided by u_lim and forces by mu F_z.
+        The elements.  Displacements are divided by u_lim, and forces by mu F_z.
 
     Raises
     ------

@@ -28,7 +28,7 @@ PERIOD_CELLS, PERIOD_STEPS = 16, 64
 """Default resolution.  The mean force agrees with `solve` within 2e-3, see test_period.py."""
 PERIOD_TOLERANCE = 3e-5
 """Largest distance from the periodic state, as a force divided by mu F_z.  It is far below the
-error due to the resolution, 2e-3."""
+discretisation error, 2e-3."""
 ON_BOUND = 1.0 - 1e-4
 """Smallest traction of a slipping point, divided by the friction bound."""
 MOST_ANGLES = 1000
@@ -65,8 +65,8 @@ class Period:
     area : np.ndarray, shape (points,)
         Areas of the points, in units of a^2; their sum is pi.
     traction_forward, traction_lateral : np.ndarray, shape (steps + 1, points)
-        Tractions on the flat in units of mu F_z / a^2, positive in the direction of motion of the
-        sphere.
+        Tractions on the flat in units of mu F_z / a^2, positive in the sphere's direction of
+        motion.
     slip_forward, slip_lateral : np.ndarray, shape (steps + 1, points)
         Slip in the step that ends at each phase, in u_lim.  The first row repeats the last step.
     slips : np.ndarray of bool, shape (steps + 1, points)

@@ -64,8 +64,8 @@ def solve(
     contacts : str or None
         Contacts that the body rests on, such as "phase=0;phase=180".  Each contact has a load
         relative to the others (default 1), a phase in degrees (default 0) and a fraction of the
-        amplitude (default 1).  Velocity and amplitude are in units of u_lim of the contact with the
-        mean load; forces are divided by mu times the load of all contacts.
+        amplitude (default 1).  Velocity and amplitude are in units of the u_lim of a contact under
+        the mean load.  Forces are divided by mu times the load of all contacts.
     pressure : str or Pressure
         Pressure, such as "hertz", "power:exponent=1" or "file:measured.csv", see
         microslip.pressures.by_name.
@@ -74,27 +74,28 @@ def solve(
     model : str
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
-        Absolute tolerance of mu_macro.  Under a force it is the tolerance of the velocity, relative
-        for a velocity above 1.  With imposed cells and steps the tolerance can be None, which means
-        that any error is accepted.
+        Absolute tolerance of mu_macro.  Under a force, it is the tolerance of the velocity,
+        relative for a velocity above 1.  If cells and steps are imposed, the tolerance can be None,
+        and any error is then accepted.
     cells, steps : int or None
-        Imposed number of cells, and of steps in a full period.  By default they are chosen
-        according to the tolerance.
+        Imposed numbers of cells and of steps per full period.  By default they are chosen according
+        to the tolerance.
     method : str
-        "shipped", or for comparison another name in solver.method_names.names().
+        "shipped", or another name in solver.method_names.names() for a comparison.
     most_work : float or None
-        Largest number of step solves times unknowns, summed over all runs.  Defaults to MOST_WORK.
+        Limit on the work of all runs together.  The work of a run is its number of step solves
+        times its number of unknowns.  Defaults to MOST_WORK.
     time_limit : float or None
         Limit on the wall-clock time in seconds, checked between marches.  None means no limit.
     progress : callable or None
-        Called with the Resolution of every run before it starts.
+        Called before every run, with the run's Resolution.
 
     Returns
     -------
     Result
         The result.  If the error estimate exceeds the tolerance, also at an imposed resolution,
-        `converged` is False and `reason` says why.  Without a tolerance `converged` is True if
-        every run found its periodic state, to the accuracy required by a tolerance of 1e-3.
+        `converged` is False and `reason` says why.  Without a tolerance, `converged` is True if
+        every run found its periodic state to the accuracy required for a tolerance of 1e-3.
 
     Raises
     ------
@@ -154,7 +155,7 @@ KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
-"""Name of kernels -> points.  Solving these points compiles the kernels."""
+"""Points for each group of kernels.  Solving these points compiles the kernels."""
 
 
 def warm_up(*kernels: str) -> None:

@@ -16,7 +16,7 @@ energy is recovered, so
 
 Friction never decreases with the velocity (theory/bounds.py).  So the force decreases from stall to
 the no-load velocity, and two velocities with friction of opposite signs enclose the no-load
-velocity.  A motion can also propel the body backward.  In this case the velocities and forces are
+velocity.  A motion can also propel the body backward.  In this case, the velocities and forces are
 negative.  If friction holds the body at rest against small forces in both directions, the motion
 propels nothing.
 
@@ -51,15 +51,16 @@ from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
 FACTOR = 4.0
-"""Factor between the velocities that are tried until the friction is positive."""
+"""Factor between successive velocities in the search for a positive friction."""
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5
-"""First step away from the no-load velocity, in units of the distance over which friction rises by
-its error."""
+"""Factor in the first step away from the no-load velocity.  The step is this factor times the error
+of the friction, divided by the slope of the friction."""
 MOST_WIDENINGS = 40
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
-"""Reason for a motion that propels nothing; the fields are the lowest and the highest force."""
+"""Value of `reason` for a motion that propels nothing.  The placeholders are the lowest and the
+highest force."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -385,7 +386,7 @@ def no_load(friction: Callable, first: float) -> Answer:
         `friction(velocity)` returns an Answer for velocities of at least 0; the velocity 0 means
         the static limit.
     first : float
-        First velocity to try, above 0.
+        First velocity to try; must be above 0.
     """
     still = friction(0.0)
     high = first
@@ -433,8 +434,8 @@ def _root(
 def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
     """Find a velocity near `velocity` at which friction certainly has the sign `sign`.
 
-    For a negative sign the search goes down and returns 0 if it fails.  For a positive sign the
-    search goes up and returns None if it fails.
+    For a negative sign, the search lowers the velocity and returns 0 if it fails.  For a positive
+    sign, it raises the velocity and returns None if it fails.
     """
     step = WIDENING * friction(velocity).error / slope
     if not math.isfinite(step):

@@ -26,8 +26,8 @@ TOLERANCE = 1e-3
 """Default tolerance, also used as the accuracy of runs if no tolerance is requested."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Default limits on the work (step solves times unknowns) by model.  They exceed ten times the work
-of the slowest points in the paper's range, at a tolerance of 1e-4."""
+"""Default limits on the work (step solves times unknowns) by model.  They are more than ten times
+the work of the slowest points in the paper's range at a tolerance of 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,11 +49,11 @@ class Request:
     tolerance : float or None
         Absolute tolerance.  None means that any error is accepted.
     cells, steps : int or None
-        Imposed numbers of cells, and of steps in a full period; None if not imposed.
+        Imposed numbers of cells and of steps per full period; None if not imposed.
     budget : budget.Budget
         Budget of all runs together.
     progress : callable or None
-        Called with the Resolution of every run before it starts.
+        Called before every run, with the run's Resolution.
     started : float
         Value of time.perf_counter() when the request was made.
     """

@@ -38,8 +38,8 @@ STEP_SHARE = 0.05
 MOST_VALUES = 2e7
 """Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
 STEPS = LOAD.steps / 2.0
-"""Number of time steps for a path of length u_lim, divided by the level.  It equals the density in
-LOAD, for oscillating loads, if the stroke is u_lim and half a period is 2 u_lim long."""
+"""Number of time steps for a path of length u_lim, divided by the level.  For a stroke of u_lim,
+half a period is 2 u_lim long and has as many steps as in LOAD, the ladder for oscillating loads."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Response:
         Energy dissipated by friction since the first row and its estimated error, both divided by
         mu F_z u_lim.
     stick_fraction : np.ndarray, shape (rows,)
-        Fraction of the contact area that sticks in the step that ends at the row.  It is NaN in the
+        Fraction of the contact area that sticks in the last step before the row.  It is NaN in the
         first row and without contact.  Its resolution is limited by the mesh.
     tolerance : float
         Requested largest force error.
@@ -147,7 +147,7 @@ def response(
         Indentation divided by the indentation under the reference load, >= 0.  Give either this or
         `load`.
     state : Response, str or None
-        State in the first row.  A Response means the state at its end.  The other states are
+        State in the first row.  A Response stands for the state at its end.  The other states are
         "full-slip", "full-rotation" and None, which means no tangential tractions.
     pressure : str or Pressure
         Pressure, see `microslip.solve`.  If the load changes, the indenter must be axisymmetric.

@@ -16,11 +16,11 @@ QUANTITIES = {
     "torque": "mu_torque",
     "dissipation": "dissipated_energy",
 }
-"""Names of the estimates of a Result in JSON and datasets."""
+"""Names of a Result's estimates in JSON and datasets."""
 ERRORS = {source: f"error_{source}" for source in SOURCES}
 """Names of the error sources in JSON and datasets."""
 EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
-"""Names of the fields of an Effort in JSON and datasets."""
+"""Names of an Effort's fields in JSON and datasets."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +59,11 @@ class Result:
         Torque divided by its value at zero forward velocity; None for oscillating motions.
     dissipation : Estimate or None
         Energy that friction dissipates in a period, divided by mu F_z u_lim, where F_z is the
-        normal load without oscillation.  None for steady motions; they dissipate the power mu_macro
-        times velocity plus torque times angular velocity.
+        normal load without oscillation.  None for steady motions, whose dissipated power is
+        mu_macro * velocity + torque * angular velocity.
     converged : bool
         Whether the error is within the tolerance and every run found its periodic state.  Without a
-        tolerance only the second condition applies.
+        tolerance, only the second condition applies.
     periodic : bool
         Whether every run found its periodic state.
     reason : str

@@ -1,7 +1,7 @@
 """Displacement of a vibrated contact under a constant force until it comes to rest (shakedown).
 
-A vibrated contact under a constant force below the static limit comes to rest.  Period by period
-its slip zones relax and transfer their load to the stick zone, until no point slips forward any
+A vibrated contact under a constant force below the static limit comes to rest.  Period by period,
+the slip zones relax and transfer their load to the stick zone, until no point slips forward any
 more.  The displacement depends on the history.  Here the force is applied first, to a contact
 without tangential load.  Then the vibration starts at its mean position.
 """
@@ -42,7 +42,7 @@ TOLERANCE = 1e-2
 """Default tolerance of the displacement, in u_lim."""
 RUN_SHARE = 0.2
 """Tolerance of a shakedown run divided by the tolerance of a periodic state.  The step residuals
-accumulate over all periods; near the static limit there are several hundred
+accumulate over all periods.  Near the static limit, a run takes several hundred periods
 (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0 the ladder has no time steps."""
@@ -60,10 +60,10 @@ class Shakedown:
         Arguments of the request.
     threshold, threshold_error : float
         Static limit divided by mu times the mean normal load, and its estimated error.  Under this
-        or a larger force the contact does not come to rest.
+        or a larger force, the contact does not come to rest.
     displacement, displacement_error : float
-        Forward displacement in u_lim from the position without a force to the position at rest, and
-        its estimated error.  Infinite if the contact does not come to rest.
+        Forward displacement from the position without a force to the position at rest, in u_lim,
+        and its estimated error.  Infinite if the contact does not come to rest.
     pushed : float
         Part of the displacement that the force causes before the oscillation starts.
     most_after : float
@@ -81,7 +81,7 @@ class Shakedown:
     periods : float
         Number of periods in the longest run.
     work : int
-        Step solves times unknowns, summed over all runs.
+        Work of all runs together, as step solves times unknowns.
     solve_time_s : float
         Wall-clock time in seconds.
     """
@@ -215,7 +215,7 @@ def _threshold(request: Request) -> tuple[float, float, str]:
 
 
 def _certified(request: Request, force: float) -> dict[str, Any]:
-    """Compute the fields of a Shakedown that result from runs."""
+    """Run the contact to rest and return the resulting fields of a Shakedown."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     ladder = ladder_for(planned, request.model, request.accuracy)
     # the contact must come to rest in the coarsest run too

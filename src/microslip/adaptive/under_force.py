@@ -1,4 +1,4 @@
-"""Contact under a constant force: whether it stays at rest, its velocity, or whether it runs away.
+"""Contact under a constant force: it stays at rest, moves at a mean velocity, or runs away.
 
 Friction never decreases with the velocity (theory/bounds.py).  So the contact comes to rest under
 every force that allows a state of rest.  A larger force moves the contact faster.
@@ -28,14 +28,14 @@ computed.  With a transverse oscillation, runs converged up to 0.9998, where the
 advances by 200 amplitudes per period."""
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation, divided by mu times the mean normal load.  The rounding error
-of the friction, 1.1e-16, causes the relative error 1.1e-16 / (2 (1 - force)) in the velocity.  At
-this force it is about the stated error of 1e-9."""
+of the friction, 1.1e-16, causes a relative error of 1.1e-16 / (2 (1 - force)) in the velocity.  At
+this force, the relative error is close to the stated 1e-9."""
 FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
 """Search for the velocity: first drift per radian of phase, factor between two runs, and bounds."""
 FLATTEST = 1e-6
-"""Smallest accepted rise of friction between two runs, divided by their relative velocity
-increase."""
+"""Smallest accepted rise of friction between two runs, divided by the relative increase in
+velocity."""
 HALVINGS = 2
 """Number of bisections of the last velocity interval, on a logarithmic scale."""
 
@@ -57,7 +57,7 @@ def without_forward_motion(problem: Problem) -> Problem:
     """The problem without the oscillation along the direction of the force.
 
     Under a constant force, the forward force on a contact without mass is constant.  Then the body
-    follows the forward oscillation, so the forward oscillation has no effect.
+    follows the forward oscillation, which therefore has no effect.
     """
     return replace(problem, follows=True) if oscillates_forward(problem) else problem
 
@@ -82,9 +82,9 @@ def oscillates(problem: Problem) -> bool:
 def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
-    In this case the threshold of motion equals the static limit.  Several contacts exert no forward
-    force if each of them exerts none.  The same is true if each contact has a partner that exerts
-    the opposite force.
+    In this case, the threshold of motion equals the static limit.  Several contacts exert no
+    forward force if each of them exerts none.  The same is true if each contact has a partner that
+    exerts the opposite force.
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
@@ -146,7 +146,7 @@ def refuse_steady(problem: Problem) -> None:
 
 
 def steady_velocity(problem: Problem) -> float:
-    """Velocity of a steady rotation under a force from 0 to below 1, by Eqs 17 and 21.
+    """Velocity of a steady rotation under a force by Eqs 17 and 21, for 0 <= force < 1.
 
     The caller must check the problem with `refuse_steady` first.
     """
@@ -168,7 +168,7 @@ def steady_velocity(problem: Problem) -> float:
 
 
 class Near(NamedTuple):
-    """An approximate point on the curve of friction as a function of velocity.
+    """An approximate point on the friction-velocity curve.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ def simulate_each(
 
     The arguments are those of simulate.simulate.  The forces on a body are the mean forces on its
     contacts, weighted by their loads.  The state of a body consists of the tractions of all
-    contacts, side by side, at the start of the body's path.  The state is None if one contact has
+    contacts, side by side, at the start of the body's path.  The state is None if any contact has
     no state.
     """
     if not problem.parts:

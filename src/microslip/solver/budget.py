@@ -1,7 +1,7 @@
 """Budget of a point: limits on its work and its wall-clock time.
 
-Both limits are checked after every march, so that they also end long searches.  The limit on the
-work gives the same result on every machine.  The time limit depends on the machine, so a result
+Both limits are checked after every march, so that they also end long searches.  With a limit on the
+work, the result is the same on every machine.  The time limit depends on the machine, so a result
 that reached the time limit is not stored.
 """
 
@@ -27,7 +27,8 @@ class Budget:
     Parameters
     ----------
     most_work : float
-        Largest number of step solves times unknowns, summed over all marches.
+        Limit on the work of all marches together.  The work of a march is its number of step solves
+        times its number of unknowns.
     time_limit : float
         Largest wall-clock time in seconds since the budget was created.
 
@@ -88,7 +89,7 @@ class _Metered:
         return self._counted(self._contact.march(*path, **settings))
 
     def affordable(self, work: float) -> float:
-        """Number of marches, each with `work`, before the budget has to be checked."""
+        """Number of marches before the budget must be checked again, if each march takes `work`."""
         budget = self._budget
         if budget.time_limit < math.inf:
             return 1

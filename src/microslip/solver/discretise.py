@@ -56,10 +56,10 @@ def focus_strength(drift: float) -> float:
 
     `drift` is the forward displacement per radian of phase, in u_lim; 0 for the static limit.
 
-    At the stick radius, slip as small as the drift fills a layer of width drift^(2/3).  Ring widths
-    grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring width
-    should be the square root of the layer's width.  The ratio is rounded to a power of two, so that
-    points share meshes.
+    In a layer of width drift^(2/3) at the stick radius, the slip is as small as the drift.  Ring
+    widths grow quadratically from the stick radius.  So the ratio of the smallest to the mean ring
+    width should be the square root of the layer's width.  The ratio is rounded to a power of two,
+    so that points share meshes.
     """
     if drift == 0.0:
         return STATIC_FOCUS
@@ -134,7 +134,7 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
     """Build the path of a problem, starting at a turning point.
 
     The path covers half a period if the second half is its mirror image, otherwise a whole period.
-    For several contacts it is a BodyPath, with steps graded towards the turning points of each
+    For several contacts, it is a BodyPath with steps graded towards the turning points of each
     contact.
 
     Parameters
@@ -142,7 +142,7 @@ def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrato
     problem : Problem
         The problem.
     contact : Contact
-        The contact.  If its `grading` is not None, it replaces the grading of the problem.
+        The contact.  If `contact.grading` is not None, it replaces the grading for the problem.
     steps : int
         Approximate number of steps in half a period.
     integrator : path.Integrator

@@ -9,11 +9,11 @@ The state is a one-dimensional array.  It contains the tractions and, for bodies
 (models/driven_body.py), the position x of the body relative to the path and its rate x'.  Mirroring
 the state after half a period does not change x and x'.
 
-During one period unbalanced forces hardly move a heavy body, and the force of a soft spring hardly
-changes.  So the map scales up the changes of x and x', as for a stiffer spring and a lighter body
-that match the stiffness of the contact.  The fixed point of the map stays the same.  A contact in
-full slip is much more compliant than a sticking contact.  Its stiffness is the rise of the mean
-force with the displacement.
+During one period, unbalanced forces hardly move a heavy body, and the force of a soft spring hardly
+changes.  So the map scales up the changes of x and x', as if the spring were stiffer and the body
+lighter, to match the stiffness of the contact.  The fixed point of the map stays the same.  A
+contact in full slip is much more compliant than a sticking contact.  Its stiffness is the rise of
+the mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ LOOSEST_START = 1e-4
 """Largest tolerance of the state at a prescribed velocity, as a force divided by mu F_z."""
 COARSENING, PREPARED_FROM = 6, 96
 """A run with at least PREPARED_FROM steps starts from a run with COARSENING times fewer steps.
-Runs with fewer steps are cheap and start directly; a tolerance of 1e-3 needs no more steps."""
+Runs with fewer steps are cheap and start directly; they suffice for a tolerance of 1e-3."""
 MOST_SCALED = 4.0
 """Largest factor by which the initial tractions are scaled to match the prescribed force."""
 
@@ -60,7 +60,7 @@ class Accuracy(NamedTuple):
     Attributes
     ----------
     tolerance : float
-        Tolerance of the result, which is a force divided by mu F_z for a spring, otherwise the mean
+        Tolerance of the result: for a spring a force divided by mu F_z, otherwise the mean
         velocity.
     slope : float
         Approximate derivative of the friction force, divided by mu times the mean normal load, with
@@ -86,7 +86,7 @@ def simulate_driven(
     ----------
     problem : problem.Problem
         The problem with a drive.  The problem's velocity is that of the spring's far end.  Under a
-        prescribed force the velocity is an initial guess.
+        prescribed force, the velocity is an initial guess.
     model : str
         Name in models.registry.MODELS of a model that supports drives.
     resolution : discretise.Resolution
@@ -102,7 +102,7 @@ def simulate_driven(
     Returns
     -------
     run.Run
-        The run.  Under a prescribed force the result is `velocity`, and `distance` and
+        The run.  Under a prescribed force, the result is `velocity`, and `distance` and
         `solver_residual` are velocities.  No exception is raised if the run does not converge.
 
     Raises
@@ -141,7 +141,7 @@ class _DrivenSearch:
     def force_of_answer(self) -> float:
         """Force, divided by mu F_z, that corresponds to an error of 1 in the result.
 
-        For a spring the result is a force.  For a prescribed force the result is a velocity, and
+        For a spring, the result is a force.  For a prescribed force, the result is a velocity, and
         there are two estimates.  The first divides the force by the stiffness and by the length of
         the interval.  The second divides the unbalanced force by the rise of friction with the
         velocity.  The smaller force is used.
@@ -153,7 +153,7 @@ class _DrivenSearch:
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance: float, guess: Run | None = None) -> Run:
-        """Run the search to a tolerance of the force divided by mu F_z; see simulate_driven."""
+        """Run the search to a tolerance given as a force divided by mu F_z; see simulate_driven."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, searches = Goal(tolerance, step_tolerance, MARCHES), []
@@ -211,7 +211,7 @@ class _DrivenSearch:
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
-        """Build a state from tractions; over a period they have a mean force of about `mean`."""
+        """Build a state from tractions whose mean force over a period is about `mean`."""
         if self.drive.force is not None:
             force = self.drive.force * self.problem.mean_load
             if mean > 0.0 and 0.0 <= force < MOST_SCALED * mean:
@@ -257,7 +257,7 @@ class DrivenMap(PeriodMap):
     body : driven_body.Body
         The body and its drive.
     drift_rate : period_map.DriftRate or None
-        Drift rate, for motions that have a known velocity and can be slow.
+        Drift rate of a motion whose velocity is known and can be small; otherwise None.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
     slope : float

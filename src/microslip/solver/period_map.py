@@ -1,5 +1,5 @@
-"""The map of tractions over a (half) period, and the search for its fixed point: goal and
-result."""
+"""The map of tractions over a (half) period, and the goal and the result of the search for its
+fixed point."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Goal(NamedTuple):
     most_marches : int
         Largest number of marches.
     near : bool
-        Whether the initial state is near the periodic state.  In this case the first steps are
+        Whether the initial state is near the periodic state.  In this case, the first steps are
         solved more accurately.
     """
 
@@ -84,10 +84,9 @@ class PeriodicState:
 class DriftRate:
     """Data for the error estimate of slow motions, whose states change little in a period.
 
-    If the plain map still changes the state by a fraction of `gain`, the velocity of the state has
-    a relative error of that size.  Only the difference between the force and the static limit
-    depends on the velocity.  So the error of the force is at most the same fraction of this
-    difference.
+    If the plain map still changes the state by a force r, the velocity of the state has a relative
+    error of r / `gain`.  Only the difference between the force and the static limit depends on the
+    velocity.  So the error of the force is at most r / `gain` times this difference.
 
     Attributes
     ----------
@@ -98,8 +97,8 @@ class DriftRate:
     gain : float
         Rise of the force in a (half) period for a contact without slip.
     least : float
-        Mean forward force below which a state sticks and changes slowly.  It is about the static
-        limit.  NaN means that `static_force` is used.
+        Mean forward force below which a state sticks and changes slowly.  It approximately equals
+        the static limit.  NaN means that `static_force` is used.
     """
 
     static_force: float
@@ -116,7 +115,7 @@ class PeriodMap:
     contact : contact.Contact
         The contact.
     path : path.Path
-        Path over half a period, from turning point to turning point.  Without `mirror` the path
+        Path over half a period, from turning point to turning point.  Without `mirror`, the path
         covers a whole period.
     drift_rate : DriftRate or None
         Data for slow motions, or None if the motion is not slow.

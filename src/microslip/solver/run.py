@@ -73,7 +73,7 @@ class Run:
     reason : str
         Reason why the run is not converged, otherwise empty.
     state : np.ndarray or None
-        Periodic or steady tractions, which other runs use as initial guess; None if unknown.
+        Periodic or steady tractions, used by other runs as an initial guess; None if unknown.
     static_force : float
         Mean forward force of the static limit, also used by other runs; NaN if unknown.
     velocity : float
@@ -115,5 +115,5 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 
 
 def failed_run(reason: str) -> Run:
-    """The Run of a march that failed.  Its numbers are NaN or infinite."""
+    """The Run for a failed march.  Its numbers are NaN or infinite."""
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, Effort(), False, reason)

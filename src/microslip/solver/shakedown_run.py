@@ -38,7 +38,7 @@ SLOWEST_RATIO = 0.9
 The remaining displacement is extrapolated only if r is at most this value."""
 LONG, DRIFTING = 200, 1.8
 """After LONG (half) periods, a ratio r above DRIFTING means that the contact keeps drifting; a
-steady drift has r = 2.  On a coarse mesh the force can exceed the threshold."""
+steady drift has r = 2.  On a coarse mesh, the force can exceed the threshold."""
 MOST_SHARE = 0.9
 """`most_after` is the number of periods after which the oscillation has caused this fraction of the
 displacement."""
@@ -165,7 +165,7 @@ class _Walk:
         """Path from the mean position to the start of an interval of the map.
 
         Also returns the number of intervals by which this start was postponed.  The state is
-        mirrored once for each of them.
+        mirrored once for each of these intervals.
         """
         end, images = self.map.path.phase[0], 0
         while end <= 0.0:

@@ -1,4 +1,4 @@
-"""One run at one resolution: builds the contact and the path, and finds the periodic state."""
+"""One run at one resolution: build the contact and the path, then find the periodic state."""
 
 from __future__ import annotations
 
@@ -36,15 +36,14 @@ motion, the longer its transients, and the more the errors of the steps accumula
 TIGHTER = 0.1
 """Smallest ratio of the step tolerance in a second attempt to the step tolerance in the first."""
 MARCH_SHARE = 0.16
-"""Largest product of the step tolerance and the number of steps in half a period, divided by the
-tolerance of the periodic state.  With two stages per step, the residuals add up to a third of the
-tolerance."""
+"""Largest sum of the step tolerances in half a period, divided by the tolerance of the periodic
+state.  With two stages per step, the residuals add up to a third of the tolerance."""
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
-"""Forward traction, divided by the friction bound, that is added to the static limit at the start
-of a search: SLOW_EXCESS times drift^(2/3), at most LARGEST_EXCESS.  Friction rises with the same
-power of the drift.  So the search starts with too much forward traction, which makes an accelerated
-search converge faster."""
+"""A search starts from the static limit plus a forward traction.  This traction is the friction
+bound times SLOW_EXCESS * drift^(2/3), but at most times LARGEST_EXCESS.  Friction rises with the same power of the
+drift.  So the search starts with too much forward traction, which makes an accelerated search
+converge faster."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more are
@@ -74,8 +73,8 @@ def simulate(
         Tolerance of the periodic state, as a force divided by mu F_z.  The tolerance of a step is
         at least 100 times smaller.
     guess : Run or None
-        Run of the same point as initial guess.  It is used if it has the same numbers of cells and
-        angles, or if the contact can interpolate its tractions.
+        Run of the same point, used as the initial guess.  It is used if it has the same numbers of
+        cells and angles, or if the contact can interpolate its tractions.
     settings : Settings
         Settings of the run.
 
@@ -230,8 +229,8 @@ class _Search:
     def _limit_of_a_loop(self, rise: float) -> np.ndarray:
         """Tractions of the static limit, computed with reduced accuracy.
 
-        The rise of friction above the limit determines the accuracy.  Because of the reduced
-        accuracy, the limit's force only sets `least`.
+        The accuracy is chosen according to the rise of friction above the limit.  Because of the
+        reduced accuracy, the limit's force only sets `least`.
         """
         rest = replace(self.problem, velocity=0.0)
         path = path_of(rest, self.contact, self.steps, self.method.integrator)
@@ -290,5 +289,5 @@ def run_of_searches(
 
 
 def periods_of(marches: int, problem: Problem) -> float:
-    """Number of full periods in a number of marches, each over a period or half a period."""
+    """Convert a number of marches, each over a period or half a period, to full periods."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)

@@ -2,14 +2,14 @@
 
 Let +-q_osc be the tractions of the oscillation alone at its two turning points, after subtracting
 their mean.  Let R be the constant part of the traction at a point.  As the forward velocity
-vanishes, every point slips forward a little in each period, when |R + q_osc| reaches the friction
+vanishes, every point slips forward a little in each period when |R + q_osc| reaches the friction
 bound g.  Such a slow drift does not change q_osc, and by the flow rule R solves the problem
 
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point.
 
-This is the counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points the
-oscillating traction moves along the segment from -q_osc to q_osc, so only these two instants
-matter.  For motions on a loop and for oscillating loads see static_loop.py.
+This is the counterpart of Melan's shakedown theorem for ratcheting.  Between the turning points,
+the oscillating traction moves along the segment from -q_osc to q_osc, so only these two instants
+matter.  For motions on a loop and for oscillating loads, see static_loop.py.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from microslip.models.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
 STEPS = 4
-"""Number of steps from one turning point to the next.  Between them the slip of each point grows in
-a constant direction, so backward Euler gives the same tractions for any number of steps.  A
-second-order method can end a step below the bound, and R depends on the square root of the distance
-from the bound."""
+"""Number of steps from one turning point to the next.  Between turning points, the slip of each
+point grows in a constant direction, so backward Euler gives the same tractions for any number of
+steps.  A second-order method can end a step below the bound, and R depends on the square root of
+the distance from the bound."""
 
 
 def at_turning_points(problem: Problem) -> bool:
     """Whether the tractions at the turning points determine the static limit.
 
-    They do for a motion on a line under a constant load.
+    This is the case for a motion on a line under a constant load.
     """
     return problem.straight and not problem.motion.loads
 

@@ -1,7 +1,7 @@
 """The static limit for motions on a loop and for oscillating normal loads.
 
-The limit is a separate problem at every point, see static_limit.py.  For a motion on a line only
-two instants of the period matter; here all of them do.  Let q(t) be the periodic tractions of the
+The limit is a separate problem at every point, see static_limit.py.  For a motion on a line, only
+two instants of the period matter; here, all of them do.  Let q(t) be the periodic tractions of the
 oscillation alone and g(t) the friction bound.  A constant traction s can be added if |q + s| <= g
 at all times.  At a point that drifts forward, s has the largest forward component:
 
@@ -9,9 +9,9 @@ at all times.  At a point that drifts forward, s has the largest forward compone
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.
 
 At points that slip in every period of the oscillation alone, s is 0, since q reaches the bound in
-directions that balance.  At these points the mean of q remains: a loop without half-period symmetry
-drags the contact along.  At points that never slip, q has an arbitrary constant part, and the
-maximum does not depend on it.
+directions that balance.  At these points, the mean of q remains: a loop without half-period
+symmetry drags the contact along.  At points that never slip, q has an arbitrary constant part, and
+the maximum does not depend on it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ MARCHES, MOST_ROUNDS = 120, 3
 """Largest number of marches in a search for the periodic state, and largest number of searches.  An
 accelerated search that stalls because of rounding errors is restarted."""
 HALVINGS = 50
-"""Number of bisections for the largest shift, enough to reach the rounding error."""
+"""Number of bisections in the search for the largest shift, enough to reach the rounding error."""
 
 
 class LoopLimit(NamedTuple):
@@ -117,8 +117,8 @@ def loop_limit(
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """Compute the shift s with the largest forward component that keeps |q + s| <= g at all phases.
 
-    The discs |q + s| <= g are convex, and so is their intersection.  Since it contains s = 0, it
-    contains every forward shift below the largest one.
+    The discs |q + s| <= g are convex, and so is their intersection.  The intersection contains
+    s = 0 and therefore every forward shift below the largest one.
 
     Parameters
     ----------
@@ -138,7 +138,8 @@ def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
 
     def reach(shift: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether a forward shift lies in all phases' discs, and bounds on the lateral shift."""
+        """Whether a forward shift lies inside the discs of all phases, and bounds on the lateral
+        shift."""
         across = bounds**2 - (forward + shift) ** 2
         width = np.sqrt(np.maximum(across, 0.0))
         ends = (-lateral - width).max(axis=0), (width - lateral).min(axis=0)

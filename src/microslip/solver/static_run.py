@@ -20,18 +20,19 @@ from microslip.solver.static_limit import at_turning_points, loop_energy, static
 from microslip.solver.static_loop import loop_limit
 
 FELT = 4.0
-"""Error of the limit divided by the distance from the periodic state of the oscillation alone.  In
-tests this ratio was at most 3.  Slipping points are on the bound after every step, so their shift
-is 0."""
+"""Ratio of the limit's error to the distance between the tractions and the periodic state of the
+oscillation alone.  In tests, this ratio was at most 3.  Slipping points are on the bound after
+every step, so their shift is 0."""
 LOOP_STEP_SHARE = 1e-4
 """Ratio of the step tolerance to the tolerance of the periodic state.  The shift of a point depends
 on the square root of the distance of its traction from the bound."""
 ENOUGH = 4.0
-"""Largest accepted ratio of the distance to the requested distance; rounding limits the search."""
+"""Largest accepted ratio of the distance reached to the distance requested; rounding limits the
+search."""
 MOST_PASSES = 4
 """Largest number of runs in the search for the edges of the stick zone."""
 MOST_EDGES = 4
-"""Largest number of edges of the stick zone.  More edges are treated as scatter."""
+"""Largest number of edges of the stick zone.  If there are more, they are treated as scatter."""
 SLIVER = 1e-3
 """Two edges closer than this fraction of the contact radius are treated as scatter.  If there is
 little slip, the shift is almost 0 in the rings on either side of an edge."""
@@ -48,7 +49,7 @@ def simulate_static(
 ) -> Run:
     """Compute the static limit at one resolution; for arguments and result see simulate.simulate.
 
-    The velocity of the problem is 0.  For a rigid contact and an oscillation on a line the limit
+    The velocity of the problem is 0.  For a rigid contact and an oscillation on a line, the limit
     is 0.
     """
     try:
@@ -100,12 +101,13 @@ def edges_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Find the edges of the stick zone for a motion on a loop by runs, since there is no formula.
+    """Find the edges of the stick zone for a motion on a loop.  There is no formula, so runs are
+    used.
 
-    The arguments are those of `simulate_static`.  In addition, `progress` is called with every
-    run's Resolution before the run starts.  Returns the Runs and the radii of the edges; the last
-    Run is the result.  There are no radii if the whole contact sticks or slips, or if the contact
-    has no rings.
+    The arguments are those of `simulate_static`.  In addition, `progress` is called before every
+    run, with the run's Resolution.  Returns the Runs and the radii of the edges; the last Run is
+    the result.  There are no radii if the whole contact sticks or slips, or if the contact has no
+    rings.
     """
 
     def points_that_stick(contact: Contact) -> np.ndarray | None:
@@ -127,7 +129,7 @@ def edges_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Find the edges of the stick zone for a motion on a line, using the tractions at its turning
+    """Find the edges of the stick zone for a motion on a line from the tractions at the turning
     points.
 
     The arguments are those of `edges_on_a_loop`.  In addition, `near` contains approximate radii;

@@ -25,14 +25,14 @@ SLOW_LINE = 0.01
 the state of a motion on a line; for loops see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
-"""Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load the
+"""Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the
 edge of the contact moves across the rings, so more steps are needed."""
 LINE_RESOLUTION, FINE_RESOLUTION = Resolution(48, 2, 1), Resolution(192, 2, 1)
 """Resolutions of the search for motions on a line.  This search needs no march, so many rings are
 cheap.  If the edges are accurate to 5e-4 of the radius, the static limit of a translation is
 accurate to 1e-4."""
 FINE_TOLERANCE = 1e-5
-"""Tolerance at FINE_RESOLUTION.  With a larger tolerance some sticking rings appear to slip, and
+"""Tolerance at FINE_RESOLUTION.  With a larger tolerance, some sticking rings appear to slip, and
 the search does not converge."""
 
 
@@ -46,7 +46,7 @@ def edge_focus(
 
     The stick zone of a circular motion is smaller than that of a linear motion of the same
     amplitude, since the slip never stops.  The stick zone of a contact with a hole is a ring with
-    two edges.  Under an oscillating load the edges are computed for the static limit only.
+    two edges.  Under an oscillating load, the edges are computed for the static limit only.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def edge_focus(
     budget : budget.Budget or None
         Budget of the search.  None means unlimited.
     progress : callable or None
-        Called with the Resolution of every run in the search before the run starts.
+        Called before every run of the search, with the run's Resolution.
 
     Returns
     -------

@@ -19,7 +19,7 @@ from microslip.states.search import largest_excess
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two successive changes used in an extrapolation.  Rounding can make it 1."""
 FORCING = 1e-3
-"""Step tolerance divided by the last change of the state, far from the periodic state."""
+"""Ratio of the step tolerance to the last change of the state, used far from the periodic state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """First step tolerance, for an initial state far from the periodic state and for one near it."""
 DEPTH = 12
@@ -28,10 +28,10 @@ NOISE = 0.1
 """Largest ratio of the summed step residuals to the change of the state.  Above this ratio the
 march is repeated with a smaller step tolerance."""
 QUIET = 0.25
-"""Fraction of NOISE that sets the step tolerance if the initial state is near the periodic
-state."""
+"""Factor applied to NOISE in the step tolerance if the initial state is near the periodic state."""
 FORGETFUL = 0.2
-"""The plain map needs no acceleration if it contracts by less than this factor per march."""
+"""The plain map needs no acceleration if the residual of every march is at most this fraction of
+the previous one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,8 @@ class Marches:
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
-        """Estimate the distance of an interval's state from the fixed point, by a better state."""
+        """Estimate the distance of an interval's state from the fixed point, using a better
+        state."""
         step = energy_norm(self.contact, proposal - interval.state)
         distance = max(step, interval.residual)
         if self.drift_rate is not None:

@@ -5,8 +5,8 @@ It solves the normal contact on the squares, then one tangential problem per bac
 a projected conjugate gradient method.  It supports translations only, at any nu.
 
 The march starts without tractions and ends when the means of two periods agree, or after
-MOST_PERIODS.  Within so few periods only fast forward motions become periodic.  Two settings differ
-from the defaults of the package:
+MOST_PERIODS.  Within so few periods, only fast forward motions become periodic.  Two settings
+differ from the defaults of the package:
 
 - The preconditioner is off.  It is designed for sticking points.  When the slip changes its
   direction, the preconditioned solver needs about five times as many iterations, and the means are
@@ -69,7 +69,7 @@ class Solver:
         self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
 
     def step(self, forward: float, lateral: float) -> tuple[float, float]:
-        """Move to a rigid displacement (in u_lim) and count the step, even if it failed.
+        """Move to a rigid displacement (in u_lim) and count the step, even if it fails.
 
         Returns the forward force divided by mu F_z, and the residual, see coulomb.coulomb_residual.
         """

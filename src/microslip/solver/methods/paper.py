@@ -1,6 +1,6 @@
 """The method of the paper: 8,000 backward Euler steps from full slip on 32 x 32 squares, no search.
 
-In the paper (R. Pohrt, Front. Mech. Eng. 6:566440, 2020) stresses are accurate to 0.1 %, and the
+In the paper (R. Pohrt, Front. Mech. Eng. 6:566440, 2020), stresses are accurate to 0.1 %, and the
 result is the mean over the last period.  Here a period has 100 steps, and a step is solved when its
 residual is at most 0.1 % of the total friction.  The requested resolution is ignored.
 """
@@ -24,7 +24,7 @@ STRESS_TOLERANCE = 1e-3
 
 
 def path_of(problem: Problem, steps: int = STEPS) -> Path:
-    """Path of a given number of steps that starts in the middle of a stroke."""
+    """Path that starts in the middle of a stroke and has a given number of steps."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 

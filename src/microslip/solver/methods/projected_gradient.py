@@ -1,6 +1,6 @@
 """Projected gradient method with a fixed step.
 
-It is stable for steps below twice the inverse of the largest eigenvalue.  With a stable step it
+It is stable for steps below twice the inverse of the largest eigenvalue.  With a stable step, it
 converges slowly, since the compliance is far larger for smooth tractions than for rough ones.
 """
 

@@ -1,9 +1,9 @@
 """Fixed-point stick/slip switching: updates of the points alternate with linear solves.
 
 The traction of a slipping point is on the bound, in the direction of its last slip; sticking points
-do not slip.  After the solve, points with a traction above the bound slip, and slipping points
-whose slip opposes the traction stick.  Convergence is not guaranteed, because points can alternate
-between stick and slip.
+do not slip.  After the solve, a point slips if its traction is above the bound.  A slipping point
+sticks if its slip opposes its traction.  Convergence is not guaranteed, because points can
+alternate between stick and slip.
 """
 
 from __future__ import annotations
