@@ -113,7 +113,7 @@ def bracket(problem: Problem, drop: float) -> Exact:
 
 
 def _steady_bore(problem: Problem) -> Exact | None:
-    """Steady bore by Eqs 17 and 18, or Eqs 21 and 22 for a sphere."""
+    """Steady bore motion from Eqs 17 and 18, or from Eqs 21 and 22 for a sphere."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
@@ -132,7 +132,7 @@ def _exact(mu: float, energy: float, error: float) -> Exact:
 
 
 def _static(problem: Problem, of_sphere: Callable) -> Exact | None:
-    """Static limit, or None without a closed form for the pressure."""
+    """Static limit, or None if there is no closed form for the pressure."""
     motion, pressure, amplitude = problem.motion, problem.pressure, problem.size
     sphere = pressure == HERTZ or (pressure.hertzian and not motion.rotates)
     if not (sphere or pressure.is_indenter):

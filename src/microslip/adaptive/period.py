@@ -210,7 +210,8 @@ def period(
 
 
 def _work_per_area(traction: np.ndarray, slip: np.ndarray) -> np.ndarray:
-    """Work of a traction on a slip over the period, shape (points,); for arguments see Period."""
+    """Work done by a traction on a slip over the period, shape (points,).  For the arguments, see
+    Period."""
     return 0.5 * np.sum((traction[1:] + traction[:-1]) * slip[1:], axis=0)
 
 

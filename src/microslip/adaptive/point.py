@@ -78,8 +78,8 @@ def solve(
         relative for a velocity above 1.  If cells and steps are imposed, the tolerance can be None,
         and any error is then accepted.
     cells, steps : int or None
-        Imposed numbers of cells and of steps per full period.  By default they are chosen according
-        to the tolerance.
+        Imposed numbers of cells and of steps per full period.  By default, they are chosen
+        according to the tolerance.
     method : str
         "shipped", or another name in solver.method_names.names() for a comparison.
     most_work : float or None
@@ -93,7 +93,7 @@ def solve(
     Returns
     -------
     Result
-        The result.  If the error estimate exceeds the tolerance, also at an imposed resolution,
+        The result.  If the error estimate exceeds the tolerance, even at an imposed resolution,
         `converged` is False and `reason` says why.  Without a tolerance, `converged` is True if
         every run found its periodic state to the accuracy required for a tolerance of 1e-3.
 

@@ -48,7 +48,7 @@ def solve_each(request: Request) -> Result:
 
 
 def _solve(request: Request) -> Result:
-    """Solve one contact, by a closed form if there is one, otherwise by runs of a model."""
+    """Solve one contact: use a closed form if there is one, otherwise runs of a model."""
     exact = exact_result(request)
     if exact is not None:
         return exact

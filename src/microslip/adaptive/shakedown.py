@@ -65,7 +65,7 @@ class Shakedown:
         Forward displacement from the position without a force to the position at rest, in u_lim,
         and its estimated error.  Infinite if the contact does not come to rest.
     pushed : float
-        Part of the displacement that the force causes before the oscillation starts.
+        Part of the displacement caused by the force before the oscillation starts.
     most_after : float
         Number of periods in which the contact covers nine tenths of the displacement caused by the
         oscillation.

@@ -1,4 +1,4 @@
-"""One run of a body at a prescribed velocity on several contacts, which do not interact."""
+"""One run at a prescribed velocity for a body on several contacts, which do not interact."""
 
 from __future__ import annotations
 

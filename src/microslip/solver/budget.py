@@ -64,7 +64,7 @@ class Budget:
         solves, iterations : int
             Number of step solves and of step-solver iterations in the march.
         unknowns : int
-            Number of unknowns of each step.
+            Number of unknowns in each step.
         """
         self.taken += Effort.of(solves, iterations, unknowns)
         if self.taken.work > self.most_work:

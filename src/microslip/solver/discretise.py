@@ -110,7 +110,7 @@ def build_contact(
     resolution : Resolution
         Resolution of the model.
     focus : mesh.Focus or None
-        Grading of the rings.  By default they are graded towards the radius at which slip starts.
+        Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     start : float or None
         Phase at which a period starts.  Defaults to the first turning point.
     """

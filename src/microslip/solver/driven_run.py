@@ -63,8 +63,8 @@ class Accuracy(NamedTuple):
         Tolerance of the result: for a spring a force divided by mu F_z, otherwise the mean
         velocity.
     slope : float
-        Approximate derivative of the friction force, divided by mu times the mean normal load, with
-        respect to the velocity.  It converts an unbalanced force to an error of the velocity.
+        Approximate derivative, with respect to the velocity, of the friction force divided by mu
+        times the mean normal load.  It converts an unbalanced force to an error of the velocity.
     """
 
     tolerance: float
@@ -295,7 +295,7 @@ class DrivenMap(PeriodMap):
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
     def state(self, tractions: np.ndarray, place_and_rate: np.ndarray) -> np.ndarray:
-        """Join tractions and (x, x') to a state array."""
+        """Join tractions and (x, x') into a state array."""
         flat = tractions.ravel()
         return np.append(flat, place_and_rate) if self.body.remembers else flat
 

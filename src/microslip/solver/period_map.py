@@ -108,7 +108,7 @@ class DriftRate:
 
 
 class PeriodMap:
-    """The map of the state of a contact over a path.
+    """The map of a contact's state over a path.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ class Settings:
     budget : budget.Budget or None
         Budget of the marches.  None means unlimited.
     focus : mesh.Focus or None
-        Grading of the rings.  By default they are graded towards the radius at which slip starts.
+        Grading of the rings.  By default, they are graded towards the radius at which slip starts.
     """
 
     method: Method = SHIPPED

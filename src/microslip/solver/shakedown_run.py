@@ -54,7 +54,7 @@ class ShakedownRun(Run):
         Displacement of the contact from its position without a force to its position at rest, in
         u_lim.
     pushed : float
-        Part of the displacement that the force alone causes.
+        Part of the displacement caused by the force alone.
     most_after : float
         Number of periods in which the contact covers the fraction MOST_SHARE of the displacement
         caused by the oscillation.

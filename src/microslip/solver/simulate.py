@@ -41,9 +41,9 @@ state.  With two stages per step, the residuals add up to a third of the toleran
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """A search starts from the static limit plus a forward traction.  This traction is the friction
-bound times SLOW_EXCESS * drift^(2/3), but at most times LARGEST_EXCESS.  Friction rises with the same power of the
-drift.  So the search starts with too much forward traction, which makes an accelerated search
-converge faster."""
+bound times SLOW_EXCESS * drift^(2/3), but at most LARGEST_EXCESS times the bound.  Friction rises
+with the same power of the drift.  So the search starts with too much forward traction, which makes
+an accelerated search converge faster."""
 
 MARCHES_FROM_COARSER = 50
 """Largest number of marches in a search that starts from interpolated tractions.  If more are

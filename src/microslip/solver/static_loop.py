@@ -115,7 +115,8 @@ def loop_limit(
 
 
 def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Compute the shift s with the largest forward component that keeps |q + s| <= g at all phases.
+    """Among the shifts s with |q + s| <= g at all phases, find the one with the largest forward
+    component.
 
     The discs |q + s| <= g are convex, and so is their intersection.  The intersection contains
     s = 0 and therefore every forward shift below the largest one.

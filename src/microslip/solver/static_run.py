@@ -47,7 +47,7 @@ def simulate_static(
     tolerance: float,
     settings: Settings = AS_SHIPPED,
 ) -> Run:
-    """Compute the static limit at one resolution; for arguments and result see simulate.simulate.
+    """Compute the static limit at one resolution; for arguments and result, see simulate.simulate.
 
     The velocity of the problem is 0.  For a rigid contact and an oscillation on a line, the limit
     is 0.

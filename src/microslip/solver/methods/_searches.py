@@ -120,7 +120,7 @@ class Marches:
 
 
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Search by Anderson acceleration of marches in Python.
+    """Search by Anderson acceleration, with marches in Python.
 
     The initial state should have too much forward traction rather than too little.  This prevents
     convergence to a state without slip.

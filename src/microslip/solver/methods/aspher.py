@@ -13,7 +13,7 @@ differ from the defaults of the package:
   no more accurate.
 
 - A step that the package rejects counts as failed, and the march continues from the best tractions.
-  By default the package returns to the tractions before the step, which makes the means wrong.
+  By default, the package returns to the tractions before the step, which makes the means wrong.
 
 An iteration computes two products with the influence operator; our solvers compute one.  The effort
 counts iterations.
