@@ -19,7 +19,7 @@ FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """Ratio of successive velocities.  After a failure, the ratio is replaced by its square root, down
 to SMALLEST_FACTOR."""
 MOST_STEPS = 12
-"""Largest number of velocity increases."""
+"""Largest number of times that the velocity is increased."""
 
 
 def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:

@@ -51,7 +51,7 @@ depend on this stiffness."""
 FIRST_VELOCITY = 0.1
 """Velocity at which the resolution of the coarse runs is chosen."""
 SLOWEST_SHARE = 0.3
-"""Smallest accepted velocity of the coarse run under the force, relative to the velocity found by
+"""Smallest accepted velocity of the coarse run under the force, as a fraction of the estimate from
 coarse runs at prescribed velocities.  A slower run is not resolved and is not used."""
 SCALE_SHARE = 0.9
 """The relative tolerance refers to this fraction of the coarse run's velocity."""

@@ -51,7 +51,7 @@ from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
 FACTOR = 4.0
-"""Factor between successive velocities in the search for a positive friction."""
+"""Factor between successive velocities in the search for positive friction."""
 FASTEST = 1e6
 MOST_HALVINGS = 60
 WIDENING = 1.5

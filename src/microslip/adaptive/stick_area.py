@@ -36,8 +36,8 @@ def patches(
         - least_stick: smallest sum of `stick_right` and `stick_left` over the period.
         - forward_position, lateral_position, area: positions of the points in units of a and their
           areas in units of a^2; the sum of the areas is pi.
-        - moment_phase: phases of four moments.  At the first, the stick area is smallest in a
-          stroke.  The second is the middle of the stroke.  The others are half a period later.
+        - moment_phase: phases of four moments.  At the first one, the stick area is smallest in
+          a stroke.  The second is the middle of the stroke.  The others are half a period later.
         - moment_share, shape (moments, points): traction divided by the friction bound at these
           moments; 1 at points that slip.
 

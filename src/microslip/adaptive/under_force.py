@@ -146,7 +146,7 @@ def refuse_steady(problem: Problem) -> None:
 
 
 def steady_velocity(problem: Problem) -> float:
-    """Velocity of a steady rotation under a force by Eqs 17 and 21, for 0 <= force < 1.
+    """Velocity of a steady rotation under a force, computed from Eqs 17 and 21 for 0 <= force < 1.
 
     The caller must check the problem with `refuse_steady` first.
     """

@@ -1,9 +1,9 @@
 """One run at one resolution of a contact under a prescribed force or on a spring.
 
 The search starts from the periodic state of the contact at a prescribed velocity: the velocity of
-the far end of the spring, or an approximate velocity under the force.  The number of periods in a
-search does not depend on the number of steps, so a run with many steps starts from the result of a
-run with few steps.
+the spring's far end, or an approximate velocity under the force.  The number of periods in a search
+does not depend on the number of steps, so a run with many steps starts from the result of a run
+with few steps.
 
 The state is a one-dimensional array.  It contains the tractions and, for bodies with memory
 (models/driven_body.py), the position x of the body relative to the path and its rate x'.  Mirroring

@@ -289,5 +289,6 @@ def run_of_searches(
 
 
 def periods_of(marches: int, problem: Problem) -> float:
-    """Convert a number of marches, each over a period or half a period, to full periods."""
+    """Convert a number of marches, each over a period or half a period, to a number of full
+    periods."""
     return 0.5 * marches if problem.half_period_mirror else float(marches)

@@ -24,8 +24,8 @@ FELT = 4.0
 oscillation alone.  In tests, this ratio was at most 3.  Slipping points are on the bound after
 every step, so their shift is 0."""
 LOOP_STEP_SHARE = 1e-4
-"""Ratio of the step tolerance to the tolerance of the periodic state.  The shift of a point depends
-on the square root of the distance of its traction from the bound."""
+"""Ratio of the step tolerance to the tolerance of the periodic state.  A point's shift depends on
+the square root of the distance between its traction and the bound."""
 ENOUGH = 4.0
 """Largest accepted ratio of the distance reached to the distance requested; rounding limits the
 search."""
@@ -129,8 +129,8 @@ def edges_on_a_line(
     settings: Settings = AS_SHIPPED,
     progress: Callable | None = None,
 ) -> tuple[float, ...]:
-    """Find the edges of the stick zone for a motion on a line from the tractions at the turning
-    points.
+    """Use the tractions at the turning points to find the edges of the stick zone for a motion on a
+    line.
 
     The arguments are those of `edges_on_a_loop`.  In addition, `near` contains approximate radii;
     it is empty if they are unknown.  Returns the radii of the edges.
@@ -200,7 +200,7 @@ def _without_slivers(radii: list[float]) -> list[float]:
 def _on_these_points(
     contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
 ) -> tuple[Run, np.ndarray | None]:
-    """The Run on one contact, and a mask of sticking points (None if the contact cannot stick)."""
+    """The Run for one contact, and a mask of sticking points (None if the contact cannot stick)."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     distance = tolerance / FELT
     inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance

@@ -21,8 +21,8 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 
 SLOW_LINE = 0.01
-"""Drift per radian of phase, in u_lim, below which the stick zone of the static limit determines
-the state of a motion on a line; for loops see static_loop.SLOW_LOOP."""
+"""Largest drift at which the stick zone of the static limit determines the state of a motion on a
+line, in u_lim per radian of phase.  For loops, see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the

@@ -46,7 +46,7 @@ class MarchInterval:
         Tractions at the start of the next march.  They equal the tractions at the end of this
         march, mirrored if the march covers half a period.
     residual : float
-        Norm of image - state, as a force divided by mu F_z.
+        Norm of the difference `image - state`, as a force divided by mu F_z.
     march : contact.March
         The march itself.
     """
