@@ -45,7 +45,7 @@ def no_vibration(problem: Problem) -> Exact | None:
 
 
 def _of_drag(problem: Problem, mu: float, error: float) -> Estimate:
-    """Energy that the friction force `mu` dissipates over the mean displacement of a period."""
+    """Energy that the friction force `mu` dissipates over the mean displacement in a period."""
     work = 2.0 * math.pi * problem.mean_load * problem.drift
     return work * Estimate(mu, {"model": error})
 
@@ -63,9 +63,9 @@ def closed_form(problem: Problem, tolerance: float) -> Exact | None:
     """Result of a closed form, or None if no closed form applies.
 
     Closed forms exist in four cases.  The first is the steady state of a motion without
-    oscillation, where every point slips along its rigid velocity.  The second is the limit of
-    vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is fast
-    sliding, if the bounds in bounds.py differ by less than the tolerance.
+    oscillation, where every point slips in the direction of its rigid velocity.  The second is the
+    limit of vanishing velocity, and the third is motion along one line at nu = 0.  The fourth is
+    fast sliding, if the bounds in bounds.py differ by less than the tolerance.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def solve(
     velocity : float or None
         The paper's dimensionless velocity, in units of u_lim of the pressure.  0 means the static
         limit.  None under a prescribed force, which determines the velocity.  Negative velocities
-        are allowed for self-propelled motions; for other motions the friction at -v is minus the
+        are allowed for self-propelled motions; for other motions, the friction at -v is minus the
         friction at v.
     amplitude : float or None
         The paper's dimensionless amplitude; None for steady motions.

@@ -263,7 +263,8 @@ class _Contact:
         return self.cache[velocity, quantity]
 
     def _power_as_force(self, velocity: float, run: Run) -> float:
-        """Power of the oscillation (dissipated minus drive power), divided by the mean speed."""
+        """Power of the oscillation (dissipated power minus drive power), divided by the mean
+        speed."""
         dissipated = run.energy / (2.0 * math.pi * self.request.problem.mean_load)
         return (dissipated - run.mu * velocity * self.drift) / self.speed
 

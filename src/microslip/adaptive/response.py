@@ -1,6 +1,6 @@
 """Response of a contact to a prescribed path: forces at every row, with their errors.
 
-The path need not be periodic.  It begins without tangential tractions, in full slip, or at the end
+The path need not be periodic.  It begins in full slip, without tangential tractions, or at the end
 of another response.
 """
 
@@ -36,7 +36,7 @@ Progress = Callable[[int, int], None]
 STEP_SHARE = 0.05
 """Largest sum of the step residuals in a march, divided by the tolerance; see refine.RUN_SHARE."""
 MOST_VALUES = 2e7
-"""Largest number of tractions in memory at a time.  Longer paths are marched in pieces."""
+"""Largest number of tractions in memory at the same time.  Longer paths are marched in pieces."""
 STEPS = LOAD.steps / 2.0
 """Number of time steps for a path of length u_lim, divided by the level.  For a stroke of u_lim,
 half a period is 2 u_lim long and has as many steps as in LOAD, the ladder for oscillating loads."""

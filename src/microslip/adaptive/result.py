@@ -159,7 +159,7 @@ class Result:
         return None if self.dissipation is None else self.dissipation.error
 
     def to_dict(self) -> dict:
-        """Convert to a dict with the names of JSON and datasets; fields that do not apply are
+        """Convert to a dict with the names used in JSON and datasets; fields that do not apply are
         omitted."""
         inside = {*QUANTITIES, "effort"}
         plain = {one.name: getattr(self, one.name) for one in fields(self)}

@@ -2,7 +2,7 @@
 
 A vibrated contact under a constant force below the static limit comes to rest.  Period by period,
 the slip zones relax and transfer their load to the stick zone, until no point slips forward any
-more.  The displacement depends on the history.  Here the force is applied first, to a contact
+more.  The displacement depends on the history.  Here, the force is applied first, to a contact
 without tangential load.  Then the vibration starts at its mean position.
 """
 
@@ -45,7 +45,7 @@ RUN_SHARE = 0.2
 accumulate over all periods.  Near the static limit, a run takes several hundred periods
 (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
-"""Velocity for which the time steps are chosen; for velocity 0 the ladder has no time steps."""
+"""Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,6 @@
 """Single runs of a model and a method at one resolution, and the cost of a step.
 
-Single runs are used to compare methods.  Their results do not include an estimate of the
+Single runs are used to compare methods.  The results do not include an estimate of the
 discretisation error.
 """
 

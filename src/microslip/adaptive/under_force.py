@@ -41,13 +41,13 @@ HALVINGS = 2
 
 
 def drive_of(problem: Problem) -> Drive:
-    """Return the drive of a problem with a drive."""
+    """Return the drive of a problem that has one."""
     assert problem.drive is not None
     return problem.drive
 
 
 def force_of(problem: Problem) -> float:
-    """Return the prescribed force of a problem with a force."""
+    """Return the prescribed force of a problem that has one."""
     force = drive_of(problem).force
     assert force is not None
     return force

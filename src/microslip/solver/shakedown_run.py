@@ -1,6 +1,6 @@
 """One run of a contact under a force below the static limit, until it comes to rest.
 
-First the force alone displaces the contact by partial slip.  Then the oscillation begins at its
+First, the force alone displaces the contact by partial slip.  Then the oscillation begins at its
 mean position, and each period displaces the contact by less than the period before.  The remaining
 displacement decays at least as fast as a power of the number of periods.  So the displacements
 between successive doublings of this number decay at least as fast as a geometric series.
@@ -28,7 +28,7 @@ FIRST_LOOK, MOST_INTERVALS = 16, 16384
 """Number of (half) periods before the first check for rest, and largest number of (half)
 periods."""
 LOOKS = 1.5, 4.0 / 3.0
-"""Factors by which the number of (half) periods grows from check to check, used alternately.  The
+"""Factors, used alternately, by which the number of (half) periods grows from check to check.  The
 factors keep this number a multiple of four."""
 STEP_SHARE = 1e-4
 """Ratio of the tolerance of a step (as a force divided by mu F_z) to the tolerance of the

@@ -63,7 +63,7 @@ def simulate(
     Parameters
     ----------
     problem : problem.Problem
-        The problem, already checked.  Its velocity and amplitude are above 0; for steady motions
+        The problem, already checked.  Its velocity and amplitude are above 0; for steady motions,
         the amplitude is None.
     model : str
         Name in models.registry.MODELS.

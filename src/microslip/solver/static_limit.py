@@ -45,8 +45,8 @@ class StaticState(NamedTuple):
     Attributes
     ----------
     residual, oscillating : np.ndarray
-        Constant tractions R, and tractions q_osc at the first turning point, in the shape of the
-        states of the contact.
+        Constant tractions R, and tractions q_osc at the first turning point; both have the shape of
+        the contact's states.
     solver_residual : float
         Residual of the step solver summed over the steps, as a force divided by mu F_z.
     solves : int

@@ -30,8 +30,8 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 SLOW_LOOP = 0.02
-"""Largest drift at which the stick zone of the static limit determines the state on a loop, in
-u_lim per radian of phase."""
+"""The stick zone of the static limit determines the state on a loop if the drift is below this
+value, in u_lim per radian of phase."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Largest number of marches in a search for the periodic state, and largest number of searches.  An
 accelerated search that stalls because of rounding errors is restarted."""

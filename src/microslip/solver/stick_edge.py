@@ -21,8 +21,8 @@ from microslip.solver.static_loop import SLOW_LOOP
 from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop
 
 SLOW_LINE = 0.01
-"""Largest drift at which the stick zone of the static limit determines the state of a motion on a
-line, in u_lim per radian of phase.  For loops, see static_loop.SLOW_LOOP."""
+"""The stick zone of the static limit determines the state of a motion on a line if the drift is
+below this value, in u_lim per radian of phase.  For loops, see static_loop.SLOW_LOOP."""
 LOOP_RESOLUTION, SWEPT_RESOLUTION = Resolution(24, 4, 32), Resolution(24, 4, 96)
 TOLERANCE = 1e-3
 """Resolutions and tolerance of the search for motions on a loop.  Under an oscillating load, the
@@ -45,8 +45,9 @@ def edge_focus(
     """Grading of the rings for a slow motion, towards the edges of the static limit's stick zone.
 
     The stick zone of a circular motion is smaller than that of a linear motion of the same
-    amplitude, since the slip never stops.  The stick zone of a contact with a hole is a ring with
-    two edges.  Under an oscillating load, the edges are computed for the static limit only.
+    amplitude, because slip on a circle never stops.  The stick zone of a contact with a hole is a
+    ring with two edges.  Under an oscillating load, the edges are computed for the static limit
+    only.
 
     Parameters
     ----------

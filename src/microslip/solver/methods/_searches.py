@@ -1,4 +1,5 @@
-"""Simple searches for the periodic state, for comparison, and the Python marches that they use.
+"""Simple searches for the periodic state, used for comparisons, and the Python marches that they
+use.
 
 The arguments of every search are a period_map.PeriodMap, an initial state and a Goal.  Every search
 returns a PeriodicState.
@@ -25,7 +26,7 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 DEPTH = 12
 """Number of differences in the least-squares problem of Anderson acceleration."""
 NOISE = 0.1
-"""Largest ratio of the summed step residuals to the change of the state.  Above this ratio the
+"""Largest ratio of the summed step residuals to the change of the state.  Above this ratio, the
 march is repeated with a smaller step tolerance."""
 QUIET = 0.25
 """Factor applied to NOISE in the step tolerance if the initial state is near the periodic state."""

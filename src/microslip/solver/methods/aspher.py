@@ -1,14 +1,15 @@
 """The incremental frictional solver of the package aspher, on the same squares and path as ours.
 
 V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause).  The package must be installed.
-It solves the normal contact on the squares, then one tangential problem per backward Euler step by
-a projected conjugate gradient method.  It supports translations only, at any nu.
+First, it solves the normal contact on the squares.  Then it solves one tangential problem per
+backward Euler step by a projected conjugate gradient method.  It supports translations only, at any
+nu.
 
 The march starts without tractions and ends when the means of two periods agree, or after
 MOST_PERIODS.  Within so few periods, only fast forward motions become periodic.  Two settings
 differ from the defaults of the package:
 
-- The preconditioner is off.  It is designed for sticking points.  When the slip changes its
+- The preconditioner is off.  It is designed for sticking points.  When the slip changes
   direction, the preconditioned solver needs about five times as many iterations, and the means are
   no more accurate.
 

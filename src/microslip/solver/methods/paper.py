@@ -1,7 +1,7 @@
 """The method of the paper: 8,000 backward Euler steps from full slip on 32 x 32 squares, no search.
 
-In the paper, stresses are accurate to 0.1 %, and the result is the mean over the last period.  Here
-a period has 100 steps, and a step is solved when its residual is at most 0.1 % of the total
+In the paper, stresses are accurate to 0.1 %, and the result is the mean over the last period.
+Here, a period has 100 steps, and a step is solved when its residual is at most 0.1 % of the total
 friction.  The requested resolution is ignored.
 
 Paper: R. Pohrt, Front. Mech. Eng. 6:566440, 2020.
