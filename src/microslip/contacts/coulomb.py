@@ -45,8 +45,8 @@ def coulomb_residual(
     q, slip : np.ndarray, shape (2, n, m)
         Forward and lateral components of tractions and slip.
     bound, weight, scale : np.ndarray, shape (m,)
-        Friction bound, area of a point, and diagonal of the influence operator; they are equal for
-        all n.
+        Friction bound, area of a point, and diagonal of the influence operator.  They do not vary
+        along axis 1 of q.
     """
     rows = np.zeros(q.shape[2])  # one sum for each ring, so that the compiler can vectorise
     for j in range(q.shape[1]):

@@ -173,7 +173,8 @@ def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
 def _projected_step(
     system: System, step: Step, fields: Fields, length: float, trial: np.ndarray
 ) -> float:
-    """Fill `trial` with P(q + length slip).  Returns the residual, see coulomb.coulomb_residual."""
+    """Fill `trial` with P(q + length * slip).  Returns the residual, see
+    coulomb.coulomb_residual."""
     q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
     scale, bound, weight, columns = system.scale, step.bound, system.weight, len(sums)
     sums[:] = 0.0

@@ -1,8 +1,8 @@
 """Check for Ctrl-C in compiled code, which can run for minutes.
 
-Python handles signals only between its own instructions, so not while compiled code runs.  Compiled
-code therefore calls `interrupted` from time to time and ends early after Ctrl-C.  The calling
-Python code raises the signal again.
+Python handles signals only between its own instructions.  While compiled code runs, signals are not
+handled.  Compiled code therefore calls `interrupted` from time to time and ends early after Ctrl-C.
+The calling Python code raises the signal again.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from microslip.foundation.compiled import kernel
 
 LANES = 16
 """Number of neighbouring values that are accumulated at once.  The processor can accumulate two
-times four vectors in parallel."""
+groups of four vectors in parallel."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 

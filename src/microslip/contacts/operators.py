@@ -54,7 +54,7 @@ class Matrices(NamedTuple):
     Attributes
     ----------
     blocks : np.ndarray, shape (operators, rows, chunks, columns, LANES)
-        blocks[number, row, h, k] is the part of column k of a matrix that begins at its row
+        blocks[number, row, h, k] contains LANES rows of column k of a matrix, starting at the row
         `start(h, width)`.
     """
 

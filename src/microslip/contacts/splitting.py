@@ -36,7 +36,7 @@ RELAXATION = 1.7
 """Relaxation factor; 1.5 to 1.8 is usual (Eckstein and Bertsekas 1992)."""
 BETWEEN_BALANCES = 32
 """Number of iterations in a driven step between calls of `rebalance`.  It is above the mean numbers
-of iterations printed by benchmarks/splitting.py, so few steps need a call."""
+of iterations printed by benchmarks/splitting.py, so `rebalance` is rarely called."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
 """Search for the displacement at which the forces balance: first and largest trial in u_lim (each
 trial is four times the previous one), and number of bisections."""
@@ -90,8 +90,8 @@ def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
     """Best penalty of each ring if half of the points stick.
 
     The splitting converges fastest if the penalty is the geometric mean of the smallest and the
-    largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring and the largest to
-    the whole contact.  Their ratio is proportional to the number of rings.
+    largest eigenvalue of A.  The smallest eigenvalue belongs to a narrow ring, and the largest
+    belongs to the whole contact.  Their ratio is proportional to the number of rings.
 
     Parameters
     ----------
@@ -135,7 +135,8 @@ def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.nda
 
 @kernel(inline="always")
 def level_of(solver: Resolvent, stuck: float) -> int:
-    """Index of the penalty nearest to (1 - D) / D; stuck: D times the number of points."""
+    """Return the index of the penalty nearest to (1 - D) / D.  stuck: D times the number of
+    points."""
     level, ratio = 0, 0.5
     while level < len(solver.factors) - 1 and solver.count - stuck > ratio * stuck:
         level, ratio = level + 1, 2.0 * ratio

@@ -42,7 +42,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     stiffness, load : float
-        Coefficients of stiffness d + forward force = load.
+        Coefficients in the equation `stiffness d + forward force = load`.
     response : np.ndarray, shape (levels, *field)
         Tractions in response to d = 1, computed with the resolvent of each penalty.
     slope : np.ndarray, shape (levels,)

@@ -132,7 +132,7 @@ def project(q: np.ndarray, bound: np.ndarray) -> None:
 
 @kernel(inline="always")
 def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
-    """Add factor times values to the field `out`."""
+    """Add `factor` times `values` to the field `out`."""
     for c in range(2):
         for i in range(out.shape[1]):
             out[c, i] += factor * values[c, i]

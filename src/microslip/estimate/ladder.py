@@ -2,8 +2,8 @@
 
 The level n is the number of cells; angles and steps are proportional to it.  So the error has a
 single leading term C / n^2, which follows from the three levels n/4, n/2 and n.  LEVELS are two
-interleaved series of doublings.  So each level costs little more than the previous one, and the
-level after the next reuses the coarser levels.
+interleaved series of doublings.  So each level costs little more than the previous one, and a level
+can reuse the runs at half and at a quarter of it.
 
 The first level depends on the tolerance and on the motion.  Mesh and path also adapt to the
 problem: rings are graded towards the slip front (discretise.focus_strength), and the number of time
@@ -79,7 +79,7 @@ class Ladder:
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
-        """The levels that are tried in turn as the finest level at a tolerance.
+        """Levels to try at a tolerance, in this order, each as the finest level.
 
         The last of these levels is one level above the first level for SMALLEST_TOLERANCE.
         """
@@ -134,8 +134,8 @@ COUPLED = LOAD._replace(start=STATIC.start)
 """Several interacting contacts.  The set of sliding contacts can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
 """Number of angles on half the disc, divided by the level.  A rotation has its centre in the
-contact.  In a translation the tractions depend on the angle only at nu > 0, and weakly.  Calibrated
-by `benchmarks/angles.py`."""
+contact.  In a translation, the tractions depend on the angle only weakly, and only at nu > 0.
+Calibrated by `benchmarks/angles.py`."""
 
 
 def ladder_for(
@@ -210,7 +210,7 @@ def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | 
 
 
 def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
-    """Raise InputError if the cells or the steps are refined but not imposed."""
+    """Raise InputError if the ladder refines cells or steps for which no number is imposed."""
     numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
     free = " and ".join(name for name, refined, imposed in numbers if refined and imposed is None)
     if free:

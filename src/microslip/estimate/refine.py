@@ -125,8 +125,8 @@ def refine(
         Error of the dissipated energy for an error of 1 in the quantity.  It applies to the
         periodicity and solver errors.
     drive_work : float
-        Work of a prescribed force in a period at the velocity 1, divided by mu F_z u_lim, if the
-        quantity is a velocity.
+        If the quantity is a velocity: work that the prescribed force does in a period at the
+        velocity 1, divided by mu F_z u_lim.
 
     Returns
     -------

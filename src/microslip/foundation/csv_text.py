@@ -21,7 +21,8 @@ SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
 """Pattern of the texts that spreadsheets write in a cell without a value, such as #N/A and
 #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
-"""Pattern of a number with points between thousands, or of a number with three decimals."""
+"""Pattern of a number such as 1.100, where the point can be a thousands separator or a decimal
+mark."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 EMPTY = re.compile(r"[\s,;\"]*")
 """Pattern of a line of empty cells."""
@@ -115,7 +116,7 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
 
 
 class Thousands:
-    """Detector of columns in which points may separate thousands.
+    """Detector of columns in which points may be thousands separators.
 
     In a file with decimal commas, 900 and 1.100 may mean 900 and 1100.  If commas separate the
     cells, the decimal mark is a point, so no column is refused.
@@ -139,7 +140,7 @@ class Thousands:
                 del self.possible[name]
 
     def refuse(self) -> None:
-        """Raise ValueError for the first column in which points may separate thousands."""
+        """Raise ValueError for the first column in which points may be thousands separators."""
         for name, first in self.possible.items():
             if first and name in self.plain:
                 where, word = first

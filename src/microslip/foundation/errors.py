@@ -6,7 +6,7 @@ from __future__ import annotations
 import errno
 
 NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Operating system errors whose message suffices to find the remedy."""
+"""Operating system errors whose message already makes the remedy clear."""
 
 LONGEST = 400
 """Largest length of a value in a message, in characters.  The middle of a longer value is
@@ -16,8 +16,8 @@ omitted."""
 class InputError(ValueError):
     """An invalid argument.
 
-    The message is one line, "argument = value: what is allowed".  Other layers read the attributes
-    and replace the argument by the name of an option, or the value by the text of a quantity.
+    The message is one line, "argument = value: what is allowed".  Other layers use the attributes
+    to replace the argument with the name of an option, or the value with a quantity as text.
 
     Attributes
     ----------

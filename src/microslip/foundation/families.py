@@ -37,7 +37,7 @@ def modules_in(
     folder : str or path
         Folder of the package, or a user's folder.
     package : module
-        The package whose modules the files become.
+        Package to which the files are added as modules.
     broken : dict of str to str
         Dict to which the path and the error of each skipped file are added, by file name.
     """
@@ -79,7 +79,7 @@ class Registry(Generic[T]):
     Parameters
     ----------
     package : module
-        Package whose modules the files become.
+        Package to which the files are added as modules.
     base : type
         Base class.
     argument : str

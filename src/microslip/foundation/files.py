@@ -32,7 +32,7 @@ def refuse_no_folder(folder: object) -> None:
 
 
 def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
-    """Raise CacheError if a file exists in place of a folder to be made, or vice versa.
+    """Raise CacheError if the path of a folder is a file, or the path of a file is a folder.
 
     folders, files: paths that a run will make.  Their parent folders are checked as well.
     """
@@ -89,10 +89,10 @@ def _unique_beside(path: Path) -> Path:
 
 
 def _cause(error: Exception, beside: Path) -> Exception:
-    """Return the error from writing a small file to the same folder.  If this file can be written,
-    return the original error.
+    """Try to write a small file to the same folder.  Return the error from this attempt, or the
+    original error if the attempt succeeds.
 
-    On a full disk HDF5 reports "Permission denied" or "HDF error".
+    This is needed because HDF5 reports a full disk as "Permission denied" or "HDF error".
     """
     if getattr(error, "errno", None) in NO_WRITING:
         return error

@@ -3,7 +3,7 @@
 A result depends on the content of a file and not on its path.  So the digest of the content
 replaces the path in the name of a pressure or a motion:
 "file:sha256=0123456789abcdef,grid=samples".  A process stores the path for each digest.  `remember`
-stores paths that another process passes on.
+stores paths from another process.
 
 The module imports nothing slow, since every start of the workflow imports it.
 """
@@ -58,7 +58,7 @@ class NamedFile:
     Attributes
     ----------
     path : str
-        Path as in the name.  It is empty if the name contains only the digest.
+        Path in the name.  It is empty if the name contains only the digest.
     grid : str
         Meaning of the values of the grid, see pressures.grid.READINGS.
     digest : str
@@ -96,8 +96,8 @@ class NamedFile:
 
 
 class FileReader(Generic[T]):
-    """Reads objects from files by name.  The objects of the files read most recently are stored, so
-    that files with equal content share one object.
+    """Reads objects from files by name.  The most recent objects are stored, so that files with
+    equal content share one object.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def read(
     name : str
         Name such as "file:pad.csv".  If it contains a digest, the file must have this digest.
     argument : str
-        Argument of the name, for messages.
+        Name of the argument, for messages.
     folders : iterable of paths
         Folders in which a relative path is searched for.  The working directory is searched last.
 

@@ -27,7 +27,7 @@ class NumberTable:
     Attributes
     ----------
     columns : dict of str to np.ndarray, shape (rows,)
-        Numbers by the name of the column, as in the file.
+        Numbers in each column; the keys are the column names in the file.
     units : dict of str to str
         Unit of each column, as in the heading; empty for a column without brackets.
     lines : list of int
@@ -63,7 +63,7 @@ def read_numbers(
     complete : bool
         True if all columns are required.
     least : mapping of float
-        Smallest allowed number in a column, by the name of the column.
+        Smallest allowed number in each column; the keys are the column names.
     decimal, encoding : str
         Decimal mark and encoding of the file.
     most : int

@@ -61,7 +61,8 @@ def number_text(
         the number is rounded to the last decimal of the error.  If the error is too small to be
         printed, trailing zeros of the number are kept.  For a number without an error, trailing
         zeros are removed.  A number that is 0 within its error, or within the rounding error of
-        numbers near 1, is printed as 0.  Its printed error then includes the number itself.
+        numbers near 1, is printed as 0.  Its printed error is then the error plus the absolute
+        value of the number.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)

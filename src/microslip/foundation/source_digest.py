@@ -41,7 +41,7 @@ ENDINGS = {"py", "html", "css", "js"}
 """File name extensions of modules and of parts of pages.  Files with other extensions do not
 count."""
 FAMILIES = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
-"""Folder with one file for each name -> key of a request that contains the name."""
+"""Folder -> key of a request.  The value at this key contains the name of a file in the folder."""
 
 
 class Sources:
@@ -145,7 +145,8 @@ class Sources:
         return {}
 
     def _write_parsed(self) -> None:
-        """Store the parse results.  Without permission to write, the next process parses again."""
+        """Store the parse results.  If they cannot be stored, the next process parses the modules
+        again."""
         if not self._is_written:
             self._is_written = True
             with contextlib.suppress(CacheError):
@@ -188,7 +189,8 @@ def _sha256(content: bytes) -> str:
 
 
 _READER = _sha256(Path(__file__).read_bytes())
-"""Digest of this file.  Parse results from another version of this file are ignored."""
+"""Digest of this file.  Stored parse results are ignored if they come from another version of this
+file."""
 
 
 def _parse(content: bytes) -> tuple[str, list[str]]:

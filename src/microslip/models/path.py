@@ -39,9 +39,10 @@ class Integrator:
     order : int
         Order of convergence.
     times : tuple of float
-        Stage times c divided by the length of the step.
+        Times c of the stages, as fractions of the step.
     carried : tuple of tuple of float
-        Factors a_ij / gamma of carried slips, (stages, stages), zero on and above the diagonal.
+        Factors a_ij / gamma for the slips of earlier stages, (stages, stages); zero on and above
+        the diagonal.
     end : float
         Time of the last stage divided by the length of the step.  If it is below 1 (methods with a
         single stage), the state at the end of the step is extrapolated, and its tractions can
@@ -83,7 +84,8 @@ GRADED_STROKE = 2.0
 
 
 def turning_point_grading(drift: float, stroke: float) -> float:
-    """Grading g of the steps, 0 to 0.8: steps at the turning points are 1 - g times the mean step.
+    """Grading g of the steps, 0 to 0.8: a step at a turning point is (1 - g) times as long as the
+    mean step.
 
     If drift and stroke are small, most forward slip of a half period occurs near the turning
     points.  If the stroke is long, the whole contact slides soon after a turning point.
@@ -126,7 +128,7 @@ class Path:
     stages : np.ndarray, shape (steps, stages, 3)
         Displacement at every stage: forward, lateral, angle.
     carry : np.ndarray, shape (stages, stages)
-        Factors of carried slips, see Integrator.
+        Factors for the slips of earlier stages, see Integrator.carried.
     end : float
         Time of the last stage divided by the length of the step, see Integrator.
     depth : np.ndarray or None, shape (1 + steps * stages,)

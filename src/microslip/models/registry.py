@@ -10,8 +10,8 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
-In mdr, radial and polar the normal load can change.  For motion along one line at nu = 0, mdr is
-exact.
+The models mdr, radial and polar allow the normal load to change.  For motion along one line at nu =
+0, mdr is exact.
 
 An exact model converges to the solution of the contact problem as cells and steps are refined.  An
 approximate model neglects elasticity, partial slip or the interaction of points, whatever its

@@ -7,8 +7,9 @@ contact carries the fraction `share` of the load, then it has
 
     influence extent A,   weights share w,   stiffness k share / extent.
 
-The values of its tractions and bounds are the same in both systems of units.  A rotation given in
-the units of the contact moves its points `extent` times as far in the units of the body.
+The values of its tractions and bounds are the same in both systems of units.  Rotations are in the
+units of the contact.  The displacements that they cause are `extent` times larger in the units of
+the body.
 """
 
 from __future__ import annotations

@@ -143,8 +143,8 @@ class SystemContact(Contact):
         return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def affordable(self, work: float) -> float:
-        """Number of marches of the cost `work` before the budget must be checked. It is infinite in
-        this base class."""
+        """Number of marches that can run before the budget must be checked, if each march costs
+        `work`. It is infinite in this base class."""
         return np.inf
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:

@@ -45,8 +45,8 @@ def read_grids(
     Returns
     -------
     dict of str to Grid
-        Label -> grid.  The first label is "", for the grid itself.  The others are the same values
-        with the other meaning in READINGS, and the grid at half the resolution.
+        Label -> grid.  The first label is "", for the grid itself.  The second has the same values
+        with the other meaning in READINGS, and the third has half the resolution.
 
     Raises
     ------
@@ -266,7 +266,8 @@ def _coarsened(grid: Grid) -> Grid:
 
 
 def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Integral of the distance from the origin over each rectangle between edges x and y."""
+    """Integrate the distance from the origin over each rectangle of the grid with the edges x and
+    y."""
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
     tiny = 1e-99  # where it replaces 0, the logarithm is multiplied by 0

@@ -10,9 +10,9 @@ from microslip.foundation.number_table import NUMBER, number
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS, Units, read_pitch
 
 OUTSIDE = "B"
-"""Cell outside the sensor, in Tekscan files.  Its pressure is 0."""
+"""Content of cells outside the sensor in Tekscan files.  Its pressure is 0."""
 END = ["@@"]
-"""Cells of the last line, in Tekscan files."""
+"""Last line of Tekscan files, as a list of cells."""
 LEAST_COORDINATES = 4
 """Smallest number of evenly spaced values that count as coordinates."""
 EVEN = 0.05

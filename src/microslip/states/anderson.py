@@ -10,8 +10,8 @@ DEPTH = 12
 """Number of stored differences.  Of 5, 8 and 12, the value 12 needs the fewest marches for bores
 and loops."""
 DEPENDENT = 1e-8
-"""A difference is dropped if its part orthogonal to newer differences is below this fraction of the
-whole, in norm.  The value is about the square root of the rounding error."""
+"""A difference is dropped if the norm of its part orthogonal to newer differences is below this
+fraction of its full norm.  The value is about the square root of the rounding error."""
 
 
 @kernel
@@ -37,8 +37,8 @@ def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarra
     """Fill `out`, shape (n,), with the combination of images that has the smallest change.
 
     The least-squares problem is solved by modified Gram-Schmidt, starting with the newest
-    difference.  `pairs` holds images and changes, the newest last.  `scale`, shape (n,), is the
-    square root of the metric of changes.
+    difference.  `pairs` holds images and changes, the newest last.  `scale`, shape (n,), multiplies
+    changes in the least-squares norm.
     """
     images, changes = pairs[0], pairs[1]
     last, n = count - 1, len(out)

@@ -53,9 +53,10 @@ class Goal(NamedTuple):
     share : np.ndarray, shape (steps,)
         Duration of each step divided by the duration of the path.
     static_force : float
-        Mean forward force in the static limit; NaN if unknown. least : float Mean forward force
-        below which a state is stuck and changes slowly.  It is about the force of the static limit;
-        NaN if unknown.
+        Mean forward force in the static limit; NaN if unknown.
+    least : float
+        Mean forward force below which a state is stuck and changes slowly.  It is approximately the
+        static limit; NaN if unknown.
     full : float
         Mean forward force of full slip, which is the largest possible value.
     gain : float
@@ -107,14 +108,14 @@ class Memory(NamedTuple):
     place : np.ndarray, shape (2,)
         x and x' at the start of the next march.
     guess : np.ndarray
-        Field march.Trace.fields of the last march.
+        march.Trace.fields from the last march.
     pairs : np.ndarray, shape (2, DEPTH + 1, state.size + 2)
         Images and changes, see anderson.remember.
     above : np.ndarray, field
         Last state that was not stuck; initially the first state.
     counts : np.ndarray of int, shape (5,)
-        Numbers of marches, iterations and pairs; 1 while the plain map contracts fast, otherwise 0;
-        and number of times in a row that the search went back.
+        Number of marches, number of iterations, number of pairs, 1 while the plain map contracts
+        fast (otherwise 0), and number of consecutive returns of the search.
     numbers : np.ndarray, shape (2,)
         Tolerance of the steps in the next march, and residual of the last march.
     best : tuple of np.ndarray
@@ -202,7 +203,7 @@ def search(
     Returns
     -------
     done : bool
-        Whether the search ended, because the state converged or is not finite; see memory.best.
+        Whether the search ended: the state converged or is not finite, see memory.best.
     broken : bool
         Whether the search was interrupted and can be continued.
     """

@@ -2,7 +2,7 @@
 
 Such a contact, for example a flat end, acts as a single spring. M. Popov (Front. Mech. Eng. 6:69,
 2020) gives two empirical formulas, Eqs 37 and 38. Both depend on the ratio of the velocity to the
-amplitude. Above a ratio of 1 the contact slides all the time.
+amplitude. If the ratio is above 1, the contact slides all the time.
 """
 
 from __future__ import annotations

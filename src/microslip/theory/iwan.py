@@ -10,11 +10,10 @@ which is 3/4 (1 - phi)^(-1/2) for a sphere.  The model is exact for every histor
 displacement, because the model and the contact follow Masing's rules.  Under a punch, the sliders
 below the flat end slip together at phi = 1.
 
-The discrete model divides the contact radius into intervals.  One element replaces the sliders of
-each interval.  The element has the total stiffness and the total limit force of these sliders.  So
-the model has the initial stiffness of the contact and the correct force at full slip.  The first
-loading of the model consists of tangents of F at the ends of the intervals, so the force is never
-below F.
+The discrete model divides the contact radius into intervals.  In each interval, one element
+replaces all sliders.  It has their total stiffness and their total limit force.  So the model has
+the initial stiffness of the contact and the correct force at full slip.  The first loading of the
+model consists of tangents of F at the ends of the intervals, so the force is never below F.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ import numpy as np
 from microslip.theory.indenter_pressure import IndenterPressure
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
-"""Contact radii in the table that is interpolated for the ends of the intervals."""
+"""Contact radii in the table from which the ends of the intervals are interpolated."""
 LOOP_ERRORS = 3.0
 """Largest error on loops, divided by the largest error e on the first loading.  A branch of a loop
 is F(u_max) - 2 F(x) + 2 F(y), and every F has an error from 0 to e."""
@@ -49,8 +48,8 @@ class Iwan:
         Largest error of the force on the first loading near the slip displacement of each element,
         due to the finite number of elements.
     poisson_error : float
-        Largest force error due to Poisson's ratio, compared with the full contact.  It is taken
-        over a first loading and a loop between full slip in both directions.  It is 0 for nu = 0.
+        Largest difference in force from the full contact due to Poisson's ratio, on a first loading
+        and on a loop between full slip in both directions.  It is 0 for nu = 0.
     """
 
     stiffness: np.ndarray
@@ -128,8 +127,8 @@ def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
 
 
 def with_tolerance(pressure: IndenterPressure, tolerance: float) -> Iwan:
-    """Iwan model at nu = 0 whose `error` is at most the tolerance, with nearly the fewest
-    elements."""
+    """Create an Iwan model for nu = 0 whose `error` is at most the tolerance, with almost as few
+    elements as possible."""
     model = with_elements(pressure, 1)
     while model.error > tolerance:  # the error is proportional to count^-2
         count = len(model.stiffness)

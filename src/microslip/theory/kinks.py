@@ -15,10 +15,11 @@ import numpy as np
 from microslip.foundation import spec
 
 LOOP = "elliptic"
-"""Name of the motions that oscillate in two directions. Parameters missing from a name are 1."""
-LOAD = "normal"
-"""Name of the motions whose normal load or indentation oscillates. A load missing from a name is
+"""Name of the motions that oscillate in two directions. A parameter that is not in the name is
 1."""
+LOAD = "normal"
+"""Name of the motions whose normal load or indentation oscillates. A load that is not in the name
+is 1."""
 
 
 class Kinks(NamedTuple):

@@ -137,8 +137,8 @@ def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
 
 
 def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Root of an increasing function between low and high, or high if there is no root; shape
-    (n,)."""
+    """Root of an increasing function in the interval [low, high], shape (n,). If there is no root,
+    it is `high`."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -8,10 +8,10 @@ contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
-because at every tau the stretch is at most the yield stretch. With phi(t) = d(t) - v t, the stretch
-is phi(t) - min phi below the yield stretch, at any x. The mean over the springs is an integral over
-T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of an
-indenter's pressure.Pressure.
+because at every tau the stretch is at most the yield stretch. Let phi(t) = d(t) - v t. Below the
+yield stretch, the stretch at any x is phi(t) - min phi. The mean over the springs is an integral
+over T. This is exact for Poisson's ratio 0. Quantities are dimensionless, in the working units of
+an indenter's pressure.Pressure.
 """
 
 from __future__ import annotations

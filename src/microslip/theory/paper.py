@@ -81,8 +81,8 @@ def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0
     """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
     Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
-    Returns two arrays, -velocity and time. The paper writes t/(v0 a) in Eq 13, which is not
-    dimensionless.
+    The result is the two arrays -velocity and time. The paper writes t/(v0 a) in Eq 13, which is
+    not dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -111,8 +111,8 @@ def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     19).
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 E(k) at
-    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at 0
-    through 4 at 1 to pi/ratio.
+    the modulus k = ratio for ratio <= 1, and Q_M(1/ratio) for ratio > 1. It falls from 2 pi at
+    ratio 0 to 4 at ratio 1, and approaches pi/ratio at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, even, odd)[()]
@@ -122,8 +122,8 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
-    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from
-    pi*ratio through 4 at 1 to 2 pi.
+    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It is about
+    pi*ratio at small ratios, 4 at ratio 1, and approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -295,9 +295,9 @@ def _stick_zone_rule(
     the nodes.
 
     The roots are complement*cosh(eta) and complement*sinh(eta) with complement = sqrt(1 - c^2), and
-    r dr is minus the product of the roots times d(eta). The substitution resolves the edge layer of
-    a small amplitude. The nodes of eta follow a squared sine, because the integrands have
-    half-integer powers at both ends.
+    r dr = -(product of the roots) d(eta). The substitution resolves the edge layer of a small
+    amplitude. The nodes of eta follow a squared sine, because the integrands have half-integer
+    powers at both ends.
     """
     # Smaller amplitudes change friction by less than the rounding error.
     complement = np.maximum(complement, 1e-8)

@@ -41,7 +41,7 @@ class PolarContact(SystemContact):
         Number of rings, and number of points of each ring on half the disc.  The latter must be
         even.
     rotates : bool
-        Whether the motion is a rotation, which has mirror symmetry; otherwise it is a translation.
+        True for a rotation, which has mirror symmetry; False for a translation.
     poisson : float
         Poisson's ratio.
     focus : mesh.Focus, float or None
@@ -146,5 +146,6 @@ class PolarContact(SystemContact):
 
 
 def _interpolated(x: np.ndarray, nodes: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
-    """Interpolate values at nodes along an axis linearly to x; constant beyond the nodes."""
+    """Interpolate linearly along an axis, from values at the nodes to the points x.  Values are
+    constant beyond the nodes."""
     return np.apply_along_axis(lambda line: np.interp(x, nodes, line), axis, values)

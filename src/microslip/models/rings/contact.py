@@ -125,8 +125,8 @@ class RadialContact(SystemContact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Effective radii (cells + 1,): the radius of a contact that has the stiffness of the first
-        k rings without slip.
+        """Effective radii, (cells + 1,).  Without slip, a contact of effective radius k has the
+        same stiffness as the first k rings.
 
         An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
         contact when the contact radius reaches the mean of the effective radii without and with

@@ -46,10 +46,10 @@ class Averaging(NamedTuple):
     coupled : bool
         Whether the modes m and 2 - m are coupled (nu > 0).
     outer, inner : tuple of np.ndarray
-        Rules for the narrower ring, and for the other ring.  The latter starts at the point of
-        closest approach.
+        Quadrature rules for the narrower ring, and for the other ring.  The latter starts at the
+        point of closest approach.
     apart : tuple of np.ndarray
-        Rule for both rings if their distance is at least the width of a ring.
+        Quadrature rule for both rings if their distance is at least the width of a ring.
     """
 
     psi: np.ndarray

@@ -25,8 +25,8 @@ class Focus(NamedTuple):
     radii : tuple of float
         Increasing radii divided by the contact radius, 0 to 1.
     strength : float
-        Strength of the grading: rings at one of the radii are 1 - strength times as wide as the
-        mean.
+        Strength of the grading: a ring at one of the radii is (1 - strength) times as wide as the
+        mean ring.
     """
 
     radii: tuple[float, ...]
@@ -142,8 +142,8 @@ def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
 
 
 def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
-    """Number of rings before each end, in proportion to psi.  There are at least a few rings on
-    both sides of each place."""
+    """Return the number of rings inside each end, approximately proportional to psi.  There are at
+    least a few rings on both sides of each place."""
     least = max(count // (2 * len(ends) - 2), 1)
     before = [int(round(count * end / ends[-1])) for end in ends]
     for k in range(1, len(ends)):

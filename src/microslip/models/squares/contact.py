@@ -1,8 +1,8 @@
 """Contact of square cells with FFT convolution, for any nu and any outline.
 
-This model is the general reference for the other models, and the discretisation of the paper.
-Tractions have the symmetries that the rigid displacement, the pressure and the influence operator
-have in common.  Of all cells related by these symmetries, only one is resolved (see `_images`)."""
+This model uses the paper's discretisation and is the reference for the other models.  Tractions
+have the symmetries that the rigid displacement, the pressure and the influence operator have in
+common.  Of all cells related by these symmetries, only one is resolved (see `_images`)."""
 
 from __future__ import annotations
 

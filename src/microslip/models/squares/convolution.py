@@ -46,7 +46,7 @@ class Convolution(NamedTuple):
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
-        Row of the opposite frequency of each row.
+        For each row, the row with the opposite frequency.
     images : int
         Number of squares for each resolved square: 1 if all are resolved, 2 for a half, 4 for a
         quarter.
@@ -134,11 +134,12 @@ def square_convolution(
 def influence(
     cells: int, padded: int, poisson: float, modulus: float = G_STAR
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the influence coefficients of the traction and of its complex conjugate, (P, P) each.
+    """Compute the influence coefficients for the traction and for its complex conjugate, (P, P)
+    each.
 
     The kernels of rings/influence.py are integrated over a square in closed form, and evaluated at
     the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
-    offset, and the second the lateral offset; negative offsets are wrapped around."""
+    offset, and the second axis is the lateral offset.  Negative offsets are wrapped around."""
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")

@@ -8,8 +8,9 @@
   -i is minus the conjugate of row i.  At the frequency k, the transform of row -i is minus the
   conjugate of the transform of row i at -k.
 
-So half of the rows are transformed along the lateral axis, and then half of the lateral frequencies
-along the forward axis.  The values at the other frequencies give the other half of the cells.
+So only half of the rows are transformed along the lateral axis.  Then half of the lateral
+frequencies are transformed along the forward axis.  The values at the other frequencies give the
+other half of the cells.
 
 The influence of the conjugate traction requires the transform of the conjugate.  Under a half turn
 the transform of a real field is real, except for the phase e of the centre.  The transform of the
@@ -52,7 +53,8 @@ class Halving(NamedTuple):
 def halving(order: np.ndarray, opposite: np.ndarray, cells: int, symmetry: str) -> Halving:
     """Create the Halving of a transform with P rows for `cells` along a side.
 
-    order: frequency of each row, (P,); opposite: row of the opposite frequency, (P,).
+    order: frequency of each row, (P,).  opposite: for each row, the row with the opposite
+    frequency, (P,).
     """
     rows = np.flatnonzero(np.arange(len(order)) <= opposite)
     mirror = symmetry == MIRROR
@@ -63,7 +65,7 @@ def halving(order: np.ndarray, opposite: np.ndarray, cells: int, symmetry: str) 
 def halved_filter(
     transforms: Sequence[np.ndarray], order: np.ndarray, rows: np.ndarray, cells: int, symmetry: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The two factors of a convolution of half the squares, shape (P, H) each.
+    """Compute the two factors for the convolution of half of the squares, shape (P, H) each.
 
     The first factor multiplies the transform.  The second factor multiplies the conjugate of the
     transform for TURN, and the opposite row of the transform for MIRROR.  transforms: transforms of

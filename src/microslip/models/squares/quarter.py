@@ -23,14 +23,14 @@ from microslip.foundation.compiled import kernel
 
 
 class Folding(NamedTuple):
-    """Order of cells and frequencies of a quarter that is padded to L rows.
+    """Order of the cells and frequencies in a quarter.  The quarter is padded to L rows.
 
     Attributes
     ----------
     place : np.ndarray, shape (L,)
         Row of each cell in the input of the transform.
     opposite : np.ndarray, shape (L,)
-        Row of the frequency L - k, for the row of each frequency k; the same row for k = 0.
+        For the row of the frequency k, the row of the frequency L - k; the same row if k = 0.
     turn : np.ndarray, shape (2, L)
         cos and sin of pi k / (2 L) for each row.
     """
@@ -43,7 +43,8 @@ class Folding(NamedTuple):
 def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
     """Create the Folding of a transform with L rows.
 
-    order: frequency of each row, (L,); opposite: row of the opposite frequency, (L,).
+    order: frequency of each row, (L,).  opposite: for each row, the row with the opposite
+    frequency, (L,).
     """
     cells = np.arange(len(order))
     place = np.where(cells % 2 == 0, cells // 2, len(order) - 1 - cells // 2)
