@@ -6,8 +6,8 @@ driven by a constant force or a spring k, obeys
     m x'' + c x' + k x + f = load,    f: forward force of the contact,
 
 in working units, where primes are derivatives with respect to the phase.  The far end of the spring
-follows the path.  The integrator of the contact integrates the body as well.  Let d = g x' be the
-increment of x in a stage, where g is the implicit part of the stage.  Then each stage adds the
+follows the path.  The contact's integrator also integrates the motion of the body.  Let d = g x' be
+the increment of x in a stage, where g is the implicit part of the stage.  Then each stage adds the
 equation
 
     stiffness d + f(q) = load,    stiffness = k + c / g + m / g^2,

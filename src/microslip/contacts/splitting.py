@@ -8,7 +8,7 @@ until the force Sum weight |v - q| is within the tolerance.  The slip is b - A v
 itself is never applied.  The iteration converges for any relaxation below 2 (Lions and Mercier
 1979; Eckstein and Bertsekas 1992).  The response of v to the displacement d of a driven body is d
 times a constant field, so the equation of the body is solved by a division.  After every
-BETWEEN_BALANCES iterations `rebalance` solves the equation of the body for the tractions P(y).
+BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the tractions P(y).
 
 A small penalty is best for points that stick, and a large penalty for points that slip.  Let D be
 the derivative of the projection, averaged over the points and both directions.  It is 1 for a point
@@ -38,10 +38,10 @@ BETWEEN_BALANCES = 32
 """Number of iterations in a driven step between calls of `rebalance`.  It is above the mean numbers
 of iterations printed by benchmarks/splitting.py, so `rebalance` is rarely called."""
 FIRST_ADVANCE, LONGEST_ADVANCE, HALVINGS = 1e-3, 1e6, 40
-"""Search for the displacement at which the forces balance: first and largest trial in u_lim (each
-trial is four times the previous one), and number of bisections."""
+"""Parameters of the search for the displacement at which the forces balance: first and largest
+trial in u_lim (each trial is four times the previous one), and number of bisections."""
 BALANCED_RINGS = 12
-"""With this number of rings the best penalty equals a ring's self-influence, if half of the points
+"""Number of rings at which the best penalty equals a ring's self-influence, if half of the points
 stick.  Calibrated by benchmarks/splitting.py."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
 """Possible penalties of a step divided by `best_penalty`, from 1/sqrt(8) to sqrt(8)."""
@@ -175,10 +175,10 @@ def _imbalance(
 def rebalance(
     system: System, balance: Balance, step: Step, y: np.ndarray, displacement: float
 ) -> None:
-    """Shift y in place to the displacement at which the forces on the body balance.
+    """Shift y, in place, to the displacement at which the forces on the body balance.
 
-    The splitting alone converges slowly if nearly all points slip and the drive is soft. y does not
-    change if the shift would exceed LONGEST_ADVANCE."""
+    The splitting alone converges slowly if nearly all points slip and the drive is soft. If the
+    shift would exceed LONGEST_ADVANCE, y does not change."""
     imbalance = _imbalance(system, balance, step, y, displacement, 0.0)
     if not abs(imbalance) > step.tolerance:
         return

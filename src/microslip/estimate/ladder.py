@@ -129,7 +129,7 @@ LOAD = Kind(start=24, steps=4)
 SQUARES = ROTATION._replace(start=LOAD.start)
 """Squares across the diameter.  They are not graded towards the slip front."""
 STATIC = Kind(start=32, steps=0)
-"""Static limit at turning points, where slip fronts cut through the cells."""
+"""Static limits, computed at turning points.  There, slip fronts cut through the cells."""
 COUPLED = LOAD._replace(start=STATIC.start)
 """Several interacting contacts.  The set of sliding contacts can change within a step."""
 ANGLES_OF_ROTATION, ANGLES_OF_TRANSLATION = 0.5, 0.125
@@ -226,10 +226,10 @@ def with_mass(
 
     The natural frequency divided by the vibration frequency is sqrt(stiffness / mass), with the
     stiffness of the contact (1.5 for a sphere at nu = 0).  If the steps are longer than a radian of
-    the natural oscillation, runs can agree with each other although they are wrong.  Steps of a
-    radian are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the
-    contact raises the natural frequency by a factor of sqrt(s).  It also reduces the force of this
-    oscillation on the contact by a factor of s.  For a second-order method the two effects cancel.
+    the natural oscillation, runs can agree with each other and still be wrong.  Steps of a radian
+    are sufficient for the tolerance LOOSEST.  A spring that is s times stiffer than the contact
+    raises the natural frequency by a factor of sqrt(s).  It also reduces the force of this
+    oscillation on the contact by a factor of s.  For a second-order method, the two effects cancel.
 
     Parameters
     ----------

@@ -35,7 +35,8 @@ SMALLEST_SHARE = 0.7
 """Smallest error estimate for the resolution, divided by the tolerance.  It is above 0 because
 three levels can agree by chance.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
-"""Largest sum of the other errors, divided by the tolerance, at which finer runs are worthwhile."""
+"""Finer runs are started only if the sum of the other errors is at most this fraction of the
+tolerance."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Refined:
     periodic : bool
         Whether every run found its periodic state.
     ladder : ladder.Ladder
-        Ladder of resolutions of the runs.
+        Resolutions of the runs at all levels.
     """
 
     value: Estimate

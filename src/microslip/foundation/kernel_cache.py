@@ -2,7 +2,7 @@
 
 Numba checks stored code by the date and size of the function's own file.  It ignores edits of other
 files that the function uses.  So the name of the folder contains a digest of all compiled functions
-and of the modules that they import.  Each edit leads to another folder.
+and of the modules that they import.  Each edit changes the name.
 """
 
 from __future__ import annotations

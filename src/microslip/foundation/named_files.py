@@ -163,8 +163,8 @@ def parse(name: str, argument: str = "file") -> NamedFile:
 def read(
     name: str, argument: str, folders: Iterable[str | os.PathLike] = ()
 ) -> tuple[NamedFile, bytes]:
-    """Read the file with this name.  Returns its NamedFile, with absolute path and digest, and its
-    content.
+    """Read the file with this name.  Returns two values: the NamedFile, which contains the absolute
+    path and the digest, and the content.
 
     Parameters
     ----------

@@ -95,7 +95,7 @@ class Contact(Protocol):
         Radii between the rings; None for contacts without rings.
     radius : float
         If the normal load changes: largest contact radius divided by the reference radius.  In this
-        case `bound` is the friction bound at the start of a period.
+        case, `bound` is the friction bound at the start of a period.
     """
 
     angles: int

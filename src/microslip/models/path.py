@@ -8,7 +8,7 @@ every stage is one Coulomb step,
     A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
 
 with r_i = gamma h (slip rate).  The last stage is the end of the step, so that tractions at the end
-of a step are within the friction bound.  Backward Euler has a single stage.  In a theta method the
+of a step are within the friction bound.  Backward Euler has a single stage.  In a theta method, the
 single stage is before the end of the step.  The state is extrapolated to the end, where tractions
 can exceed the bound.
 """
@@ -109,7 +109,7 @@ def turning_point_width(drift: float, stroke: float) -> float:
     strokes the width is infinite, and only the grading applies.  The slip reverses within the phase
     max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian or
     below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
-    zone gradually.  At the stroke LONG_STROKE the longest step is twice the shortest."""
+    zone gradually.  At the stroke LONG_STROKE, the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke

@@ -41,7 +41,8 @@ class Layout(NamedTuple):
     width: int
 
     def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
-        """Convert values (..., rows or 1, columns of all contacts) to fields (..., points).
+        """Convert values to fields (..., points). The values have the shape (..., rows, columns of
+        all contacts), where rows can be 1.
 
         fill: value at the additional points.
         """

@@ -1,7 +1,7 @@
 """Axisymmetric indenters: profiles whose contact is a full circle that grows with the load.
 
 By the method of dimensionality reduction, an indenter with the profile f(r) is equivalent to the
-plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c) the
+plane profile D(c) = c Integral_0^c f'(r) / sqrt(c^2 - r^2) dr.  At the indentation depth D(c), the
 contact radius is c.  With h = D / D(1), and the friction bound written as a superposition of flat
 punches,
 

@@ -20,7 +20,7 @@ SMALLEST_RATIO = 0.05
 
 @dataclass(frozen=True)
 class Ellipse(Pressure):
-    """The pressure of an elliptic Hertz contact with the semi-axes a and `ratio` times a.
+    """The pressure of an elliptic Hertz contact with the semi-axes a and `ratio` * a.
 
     u_lim is the displacement at the centre under full slip.  Hence G* = 3 K / (2 pi), where K is
     the complete elliptic integral of the eccentricity; this is 3/4 for a circle.

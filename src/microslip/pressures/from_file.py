@@ -3,9 +3,9 @@ grid.py).
 
 A CSV file has a heading line with the columns forward, lateral and pressure, and then one line for
 each point.  A netCDF file has a variable `pressure` with the coordinates `forward` and `lateral`.
-By default a value is the mean over the cell around its point, as sensors measure it; the load is
-then the sum of values times cell areas.  With ",grid=samples" after the path, values apply at the
-points and are interpolated bilinearly. ",pitch=0.5 mm" reads a matrix of pressures without
+By default, a value is the mean over the cell around its point, as sensors measure it.  The load is
+then the sum of the values times the cell areas.  With ",grid=samples" after the path, values apply
+at the points and are interpolated bilinearly. ",pitch=0.5 mm" reads a matrix of pressures without
 coordinates (see grid_matrix.py). ",decimal=comma" and ",encoding=cp1252" describe the format of a
 CSV file."""
 

@@ -104,7 +104,7 @@ def _even(label: str, axis: np.ndarray) -> np.ndarray:
 
 def _in_steps(points: Sequence[np.ndarray]) -> tuple[list[np.ndarray], float]:
     """Return coordinates that start at 0, in units of the longer step, and the length of this step.
-    In these units areas neither overflow nor underflow.
+    In these units, areas neither overflow nor underflow.
 
     Raises InputError if one step is more than 1e12 times the other.
     """

@@ -26,7 +26,8 @@ from microslip.states.anderson import DEPTH, accelerated, remember
 FORCING = 1e-3
 """Tolerance of the steps in a march, divided by the last change of the state."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
-"""Largest tolerance of a step, for an initial state far from and near the periodic state."""
+"""Largest tolerance of a step.  The first value is for an initial state far from the periodic
+state, and the second value is for one near it."""
 NOISE = 1e-2
 """Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
 error of the state decays only as fast as the state drifts."""
@@ -115,7 +116,7 @@ class Memory(NamedTuple):
         Last state that was not stuck; initially the first state.
     counts : np.ndarray of int, shape (5,)
         Number of marches, number of iterations, number of pairs, 1 while the plain map contracts
-        fast (otherwise 0), and number of consecutive returns of the search.
+        fast (otherwise 0), and number of consecutive returns to an earlier state.
     numbers : np.ndarray, shape (2,)
         Tolerance of the steps in the next march, and residual of the last march.
     best : tuple of np.ndarray

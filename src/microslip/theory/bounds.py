@@ -1,8 +1,8 @@
 """Upper bounds on the reduction of friction by vibration.
 
-Over a period all work of the contact forces is dissipated, because the elastic energy is periodic.
+Over a period, all work of the contact forces is dissipated, because the elastic energy is periodic.
 Every point slips forward by velocity times period, and the length of its slip path is at least this
-distance.  This gives a lower bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu
+distance.  This gives a lower bound on the dissipation.  With the force F (|F| <= 1) and d = 1 - mu,
 it follows that:
 
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
@@ -23,8 +23,8 @@ The bounds hold for any nu and any stiffness.  The arguments are the paper's dim
 
 Friction never decreases as the forward velocity increases.  Coulomb's law at a given pressure is
 monotone, and the half-space is elastic.  So (mu1 - mu2)(v1 - v2) >= 0 for periodic states of the
-same oscillation at the velocities v1 and v2.  If the oscillation reverses its forward motion half a
-period later under the same load (motions/symmetry.py), friction is odd in the velocity.  So it is
+same oscillation at the velocities v1 and v2.  Friction is odd in the velocity if the oscillation
+reverses its forward motion half a period later under the same load (motions/symmetry.py).  So it is
 never negative for v > 0.  Other motions can propel the contact (Motion.propels).
 """
 

@@ -137,9 +137,9 @@ def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: fl
 def torsion_energy(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
     """Dissipated energy per period of an oscillating torsion without sliding.
 
-    By Masing's rules it is 8 W - 4 T phi, with the work W of the first loading.  The torque T is
+    By Masing's rules, it is 8 W - 4 T phi, with the work W of the first loading.  The torque T is
     the sum of the torques (16/3) G s^3 (-d phi(s)) of punches of all radii s.  Integration by parts
-    gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere this is the formula of
+    gives 64 G Integral_c^1 s^2 phi(s) (phi(c) - phi(s)) ds.  For a sphere, this is the formula of
     Lubkin and Deresiewicz.
 
     Parameters

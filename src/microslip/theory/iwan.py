@@ -1,8 +1,8 @@
 """Iwan model of a contact: parallel Jenkins elements, each a spring in series with a slider.
 
 Along one line at nu = 0, the force F of the first loading is 1 minus the load at the indentation
-depth 1 - u, and its slope is 2 G* c with the contact radius c at this depth.  An Iwan model whose
-sliders have the density rho over the slip displacement phi has the slope Integral_u^1 rho dphi.  So
+depth 1 - u, and its slope is 2 G* c with the contact radius c at this depth.  If an Iwan model has
+sliders with the density rho over the slip displacement phi, its slope is Integral_u^1 rho dphi.  So
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 

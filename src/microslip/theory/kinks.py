@@ -47,7 +47,7 @@ KINKS = {
     # to 2 % larger.
     "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
-"""Kinks by motion under Hertz pressure."""
+"""Name of a motion -> its kinks under Hertz pressure."""
 UNDER_ANY = {
     # The whole contact slides sideways at the amplitude 1. Above the kink velocity a part of the
     # contact no longer sticks at the turning points. The curve is fitted to jumps in the second
@@ -62,7 +62,7 @@ UNDER_ANY = {
     # 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
-"""Kinks by motion under any pressure, in the units of that pressure."""
+"""Name of a motion -> its kinks under any pressure, in the units of that pressure."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:

@@ -2,7 +2,7 @@
 
 If the sphere moves along a line, the tangential force depends only on the history of its
 displacement. The force of the first loading is F(d), with d in u_lim and F in mu F_z. For a sphere
-it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn the force follows the same curve at
+it is 1 - (1 - d)^(3/2) (Cattaneo and Mindlin). After each turn, the force follows the same curve at
 twice the scale until it reaches the previous turn. Then it follows the older branch. This is exact
 for Poisson's ratio 0. Quantities are dimensionless as in `paper`.
 """
@@ -78,7 +78,7 @@ def loop_energy(
     """Dissipated energy of a loop of force against displacement, 8 W(A) - 4 A F(A).
 
     W is the work of the first loading, the integral of the curve F from 0 to the amplitude A. For a
-    sphere this is the formula of Mindlin and Deresiewicz.
+    sphere, this is the formula of Mindlin and Deresiewicz.
 
     Parameters
     ----------

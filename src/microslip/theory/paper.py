@@ -25,7 +25,7 @@ def large_amplitude_transverse(
 ) -> np.ndarray | float:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
-    It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0. At velocity 0 it is 0 for
+    It is (2/pi) K(m = -(amplitude/velocity)^2). It is 1 at amplitude 0. At velocity 0, it is 0 for
     every amplitude above 0. Raises ValueError unless velocity >= 0 and amplitude >= 0; the
     arguments are broadcast.
     """
@@ -81,8 +81,8 @@ def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0
     """Instantaneous centre of rotation (lateral, forward) in the frame at rest (Eq 14).
 
     Raises ValueError unless velocity >= 0 and time t~ = t v0/a >= 0; the arguments are broadcast.
-    The result is the two arrays -velocity and time. The paper writes t/(v0 a) in Eq 13, which is
-    not dimensionless.
+    Returns the pair of arrays (-velocity, time). The paper writes t/(v0 a) in Eq 13, which is not
+    dimensionless.
     """
     velocity, time = checked("velocity", velocity), checked("time", time)
     return 0 * time - velocity, time + 0 * velocity
@@ -122,8 +122,8 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
-    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It is about
-    pi*ratio at small ratios, 4 at ratio 1, and approaches 2 pi at large ratios.
+    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from
+    0 to 4 at ratio 1, and approaches 2 pi. At small ratios it is about pi*ratio.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]
@@ -253,7 +253,7 @@ def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float
     """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
 
     It is the integral over the stick zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound
-    of mindlin_traction, and 0 for amplitude >= 1. At other Poisson's ratios Mindlin's traction and
+    of mindlin_traction, and 0 for amplitude >= 1. At other Poisson's ratios, Mindlin's traction and
     this limit are approximations. Raises ValueError unless amplitude >= 0; the argument can have
     any shape.
     """

@@ -1,9 +1,9 @@
 """The influence operator for points on rings and at angles.  It is block-diagonal in angular modes.
 
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
-0 the forward tractions of a mode cause only forward displacements, and the lateral tractions only
-lateral displacements.  Both have the same ring matrix.  At nu > 0 the complex waves e^{i m theta}
-of forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
+0, the forward tractions of a mode cause only forward displacements, and the lateral tractions cause
+only lateral displacements.  Both have the same ring matrix.  At nu > 0, the complex waves e^{i m
+theta} of forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
 
 from __future__ import annotations
 

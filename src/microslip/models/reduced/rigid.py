@@ -1,7 +1,7 @@
 """The rigid contact: every point slips in the direction of its rigid velocity at every instant.
 
-For a translation it is the rigid slider of Eq 6; for a rotation it is the quasi-steady contact of
-Eqs 21, 22 and 29.  The model has no memory, so a march only evaluates the forces at each phase.
+For a translation, it is the rigid slider of Eq 6.  For a rotation, it is the quasi-steady contact
+of Eqs 21, 22 and 29.  The model has no memory, so a march only evaluates the forces at each phase.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
-"""Grading of the steps towards the turning points.  At a turning point the direction of slip
+"""Grading of the steps towards the turning points.  At a turning point, the direction of slip
 reverses within a phase of about v/y."""
 
 

@@ -125,7 +125,7 @@ class RadialContact(SystemContact):
         return out
 
     def _effective_radii(self) -> np.ndarray:
-        """Effective radii, (cells + 1,).  Without slip, a contact of effective radius k has the
+        """Effective radii, (cells + 1,).  Without slip, a contact whose radius is entry k has the
         same stiffness as the first k rings.
 
         An effective radius is a little smaller than the outer edge of the rings.  A ring joins the

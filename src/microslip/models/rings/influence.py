@@ -5,7 +5,7 @@ the contact radius 1 and the reduced shear modulus G*,
 
     u(z) = 1/(pi G*) Integral [ q(z') / |z-z'| + kappa e^{2 i alpha} conj(q(z')) / |z-z'| ] dA'
 
-with kappa = nu / (2 - nu) and the angle alpha of z - z'.  On circles both kernels decompose into
+with kappa = nu / (2 - nu) and the angle alpha of z - z'.  On circles, both kernels decompose into
 angular modes.  With q = Sum_m q_m(r) e^{i m theta}
 
     u_m(r) = 2/G* Integral [ G_m(r, r') q_m(r') + kappa C_m(r, r') conj(q_{2-m}(r')) ] r' dr'

@@ -38,7 +38,7 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
 
     The radii r and s must be positive and different.  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with
     chi = (r^2 + s^2) / (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An
-    upward recurrence loses accuracy if m times the decay rate is large.  In this case ratios are
+    upward recurrence loses accuracy if m times the decay rate is large.  In this case, ratios are
     computed by a downward recurrence (Miller's method)."""
     n = len(out)
     kc = abs(r - s) / (r + s)

@@ -6,7 +6,7 @@ the inverse transform have the same order, so that no array is ever sorted.  But
 whole rows, so that the compiler generates vector instructions.  The transforms skip rows that are
 zero or not needed.
 
-For symmetric fields the transform of a part is sufficient: a quarter for fields that are even along
+For symmetric fields, it is sufficient to transform a part: a quarter for fields that are even along
 both axes (quarter.py), and a half for fields with a half-turn or mirror symmetry (half.py).
 """
 

@@ -12,10 +12,10 @@ So only half of the rows are transformed along the lateral axis.  Then half of t
 frequencies are transformed along the forward axis.  The values at the other frequencies give the
 other half of the cells.
 
-The influence of the conjugate traction requires the transform of the conjugate.  Under a half turn
+The influence of the conjugate traction requires the transform of the conjugate.  Under a half turn,
 the transform of a real field is real, except for the phase e of the centre.  The transform of the
 conjugate is therefore e^2 times the conjugate of the transform at the same frequency.  Under the
-mirror it is -w^((n-1) k) times the transform at the forward frequency -k.
+mirror, it is -w^((n-1) k) times the transform at the forward frequency -k.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Halving(NamedTuple):
     rows, images : np.ndarray, shape (H,)
         Row of each frequency in the lateral transform, and row of the opposite frequency.
     turn : np.ndarray, shape (2, H)
-        Real and imaginary part of the factor for the opposite frequency.
+        Real and imaginary parts of the factor for the opposite frequency.
     sign : float
         Sign of the imaginary part of the product: -1 (conjugate) for the mirror, else 1.
     """
