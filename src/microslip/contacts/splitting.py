@@ -10,10 +10,10 @@ itself is never applied.  The iteration converges for any relaxation below 2 (Li
 times a constant field, so the equation of the body is solved by a division.  After every
 BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the tractions P(y).
 
-A small penalty is best for points that stick, and a large penalty for points that slip.  Let D be
-the derivative of the projection, averaged over the points and both directions.  It is 1 for a point
-that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about (1 - D) / D times
-the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES."""
+A small penalty is best for points that stick, and a large penalty is best for points that slip.
+Let D be the derivative of the projection, averaged over the points and both directions.  It is 1
+for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about (1 -
+D) / D times the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES."""
 
 from __future__ import annotations
 

@@ -5,8 +5,8 @@ single leading term C / n^2, which follows from the three levels n/4, n/2 and n.
 interleaved series of doublings.  So each level costs little more than the previous one, and a level
 can reuse the runs at half and at a quarter of it.
 
-The first level depends on the tolerance and on the motion.  Mesh and path also adapt to the
-problem: rings are graded towards the slip front (discretise.focus_strength), and the number of time
+The first level depends on the tolerance and on the motion.  The mesh and the path also adapt to the
+problem.  Rings are graded towards the slip front (discretise.focus_strength).  The number of time
 steps increases with the square root of the stroke and with the natural frequency of a mass.
 """
 

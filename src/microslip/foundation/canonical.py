@@ -37,5 +37,5 @@ def sha256(text: str) -> str:
 
 
 def fingerprint(*parts: object) -> str:
-    """First 32 digits of the SHA-256 of `parts`, which are values that can be converted to JSON."""
+    """First 32 digits of the SHA-256 of `parts`. The parts must be convertible to JSON."""
     return sha256(canonical_json(parts))[:32]

@@ -145,7 +145,8 @@ def speaks_of_file(name: object) -> TypeGuard[str]:
 
 
 def parse(name: str, argument: str = "file") -> NamedFile:
-    """Parse the name of a file.  Raises InputError about the argument for other names."""
+    """Parse the name of a file.  Raises InputError about the argument if the name has another
+    form."""
     path, options = name.removeprefix(PREFIX), {}
     while match := OPTIONS.search(path):
         if match[1] in options:
@@ -173,7 +174,8 @@ def read(
     argument : str
         Name of the argument, for messages.
     folders : iterable of paths
-        Folders in which a relative path is searched for.  The working directory is searched last.
+        Folders that are searched for a file with a relative path.  The working directory is
+        searched last.
 
     Raises
     ------

@@ -150,7 +150,7 @@ class DirectContact(Contact, Protocol):
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
         """Return the tractions of the periodic state at the start of the path.
 
-        mirror: True if the path is half a period and its mirror image is the other half.
+        mirror: True if the path is half a period, and its mirror image is the other half.
         """
 
 

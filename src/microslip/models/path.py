@@ -179,8 +179,8 @@ class BodyPath(Path):
     Attributes
     ----------
     each : tuple of path.Path
-        Path of each contact relative to the path of the body, divided into the same steps.  Only
-        these paths have a `depth`.
+        For each contact, its path relative to the path of the body, divided into the same steps.
+        Only these paths have a `depth`.
     """
 
     each: tuple[Path, ...] = ()

@@ -2,8 +2,8 @@
 elastically.
 
 Units are those of the body: displacements are in u_lim of a contact under the mean load, and forces
-in mu times the load of all contacts.  If the u_lim of a contact is `extent` times larger, and the
-contact carries the fraction `share` of the load, then it has
+are in mu times the load of all contacts.  If the u_lim of a contact is `extent` times larger, and
+the contact carries the fraction `share` of the load, then it has
 
     influence extent A,   weights share w,   stiffness k share / extent.
 

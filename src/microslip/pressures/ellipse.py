@@ -62,8 +62,9 @@ class Ellipse(Pressure):
     def torque(self) -> float:
         """Mean distance from the centre, weighted with the pressure.
 
-        It is 3 pi/16 on the unit circle.  The ellipse is that circle with one axis scaled by the
-        ratio.  This scales the distance along a ray at the angle t by hypot(cos t, ratio sin t).
+        It is 3 pi/16 on the unit circle.  To obtain the ellipse, one axis of this circle is scaled
+        by the ratio.  This multiplies the distance along a ray at the angle t by hypot(cos t, ratio
+        sin t).
         """
         angle = (np.arange(512) + 0.5) * (np.pi / 1024)
         stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))

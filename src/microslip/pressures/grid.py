@@ -12,9 +12,9 @@ from microslip.pressures.cell_loads import of_loads
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
-"""Possible meanings of the values on a grid: "cells" are means over cells one step wide around the
-points, and "samples" are values at the points, interpolated bilinearly.  The pressure is 0 outside
-the grid."""
+"""Possible meanings of the values on a grid.  With "cells", a value is the mean over the cell
+around a point; a cell is one step wide.  With "samples", values apply at the points and are
+interpolated bilinearly.  The pressure is 0 outside the grid."""
 FINE = 256
 """Number of squares along a side in the computation of u_lim and the torque."""
 FINEST = 1024
@@ -174,8 +174,8 @@ class _Axis:
 class Grid:
     """Values (n, m) on a grid over the smallest rectangle that contains all pressure.
 
-    step: unit of length of the axes, in the unit of the coordinates; peak: unit of the values, in
-    the unit of the pressure.
+    step: length of 1 on the axes, in the unit of the coordinates.  peak: pressure of a value of 1,
+    in the unit of the pressure.
     """
 
     forward: _Axis

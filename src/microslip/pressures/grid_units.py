@@ -51,8 +51,8 @@ def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
 
 
 def read_pitch(text: str) -> tuple[float, float, Units]:
-    """Return the forward and lateral distance between matrix cells, in the same unit, and the
-    Units.
+    """Return the forward and the lateral distance between matrix cells, both in the same unit, and
+    the Units.
 
     text: a length such as "0.5 mm" for both distances, or "0.5 mm x 0.6 mm".
 

@@ -26,7 +26,7 @@ class Hertz(Pressure):
         return ellipse_loads(cells)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""
         radii = np.sin(psi)
         # the first moment of the bound is the integral of sin^2 cos^2 over each ring
         moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)

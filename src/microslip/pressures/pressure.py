@@ -70,9 +70,9 @@ class Pressure:
 
     # For pressures that depend on the radius alone:
     ring_means: ClassVar[Any] = None
-    """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
-    mean lever arm of a traction with the shape of the bound.  psi has the shape (n + 1,), and each
-    result has the shape (n,)."""
+    """ring_means(psi) -> (bound, lever): mean friction bound of the rings with the edges r =
+    sin(psi), and mean lever arm of a traction with the shape of the bound.  psi has the shape (n +
+    1,), and each result has the shape (n,)."""
     bound: ClassVar[Any] = None
     """bound(r): friction bound mu p at radii r, any shape; for an indenter also bound(r, c)."""
 
@@ -212,8 +212,8 @@ class RoundPressure(Pressure):
     over rings.
 
     A subclass defines `ring_loads` and `ring_moments`.  They integrate the friction bound, and the
-    bound times the radius, over the rings between r = sin(psi).  psi has the shape (n + 1,), and
-    the result has the shape (n,).
+    bound times the radius, over the rings with the edges r = sin(psi).  psi has the shape (n + 1,),
+    and the result has the shape (n,).
     """
 
     def ring_loads(self, psi: np.ndarray) -> np.ndarray:
@@ -223,7 +223,7 @@ class RoundPressure(Pressure):
         raise NotImplementedError
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        """Mean friction bound and lever arm of the rings with the edges r = sin(psi)."""
         loads, moments, radii = self.ring_loads(psi), self.ring_moments(psi), np.sin(psi)
         # a ring without load needs a lever arm as well
         lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])

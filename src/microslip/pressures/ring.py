@@ -95,8 +95,8 @@ class Ring(RoundPressure):
     def G_star(self) -> float:
         """G* in working units.  It equals the largest displacement under full slip for G* = 1.
 
-        A narrow ring of radius s under a unit traction causes the displacement 4 s/(r + s) K(m)/pi
-        per unit of its width at the radius r.  Here 1 - m = ((r - s)/(r + s))^2.
+        Under a unit traction on a narrow ring of radius s, the displacement at the radius r is 4
+        s/(r + s) K(m)/pi per unit of the ring's width.  Here 1 - m = ((r - s)/(r + s))^2.
         """
         # imported here, because they take a third of a second to load
         from scipy.integrate import quad

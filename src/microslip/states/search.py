@@ -85,8 +85,8 @@ class Inertia(NamedTuple):
     place, rate : float
         Factors that extrapolate the changes of x and x'.
     held, mass : float
-        Weights of the squared changes of x and x' in the norm of a state.  They are a stiffness and
-        a mass.
+        Weights of the squares of the changes in x and x', in the norm of a state.  They are a
+        stiffness and a mass.
     spread : np.ndarray, shape (points,)
         Forward tractions that exert a unit force.
     """

@@ -1,8 +1,9 @@
 """Iwan model of a contact: parallel Jenkins elements, each a spring in series with a slider.
 
-Along one line at nu = 0, the force F of the first loading is 1 minus the load at the indentation
-depth 1 - u, and its slope is 2 G* c with the contact radius c at this depth.  If an Iwan model has
-sliders with the density rho over the slip displacement phi, its slope is Integral_u^1 rho dphi.  So
+Let F be the force of the first loading along one line at nu = 0.  It is 1 minus the load at the
+indentation depth 1 - u.  Its slope is 2 G* c, where c is the contact radius at this depth.  If an
+Iwan model has sliders with the density rho over the slip displacement phi, its slope is
+Integral_u^1 rho dphi.  So
 
     rho(phi) = -F''(phi) = 2 G* / h'(c)    at the depth h(c) = 1 - phi,
 
@@ -106,9 +107,9 @@ class Iwan:
 def with_elements(pressure: IndenterPressure, count: int) -> Iwan:
     """Iwan model of an axisymmetric indenter at nu = 0 with `count` elements.
 
-    The intervals have nearly equal errors: an interval with the stiffness k and the width w of slip
-    displacements has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end of
-    a punch is a separate interval.
+    The intervals have nearly equal errors.  An interval with the stiffness k and the width w in
+    slip displacement has the error k w / 8, so sqrt(k w) is divided into equal parts.  The flat end
+    of a punch is a separate interval.
     """
     parts = np.sqrt(np.diff(pressure.depth(_GRID)) * np.diff(_GRID))
     measure = np.concatenate([[0.0], np.cumsum(parts)])

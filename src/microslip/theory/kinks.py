@@ -1,9 +1,9 @@
 """Kinks of friction as a function of velocity and amplitude. Interpolations need a border there.
 
-At two places friction is continuous, but its slope or curvature is not: at the amplitude above
-which no point sticks during slow sliding, and at the velocity above which no point ever sticks. A
-border need not be exact, because the samples of friction resolve the remaining part of the kink.
-Stored results do not depend on this module.
+At two places, friction is continuous, but its slope or curvature is not. One is the amplitude above
+which no point sticks during slow sliding. The other is the velocity above which no point ever
+sticks. A border need not be exact, because the samples of friction resolve the remaining part of
+the kink. Stored results do not depend on this module.
 """
 
 from __future__ import annotations

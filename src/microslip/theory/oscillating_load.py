@@ -2,9 +2,9 @@
 
 A contact that moves along a line exerts the same force as independent springs at |x| < c(d) (Popov,
 Popov and Popov, Mater. Res. 4, 2017). Here d is the indentation divided by its mean, and c is the
-contact radius. A spring at x yields at the stretch d - h(x) in u_lim, where h(x) is the indentation
-at which the contact radius is x; it is x^2 for a sphere. The stretch of a spring that came into
-contact at the time T is
+contact radius. Let h(x) be the indentation at which the contact radius is x, which is x^2 for a
+sphere. A spring at x yields at the stretch d - h(x) in u_lim. The stretch of a spring that came
+into contact at the time T is
 
     min over tau from T to t of  v (t - tau) + d(tau) - h(x),
 
@@ -30,7 +30,7 @@ _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * 
 """Quadrature on 0..1, clustered at both ends."""
 _HALVINGS = 60
 _SAMPLES = 2001
-"""Number of samples of the sign of phi' in half a period."""
+"""Number of points in half a period at which the sign of phi' is computed."""
 
 
 def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:

@@ -51,7 +51,7 @@ class RigidContact(contact.Contact):
         return state[:, ::-1, :] * contact.MIRROR
 
     def periodic_state(self, path: Path, mirror: bool) -> np.ndarray:
-        """Return the state after one march, which does not depend on the initial state."""
+        """Return the state after one march.  It does not depend on the initial state."""
         end = self.march(path, np.zeros((2, *self.forward_position.shape)), 0.0).state
         return self.mirrored(end) if mirror else end
 

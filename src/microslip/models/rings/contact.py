@@ -131,8 +131,8 @@ class RadialContact(SystemContact):
         An effective radius is a little smaller than the outer edge of the rings.  A ring joins the
         contact when the contact radius reaches the mean of the effective radii without and with
         this ring.  A growing contact then has the correct stiffness on average.  If the ring joined
-        when the contact reached its inner edge, it would stick too early, which is an error of
-        first order.
+        as soon as the contact reached the ring's inner edge, it would stick too early.  This would
+        be an error of first order.
         """
         part = np.linalg.solve(np.linalg.cholesky(self._weighted), self.weight)
         # w^T B^-1 w of the first k rings, B: weighted influence
@@ -155,7 +155,7 @@ class RadialContact(SystemContact):
         """Friction bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave the contact only at the last stage of a step, because the integrator
-        would carry a jump at an earlier stage over to the later stages.  A ring that joins at the
+        would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
         last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
         should be strained for half of the step.  The contact radius is therefore evaluated at an
         earlier time, to make up for the difference."""
@@ -171,6 +171,6 @@ class RadialContact(SystemContact):
 
 
 def width_of(rings: int) -> int:
-    """Number of columns of a field with this number of rings: a multiple of 4, and at least
+    """Number of columns in a field for this number of rings: a multiple of 4, and at least
     LANES."""
     return max(-(-rings // 4) * 4, LANES)

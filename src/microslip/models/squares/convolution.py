@@ -29,7 +29,7 @@ class Convolution(NamedTuple):
     """Tables of the compiled convolution.
 
     P is the padded number of cells along a side of the resolved part.  H is the number of lateral
-    frequencies.  It is P, or less if half of the squares are resolved.
+    frequencies.  H equals P, or is smaller if half of the squares are resolved.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """Convolution of fields that are even along both axes, computed from a quarter of the cells.
 
 The Fourier transform of an even field of 2 m cells is a cosine transform (type II) of the m cells
-of one half.  These m cells are padded to the length L, which is half the padded length of the whole
+in one half.  These m cells are padded to the length L, which is half the padded length of the whole
 field.  A Fourier transform of length L gives the cosine transform, if cells with even numbers come
 first and the others follow in reverse order (Makhoul 1980).  With the values Z of this Fourier
 transform at the frequencies k and L - k, and t = pi k / (2 L),
@@ -9,9 +9,9 @@ transform at the frequencies k and L - k, and t = pi k / (2 L),
     2 C_k = exp(-i t) Z_k + exp(i t) Z_{L-k},      Z_k = exp(i t) (C_k - i C_{L-k}),      Z_0 = C_0.
 
 All steps are linear, so one complex transform handles two real fields at once.  The influence
-coefficients are even as well.  Hence the cosine transform of the displacement is the product of the
-cosine transforms of the tractions and of the influence coefficients.  Rows are in the order of
-transform.py, in which the first row has the frequency 0."""
+coefficients are even as well.  Hence the cosine transform of the displacement is that of the
+tractions times that of the influence coefficients.  Rows are in the order of transform.py, in which
+the first row has the frequency 0."""
 
 from __future__ import annotations
 
