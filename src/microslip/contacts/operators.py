@@ -21,7 +21,8 @@ _KERNELS: dict[type, Callable] = {}
 
 
 def operator(of: type) -> Callable:
-    """Decorator that registers kernel(operators, number, field, image) for the NamedTuple `of`.
+    """Decorator that registers kernel(operators, number, field, image).  of: class of the
+    operators, a NamedTuple.
 
     The kernel fills `image` with an operator applied to `field`.
     """
@@ -72,8 +73,8 @@ class Matrices(NamedTuple):
 
 
 def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
-    """Return the blocks (operators, ...) for factor times A; the resolvents are divided by the
-    factor."""
+    """Return the blocks (operators, ...) with A multiplied by the factor and the resolvents divided
+    by it."""
     factors = np.full(len(blocks), 1.0 / factor)
     factors[0] = factor
     return blocks * factors.reshape(-1, *(1,) * (blocks.ndim - 1))

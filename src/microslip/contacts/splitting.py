@@ -145,7 +145,7 @@ def level_of(solver: Resolvent, stuck: float) -> int:
 
 @kernel
 def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
-    """Fill the tractions v for d = 1, and their forward force, for each penalty."""
+    """For each penalty, compute the tractions v for d = 1, and their forward force."""
     unit = fields.scratch[0]
     for i in range(unit.shape[1]):
         unit[0, i], unit[1, i] = 1.0, 0.0

@@ -85,7 +85,7 @@ _SOLVERS: dict[type, tuple[Callable, Callable, Callable]] = {}
 
 
 def step_solver(of: type, solve_driven: Callable, respond: Callable) -> Callable:
-    """Decorator that registers the kernel called by `solve_step` for solvers of the class `of`.
+    """Decorator that registers the kernel called by `solve_step`.  of: class of the solvers.
 
     solve_driven, respond: kernels called by `solve_driven_step` and `response_to_drive`.
     """

@@ -250,6 +250,6 @@ class _Levels:
 
 
 def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
-    """Sum of errors times weights.  Terms with weight 0 are omitted, because their error can be
+    """Weighted sum of errors.  Terms with weight 0 are omitted, because their error can be
     infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

@@ -35,7 +35,8 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:
-    """Return a finite number from low to high as a float.  Raises InputError for anything else."""
+    """Convert a finite number between `low` and `high` to a float.  Raises InputError for anything
+    else."""
     if not is_real(value):
         raise InputError(name, value, "allowed is a number")
     try:
@@ -49,7 +50,8 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
 
 
 def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
-    """Return an integer from low to most as an int.  Raises InputError for anything else."""
+    """Convert an integer between `low` and `most` to an int.  Raises InputError for anything
+    else."""
     if not is_whole(value) or not low <= value <= most:
         kind = "an even whole number" if even else "a whole number"
         raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")

@@ -243,7 +243,7 @@ def _place(name: str, argument: str, file: NamedFile, folders: Iterable[str | os
 
 
 def content_of(path: str | os.PathLike, most: int = MOST_BYTES) -> bytes:
-    """Content of a file.  At most `most` bytes are read.
+    """Read the content of a file.  most: largest allowed size in bytes.
 
     Raises
     ------

@@ -102,8 +102,8 @@ class Sources:
         return _sha256(json.dumps(content).encode())
 
     def edited(self) -> str | None:
-        """Path of a physics file whose code on disk has changed since it was read; None if there is
-        none."""
+        """Path of a physics file whose code on disk has changed since it was read; None if no file
+        has changed."""
         for name in filter(is_physics, self._dates):
             path, then = self.package / name, self.contents[name]
             try:

@@ -174,8 +174,8 @@ class _Axis:
 class Grid:
     """Values (n, m) on a grid over the smallest rectangle that contains all pressure.
 
-    step: length of 1 on the axes, in the unit of the coordinates.  peak: pressure of a value of 1,
-    in the unit of the pressure.
+    step: the unit of the axes, expressed in the unit of the coordinates.  peak: the unit of the
+    values, expressed in the unit of the pressure.
     """
 
     forward: _Axis

@@ -136,7 +136,7 @@ def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.n
 
 
 def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
-    """Angle of a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
+    """Angle for a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     Raises ValueError unless amplitude >= 0 and 0 <= poisson <= 0.5; the arguments are broadcast.
     Returns an angle in u_lim/a.
@@ -145,7 +145,7 @@ def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
 
 
 def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
-    """Bore amplitude of an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
+    """Bore amplitude for an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
 
     Raises ValueError unless angle >= 0 in u_lim/a and 0 <= poisson <= 0.5; the arguments are
     broadcast. Returns a dimensionless array.

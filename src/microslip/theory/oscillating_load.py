@@ -2,7 +2,7 @@
 
 A contact that moves along a line exerts the same force as independent springs at |x| < c(d) (Popov,
 Popov and Popov, Mater. Res. 4, 2017). Here d is the indentation divided by its mean, and c is the
-contact radius. Let h(x) be the indentation at which the contact radius is x, which is x^2 for a
+contact radius. Let h(x) be the indentation at which the contact radius is x; h(x) = x^2 for a
 sphere. A spring at x yields at the stretch d - h(x) in u_lim. The stretch of a spring that came
 into contact at the time T is
 

@@ -96,7 +96,7 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
 def mode_kernels(
     r: float, s: float, n_modes: int, coupled: bool, torus: np.ndarray, pair: np.ndarray
 ) -> np.ndarray:
-    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}.
+    """Set torus[m] = G_m and, if coupled, pair[j] = C_{j+1}.
 
     Returns `torus`, or a larger array if `torus` was too short.
     """

@@ -82,8 +82,8 @@ def _turn(frequencies: np.ndarray, cells: int, padded: int) -> np.ndarray:
 
 @kernel
 def turned(q: np.ndarray, out: np.ndarray) -> None:
-    """Copy the rows of `q`, (2, m, n), to columns of `out`, (2, P, H), with the lateral part first
-    and zeros below."""
+    """Copy the rows of `q`, (2, m, n), to columns of `out`, (2, P, H).  The lateral part comes
+    first, and the rest of each column is set to 0."""
     m, n = q.shape[1], q.shape[2]
     for part in range(2):
         for row in range(n):

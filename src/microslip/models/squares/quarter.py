@@ -115,8 +115,8 @@ def fold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def unfold(folding: Folding, m: int, values: np.ndarray, out: np.ndarray) -> None:
-    """Fill `out` with the Fourier transform, transposed back, from the cosine transform of m
-    rows."""
+    """Compute the Fourier transform from the cosine transform of m rows.  `out` receives the
+    Fourier transform, transposed back."""
     padded = values.shape[1]
     for column in range(m):
         cell = folding.place[column]
