@@ -1,8 +1,9 @@
 """Vectors of four neighbouring numbers, in compiled code.
 
 The compiler turns operations on tuples of four numbers into vector instructions, if indices are
-unsigned.  No kernel is compiled with fastmath, which would allow the compiler to reorder and fuse
-operations.  The last bits of a result would then depend on which kernels were compiled earlier.
+unsigned.  Kernels are compiled without fastmath, because fastmath would allow the compiler to
+reorder and fuse operations.  The last bits of a result would then depend on which kernels were
+compiled earlier.
 """
 
 from __future__ import annotations

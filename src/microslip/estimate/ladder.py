@@ -154,10 +154,10 @@ def ladder_for(
     model : str
         Name in models.registry.MODELS.
     tolerance : float
-        Absolute tolerance of the friction.  It determines the steps if only the cells are imposed,
-        and the cells if only the steps are imposed.
+        Absolute tolerance of the friction.  If only the cells are imposed, it determines the steps.
+        If only the steps are imposed, it determines the cells.
     cells, steps : int or None
-        Imposed number of cells, and of steps in a full period; None if not imposed.
+        Imposed number of cells, and imposed number of steps in a full period; None if not imposed.
     """
     motion, refined = problem.motion, MODELS[model].axes(problem)
     kind = _kind(problem, model)

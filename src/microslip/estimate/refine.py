@@ -133,7 +133,7 @@ def refine(
     -------
     Refined
         The value.  It is not converged if a run did not converge, if the finest level is not fine
-        enough, or if a run raised budget.Spent.  In the last case the value is the estimate before
+        enough, or if a run raised budget.Spent.  In the last case, the value is the estimate before
         that run, or NaN if there is no such estimate.
     """
     levels = _Levels(run, ladder, readings, read, energy_unit, drive_work)

@@ -39,7 +39,8 @@ def modules_in(
     package : module
         Package to which the files are added as modules.
     broken : dict of str to str
-        Dict to which the path and the error of each skipped file are added, by file name.
+        Dict to which the path and the error of each skipped file are added; the keys are the file
+        names.
     """
     if str(folder) not in package.__path__:
         package.__path__.append(str(folder))

@@ -106,9 +106,9 @@ def turning_point_width(drift: float, stroke: float) -> float:
     """Half-width, in phase, of the zone of equal steps at a turning point.
 
     Outside the zone, steps are proportional to the distance from the turning point.  For short
-    strokes the width is infinite, and only the grading applies.  The slip reverses within the phase
-    max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian or
-    below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
+    strokes, the width is infinite, and only the grading applies.  The slip reverses within the
+    phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian
+    or below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
     zone gradually.  At the stroke LONG_STROKE, the longest step is twice the shortest."""
     if stroke <= LONG_STROKE:
         return math.inf
@@ -243,8 +243,8 @@ def phases_between(
 ) -> np.ndarray:
     """Phases from the first turning point to the last, ((len(turns) - 1) steps + 1,).
 
-    There are `steps` steps between neighbouring turning points, graded towards them; for grading
-    and width see turning_point_grading and turning_point_width."""
+    There are `steps` steps between neighbouring turning points, graded towards them.  For grading
+    and width, see turning_point_grading and turning_point_width."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:

@@ -21,8 +21,7 @@ ALLOWED = (
 def grid(
     content: bytes, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
-    """Return the coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m), and their
-    units.
+    """Return the coordinates (n,) and (m,), the pressures (n, m) and the Units in a CSV file.
 
     Parameters
     ----------

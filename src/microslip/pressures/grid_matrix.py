@@ -27,12 +27,11 @@ ALLOWED = (
 def grid(
     content: bytes, pitch: str, decimal: str = ".", encoding: str = "utf-8"
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
-    """Read the coordinates and pressures of a matrix, shapes (n,), (m,) and (n, m), and their
-    units.
+    """Return the coordinates (n,) and (m,), the pressures (n, m) and the Units of a matrix.
 
-    The forward coordinate increases from line to line, and the lateral coordinate from cell to
-    cell.  Commas, semicolons, tabs or spaces separate the cells.  Lines above the matrix are
-    ignored.
+    The forward coordinate increases from line to line, and the lateral coordinate increases from
+    cell to cell.  Commas, semicolons, tabs or spaces separate the cells.  Lines above the matrix
+    are ignored.
 
     Parameters
     ----------

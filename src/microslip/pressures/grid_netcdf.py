@@ -25,8 +25,7 @@ ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forw
 
 
 def grid(content: bytes) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], Units]:
-    """Return the coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m), and
-    their units.
+    """Return the coordinates (n,) and (m,), the pressures (n, m) and the Units in a netCDF file.
 
     Raises
     ------

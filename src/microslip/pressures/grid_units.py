@@ -23,7 +23,7 @@ NO_UNITS: Units = None, None
 
 
 def read_units(units: Sequence[str | None]) -> tuple[float, Units]:
-    """Return the lateral unit of length divided by the forward unit of length, and the Units.
+    """Return the ratio of the lateral to the forward unit of length, and the Units.
 
     Parameters
     ----------

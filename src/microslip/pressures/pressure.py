@@ -2,7 +2,7 @@
 bound at each point.
 
 Working units are dimensionless: mu F_z = 1, u_lim = 1 and a = 1.  The length a is the outer radius
-of a round contact; for other contacts it is half the longer side of the bounding rectangle.  The
+of a round contact; for other contacts, it is half the longer side of the bounding rectangle.  The
 displacement u_lim is the largest displacement of a point under full slip of the whole contact,
 computed with the compliance averaged over directions,
 
@@ -11,8 +11,8 @@ computed with the compliance averaged over directions,
 For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu F_z/(4 G* a) for a
 sphere.  A round contact that moves in one direction from rest slides everywhere once the
 displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide a few
-percent earlier or later, depending on the direction.  In working units the reduced shear modulus is
-the number G*, which is 3/4 for a sphere."""
+percent earlier or later, depending on the direction.  In working units, the reduced shear modulus
+is the number G*, which is 3/4 for a sphere."""
 
 from __future__ import annotations
 

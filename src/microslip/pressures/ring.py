@@ -21,7 +21,7 @@ class Ring(RoundPressure):
     """A pressure proportional to sqrt((r - b)(1 - r)) on the ring from r = b = `inner` to r = 1.
 
     This is the Hertz pressure of a line contact that is bent into a circle.  It is close to the
-    pressure of a slender torus; for a wide ring it is an assumption.
+    pressure of a slender torus; for a wide ring, it is an assumption.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def bore_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.n
     """Mean velocity of a rigid contact under oscillating bore.
 
     It is (2/pi) E^-1(P), where E is the friction of Eq 21 as a function of velocity. The velocity
-    is in units of Omega phi0 a, which is proportional to the amplitude. So the result does not
+    is in units of Omega phi0 a. This unit is proportional to the amplitude, so the result does not
     depend on the amplitude. The arguments and exceptions are those of `transverse_drift`; forces
     between 1 - 1e-13 and 1 raise InputError.
     """

@@ -1,8 +1,9 @@
 """Constants and closed forms of one Hertz contact: normal load, tangential load and torsion.
 
 Unless a docstring states otherwise, quantities are in working units: contact radius a = 1, mu*F_z =
-1 and u_lim = 1 (the displacement at which the whole contact slides). In these units the reduced
-shear modulus is 3/4, tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
+1 and u_lim = 1 (the displacement at which the whole contact slides). In these units, the reduced
+shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles are in
+u_lim/a.
 
 Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
 finite or outside its range.

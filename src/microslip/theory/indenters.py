@@ -1,7 +1,7 @@
 """Static limits and torsion of any axisymmetric indenter, by quadrature to about 1e-8.
 
 The limit for transverse oscillation applies at Poisson's ratio 0, the limit for bore at any ratio.
-For a sphere they agree with the closed forms of `paper`, which are faster. Quantities are
+For a sphere, they agree with the closed forms of `paper`, which are faster. Quantities are
 dimensionless as in `paper`.
 """
 

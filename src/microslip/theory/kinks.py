@@ -75,9 +75,9 @@ def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
 def _of_family(motion: str) -> Kinks:
     """Kinks of loops, and of motions that combine an oscillating load with another component.
 
-    The velocity of a loop is the largest velocity of its forward oscillation: at larger velocities
+    The velocity of a loop is the largest velocity of its forward oscillation. At larger velocities,
     the loop never moves backward. Friction has no kink there, but it changes on this scale of
-    velocities at all amplitudes. Under an oscillating load the scale is the amplitude, and contact
+    velocities at all amplitudes. Under an oscillating load, the scale is the amplitude, and contact
     is lost above a certain amplitude.
     """
     name, _, rest = motion.partition(":")

@@ -131,8 +131,7 @@ def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
 
 
 def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
-    """Change of the force since a turn, which is the curve of the first loading at twice the
-    scale."""
+    """Change of the force since a turn. It is the curve of the first loading at twice the scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 

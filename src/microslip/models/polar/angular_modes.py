@@ -32,8 +32,8 @@ Wave = tuple[int, int]
 class Modes(NamedTuple):
     """Operators on fields, for one or several contacts.  The points are on rings and at angles.
 
-    Rows of a field have equal width.  At nu = 0 there are two sectors, forward and lateral; at
-    nu > 0 there is one.
+    Rows of a field have equal width.  At nu = 0, there are two sectors, forward and lateral.  At nu
+    > 0, there is one sector.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: a row of independent springs with friction.
 
 The method is exact for tangential loading of an axisymmetric indenter in one direction (Cattaneo
-and Mindlin).  For slip in two directions it is an approximation, because the springs do not
+and Mindlin).  For slip in two directions, it is an approximation, because the springs do not
 interact.  Springs at -a < x < a have the stiffness G* and the friction bound G* (1 - h(x)) per unit
 length.  Here h(x) is the depth for the contact radius x divided by the reference depth.  So the
 spring at x begins to slide at the displacement (1 - h) u_lim, which is (1 - x^2) u_lim for a

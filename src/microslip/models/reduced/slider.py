@@ -2,7 +2,7 @@
 
 Like the whole contact, the element slides once the displacement exceeds u_lim, so the dimensionless
 groups are the same.  The model has no partial slip.  It is accurate and cheap well above the static
-limit; near this limit its friction is that of Eq 7.
+limit; near this limit, its friction is that of Eq 7.
 """
 
 from __future__ import annotations

@@ -112,7 +112,7 @@ def _weight(psi: float) -> float:
 
 @kernel
 def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
-    """Fill the arrays near and far, (n_modes, rings, rings), which must be zero on entry."""
+    """Fill the arrays `near` and `far`, (n_modes, rings, rings), which must be zero on entry."""
     width = np.diff(averaging.psi)
     for one in range(len(width)):
         for other in range(one + 1):

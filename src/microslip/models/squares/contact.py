@@ -92,7 +92,7 @@ class CartesianContact(SystemContact):
             self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
     def solver(self, weight: np.ndarray) -> Descent:
-        """Create the solver of a Coulomb step, which uses projected gradients."""
+        """Create the solver of Coulomb steps.  It uses projected gradients."""
         length = np.array([1.0 / self.scale])
         return Descent(self.largest, PATIENCE, length, np.empty((3, self.layout.columns)))
 
