@@ -15,7 +15,7 @@ energy is recovered, so
     power in - power out = dissipation >= 0.
 
 Friction never decreases with the velocity (theory/bounds.py).  So the force decreases from stall to
-the no-load velocity, and two velocities with friction of opposite signs enclose the no-load
+the no-load velocity, and two velocities at which friction has opposite signs bracket the no-load
 velocity.  A motion can also propel the body backward.  In this case, the velocities and forces are
 negative.  If friction holds the body at rest against small forces in both directions, the motion
 propels nothing.

@@ -110,8 +110,9 @@ def run_trial(
 def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
     """Measure the cost of a backward Euler step.
 
-    The march starts from full slip and covers half a period.  The motion is transverse for rings,
-    otherwise bore.  The time is the median of three marches.  A first march compiles the code.
+    The march starts from full slip and covers half a period.  The motion is transverse for rings
+    and bore for all other models.  The time is the median of three marches.  A first march compiles
+    the code.
 
     Parameters
     ----------

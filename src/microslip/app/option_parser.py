@@ -85,7 +85,8 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _hint(name: str, candidates: Iterable[str]) -> str:
-    """Return 'did you mean NAME? ' with the most similar candidate, or '' without a similar one."""
+    """Return 'did you mean NAME? ' with the most similar candidate, or '' if no candidate is
+    similar."""
     synonym = [other for other in [SYNONYMS.get(name)] if other is not None and other in candidates]
     near = synonym or difflib.get_close_matches(name, candidates, n=1)
     return f"did you mean {near[0]}? " if near else ""

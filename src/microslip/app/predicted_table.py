@@ -72,7 +72,7 @@ class _Cases(NamedTuple):
 
 
 def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
-    """Predict the contacts of a table or of ranges.
+    """Predict all contacts in a table, or all combinations of the values in ranges.
 
     The answer is complete if all predictions converged.  Error messages of contacts without a
     prediction are written to standard error.

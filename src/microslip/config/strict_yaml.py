@@ -57,7 +57,7 @@ class StrictLoader(yaml.SafeLoader):
             previous.append(key)
 
     def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        """Construct an integer.  A number that YAML reads in another base is refused."""
+        """Construct an integer.  Numbers that YAML reads in another base are rejected."""
         self._refuse_other_bases(node)
         return super().construct_yaml_int(node)
 

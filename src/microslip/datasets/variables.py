@@ -43,7 +43,7 @@ def variable(
 def flags(
     dims: str | Sequence[Hashable], codes: ArrayLike, long_name: str, meanings: Sequence[str]
 ) -> tuple:
-    """Return a variable that contains codes as a tuple for xarray.Dataset.  Codes are indices of
+    """Return a variable for xarray.Dataset, as a tuple.  Its values are codes, which are indices of
     `meanings`."""
     return dims, np.asarray(codes).astype(np.int8), flag_attributes(long_name, meanings)
 

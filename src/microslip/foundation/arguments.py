@@ -9,8 +9,8 @@ from typing import TypeGuard
 from microslip.foundation.errors import InputError
 
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""Largest allowed values.  Larger values are typing errors, or exceed the memory or the range of
-floats."""
+"""Largest allowed values.  Larger values are typing errors, or would exceed the memory or the range
+of floats."""
 SMALLEST_TOLERANCE = 1e-6
 """Smallest allowed absolute tolerance of mu_macro."""
 LARGEST_BODY = 1e6

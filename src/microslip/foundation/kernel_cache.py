@@ -62,7 +62,7 @@ def places() -> list[Path]:
 
 @cache
 def folder() -> Path:
-    """Folder for the compiled kernels of the running sources.  It is made if it does not exist.
+    """Folder for the compiled kernels of the running sources.  It is created if it does not exist.
 
     The first writable parent is used: NUMBA_CACHE_DIR, the folder of the package, the user's cache
     folder, or a temporary folder.  A temporary folder is reported once on standard error.

@@ -60,7 +60,7 @@ class Ellipse(Pressure):
 
     @cached_property
     def torque(self) -> float:
-        """Mean distance from the centre, weighted with the pressure.
+        """Mean distance from the centre, weighted by the pressure.
 
         It is 3 pi/16 on the unit circle.  To obtain the ellipse, one axis of this circle is scaled
         by the ratio.  This multiplies the distance along a ray at the angle t by hypot(cos t, ratio

@@ -61,7 +61,8 @@ def force_threshold(request: Request, limit: Result | None) -> Estimate | None:
     """Smallest constant force that moves the contact, divided by mu F_z.
 
     A contact without mass follows the forward oscillation.  The contact's threshold is the static
-    limit of the other components.  This limit is computed only under a force.
+    limit of the other components.  This limit is needed, and thus computed, only if a force is
+    prescribed.
 
     Parameters
     ----------

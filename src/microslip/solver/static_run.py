@@ -101,8 +101,8 @@ def edges_on_a_loop(
     settings: Settings,
     progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
-    """Find the edges of the stick zone for a motion on a loop.  There is no formula, so runs are
-    used.
+    """Find the edges of the stick zone for a motion on a loop.  No formula gives them, so runs
+    compute them.
 
     The arguments are those of `simulate_static`.  In addition, `progress` is called before every
     run, with the run's Resolution.  Returns the Runs and the radii of the edges; the last Run is

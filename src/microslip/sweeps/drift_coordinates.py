@@ -55,7 +55,7 @@ class DriftCoordinates(NamedTuple):
 
     @property
     def poisson(self) -> tuple[float, ...]:
-        """Empty, because Poisson's ratio is not a direction of a map of drift."""
+        """Empty, because Poisson's ratio is not a direction of drift maps."""
         return ()
 
     @property

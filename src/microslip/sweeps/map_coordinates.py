@@ -104,8 +104,8 @@ class MapCoordinates(NamedTuple):
     def scaled(self, *places: np.ndarray) -> np.ndarray:
         """Scaled coordinates, shape (n, directions), of points in the range.
 
-        places: values of the points by direction, with velocities first, shape (n,) each.
-        """
+        places: coordinates of the points, one array of shape (n,) for each direction, velocities
+        first."""
         values = [np.asarray(part, float) for part in places]
         deep = [_share(values.pop(), self.poisson)] if self.poisson else []
         if not self.velocity:

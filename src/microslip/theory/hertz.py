@@ -5,8 +5,8 @@ Unless a docstring states otherwise, quantities are in working units: contact ra
 shear modulus is 3/4. Tractions are in mu*F_z/a^2, torques are in mu*F_z*a, and angles are in
 u_lim/a.
 
-Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is not
-finite or outside its range.
+Every function takes floats or arrays and broadcasts. It raises ValueError if an argument is not
+finite, or is outside its range.
 
 Names in subpackages of SciPy are written in full (`scipy.special.ellipe`), so that each subpackage
 is imported only when it is first used.

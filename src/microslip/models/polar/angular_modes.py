@@ -38,9 +38,9 @@ class Modes(NamedTuple):
     Attributes
     ----------
     to_modes : np.ndarray, shape (sectors, waves, rows of points)
-        Matrix from values at the points to amplitudes of the waves.
+        Matrix that transforms values at the points into amplitudes of the waves.
     to_points : np.ndarray, shape (sectors, rows of points, waves)
-        Matrix from amplitudes of the waves to values at the points.
+        Matrix that transforms amplitudes of the waves into values at the points.
     blocks : np.ndarray, shape (operators, contacts waves, chunks, columns, LANES)
         Matrices.blocks of each wave at nu = 0, or of each pair of neighbouring waves at nu > 0.  A
         pair forms one row of twice the width.

@@ -54,7 +54,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     periods : dict of list
         Records of the stored periods, keyed by the sweep's name.
     certified : sequence of xarray.Dataset
-        Certified maps for the form for a real contact.
+        Certified maps that the form for real contacts uses.
 
     Returns
     -------

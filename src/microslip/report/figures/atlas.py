@@ -1,7 +1,6 @@
 """The stability atlas: a coloured square for the outcome of each method in each case.
 
-Each varied quantity has a block of squares. The names of the methods are written once for all
-blocks in a row.
+Each varied quantity has a block of squares. Each row of blocks shows the names of the methods once.
 """
 
 from __future__ import annotations

@@ -81,7 +81,7 @@ def _over_velocity(
 
 
 def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
-    """Draw friction against the mass on a spring, and friction at a constant velocity."""
+    """Draw friction as a function of the mass on a spring, and friction at a constant velocity."""
     bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
     mu = float(_at(_constant_velocity(transverse, amplitude), "velocity", velocity)["mu_macro"])

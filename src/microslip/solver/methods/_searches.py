@@ -61,10 +61,9 @@ class MarchInterval:
 class Marches:
     """Performs the marches of a period_map.PeriodMap one by one and records their effort.
 
-    The estimated distance from the fixed point is a force.  It is the largest of three numbers: the
-    residual, the last correction, and residual / gain times the difference between the force and
-    the static limit, see search.largest_excess.
-    """
+    The estimated distance from the fixed point is a force.  It is the largest of three numbers (see
+    search.largest_excess): the residual, the last correction, and the difference between the force
+    and the static limit, multiplied by residual / gain."""
 
     def __init__(self, period_map: PeriodMap):
         self.contact, self.path = period_map.contact, period_map.path
