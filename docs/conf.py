@@ -67,6 +67,7 @@ TITLES = {
     "first_run": "Time of the first run",
     "interpolation": "Errors of interpolation between the points of a map",
     "paper_method": "Cost of the paper's method",
+    "published_numbers": "Published numbers, case by case",
     "slurm": "Sweep on Slurm",
     "static_approach": "Approach to the static limit",
     "sweep_cost": "Cost of the points of a map",
