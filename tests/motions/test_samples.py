@@ -102,6 +102,7 @@ def test_equal_samples_are_one_motion():
         ({"lateral": SINE, "forward": SINE[1:]}, "forward"),
         ({"lateral": SINE, "load": SINE}, "load"),
         ({}, "forward"),
+        ({"foo": SINE}, "columns"),
     ],
 )
 def test_bad_samples_are_refused_by_name(columns, argument):

@@ -35,7 +35,7 @@ OPTIONS = {
         "number of samples of the period, an even number (32).  More samples keep more harmonics, "
         "and more noise",
     ),
-    "decimal": ("MARK", "decimal mark of the record, point or comma (point)"),
+    "decimal": ("MARK", "decimal mark of the record, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the record, such as cp1252 (utf-8)"),
 }
 """Options, each with a metavar and a help text."""
@@ -45,10 +45,10 @@ def fill(parser: argparse.ArgumentParser) -> None:
     """Add the description and the arguments of `fold` to its parser."""
     parser.description = (
         "One period of a motion from a record of many periods, such as that of a laser vibrometer. "
-        "The slow drift is removed, and the periods are averaged.  The scatter between the periods "
-        "gives the standard error.  The columns of the record are time and one or more of "
-        "forward, lateral, angle, and load or indentation, each with its unit, as in "
-        "time [s],lateral [um]."
+        "The slow drift is removed, and the periods are averaged.  The standard error covers the "
+        "scatter between the periods and a slow drift of the frequency.  The columns of the record "
+        "are time and one or more of forward, lateral, angle, and load or indentation, each with "
+        "its unit, as in time [s],lateral [um]."
     )
     parser.add_argument("record", metavar="CSV", help="the record")
     add_options(parser, OPTIONS, required=("output",))
@@ -88,11 +88,12 @@ def _answer(options: argparse.Namespace) -> Answer:
         "columns": {
             name: {
                 "unit": units[name],
-                "peak_to_peak": float(np.ptp(one)),
-                "error": float(np.max(result.errors[name])),
+                "peak_to_peak": result.peak_to_peak(name)[0],
+                "peak_to_peak_error": result.peak_to_peak(name)[1],
+                "sample_error": float(np.max(result.errors[name])),
                 "drift_per_second": result.drift[name],
             }
-            for name, one in result.columns.items()
+            for name in result.columns
         },
         "output": options.output,
     }
@@ -102,9 +103,9 @@ def _answer(options: argparse.Namespace) -> Answer:
 def _as_text(result: Fold, units: dict[str, str], output: str) -> str:
     frequency = number_text(result.frequency, result.frequency_error, "Hz")
     lines = [f"frequency    {frequency}", f"periods      {result.periods}"]
-    for name, one in result.columns.items():
+    for name in result.columns:
         unit, error = units[name], float(np.max(result.errors[name]))
-        size = number_text(float(np.ptp(one)), 2.0 * error, unit)
+        size = number_text(*result.peak_to_peak(name), unit)
         drift = f"{result.drift[name]:.3g} {unit}/s"
         lines.append(f"{name:<12} {size} from peak to peak, drift {drift}")
         lines.append(f"{'':<12} standard error of a sample {error:.2g} {unit}")

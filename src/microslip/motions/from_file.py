@@ -29,7 +29,9 @@ def table_of(file: NamedFile, content: bytes) -> NumberTable:
     return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
 
 
-def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVEN) -> NumberTable:
+def columns_of(
+    content: bytes, *, decimal: str, encoding: str, even: float | None = EVEN
+) -> NumberTable:
     """Parse the content of a file.  The table has at least one of the columns in COLUMNS.
 
     Parameters
@@ -38,8 +40,9 @@ def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVE
         Content of the file.
     decimal, encoding : str
         Decimal mark and encoding of the file.
-    even : float
-        Largest allowed deviation of a time from equal spacing, divided by the spacing.
+    even : float or None
+        Largest allowed deviation of a time from equal spacing, divided by the spacing.  The times
+        are not checked if it is None.
 
     Raises
     ------
@@ -51,8 +54,8 @@ def columns_of(content: bytes, *, decimal: str, encoding: str, even: float = EVE
         raise ValueError(f"there is no displacement or load; allowed: {ALLOWED}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
-    time = table.columns.get("time")
-    if time is not None and (row := uneven_row(time, even)) is not None:
+    time = table.columns.get("time") if even is not None else None
+    if time is not None and even is not None and (row := uneven_row(time, even)) is not None:
         where = table.lines[row]
         raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
     return table

@@ -80,9 +80,9 @@ class SampledPath(_Samples):
         Raises
         ------
         InputError
-            If a column contains values that are not numbers from -1e6 to 1e6, if columns have
-            different lengths, if there are fewer than two rows, if a load or an indentation is
-            below 0, or if both are given.
+            If a column has an unknown name, or contains values that are not numbers from -1e6 to
+            1e6, if columns have different lengths, if there are fewer than two rows, if a load or
+            an indentation is below 0, or if both are given.
         """
         return cls(*_rows_of(columns, 2))
 
@@ -300,6 +300,9 @@ def _spline(values: np.ndarray) -> CubicSpline:
 def _rows_of(columns: Mapping[str, Any], fewest: int) -> tuple[np.ndarray, np.ndarray | None, bool]:
     """Return three values: displacements (rows, 3), the load or indentation (rows,) or None, and
     whether it is a load."""
+    for name in columns:
+        if name not in (*PLANE, *NORMAL):
+            raise InputError("columns", name, f"unknown; allowed are {', '.join(PLANE + NORMAL)}")
     arrays = {name: _column(name, one) for name, one in columns.items() if one is not None}
     if not arrays:
         raise InputError("forward", None, "allowed is a displacement for every row")

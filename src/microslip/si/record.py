@@ -3,6 +3,12 @@
 A record contains many periods, noise, and a slow drift.  The drift is the moving mean over one
 period.  For a periodic motion it is constant.  The difference from the drift is averaged over all
 whole periods.  The scatter between the periods gives the standard error of the average.
+
+If the frequency drifts, the periods are averaged out of phase, and the average is too small.  The
+covariance of the phases of neighbouring periods is the variance of this slow phase drift, because
+the noise of neighbouring periods is uncorrelated.  The average of the harmonic m is smaller by the
+factor exp(-x), where x is half of the variance of m times the phase.  This loss is part of the
+error.
 """
 
 from __future__ import annotations
@@ -16,6 +22,7 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
+from microslip.motions.from_file import COLUMNS
 from microslip.motions.samples import FEWEST_SAMPLES, NORMAL, uneven_row
 
 FEWEST_PERIODS = 4
@@ -26,9 +33,27 @@ noise."""
 REFINEMENTS = 3
 """Number of corrections of the frequency.  After each correction, only the error of the phases
 remains."""
-JITTER = 0.4
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  Exported times
-are rounded.  A missing sample, however, shifts some times by at least half a spacing."""
+FEWEST_PER_PERIOD = 4
+"""Smallest number of samples in a period of the record."""
+JITTER = 0.01
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing."""
+ROUNDED = 0.4
+"""Largest allowed deviation of rounded times, divided by the spacing.  A missing sample shifts some
+times by at least half a spacing."""
+MOST_DECIMALS = 12
+"""Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
+LARGEST_LOSS = 0.01
+"""Largest relative loss of the strongest harmonic by a drift of the frequency.  The estimate of the
+loss is of first order, so that it is correct for small losses only."""
+SIGNIFICANT = 5.0
+"""Smallest ratio of the peak to peak value to its standard error.  White noise at the frequency of
+its strongest component reaches about 3."""
+PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
+"""Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
+per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
+FINER = 32
+"""Number of interpolated points per sample for the peak to peak value.  With 32 samples, a peak is
+too small by at most 1e-5 of the amplitude."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
@@ -42,15 +67,16 @@ class Fold:
     Attributes
     ----------
     frequency, frequency_error : float
-        Frequency and its standard error.  The unit is one over the unit of the times.
+        Frequency and its standard error, Hz.
     periods : int
         Number of averaged periods.
     columns : dict of str to np.ndarray, shape (rows,)
         The mean period, without its end point.  Displacements are relative to their mean.
     errors : dict of str to np.ndarray, shape (rows,)
-        Standard error of each sample of `columns`, from the scatter between the periods.
+        Standard error of each sample of `columns`, from the scatter between the periods, plus the
+        loss of amplitude by a drift of the frequency.
     drift : dict of str to float
-        Mean rate of the slow drift of each column.
+        Mean rate of the slow drift of each column, per second.
     """
 
     frequency: float
@@ -66,6 +92,15 @@ class Fold:
         rows = len(next(iter(self.columns.values())))
         return np.arange(rows) / (rows * self.frequency)
 
+    def peak_to_peak(self, name: str) -> tuple[float, float]:
+        """Peak to peak value of a column between its samples, too, and its standard error.
+
+        The standard error is twice the largest one of a sample, which is an upper bound.
+        """
+        values = self.columns[name]
+        fine = np.fft.irfft(np.fft.rfft(values), FINER * len(values)) * FINER
+        return float(np.ptp(fine)), 2.0 * float(np.max(self.errors[name]))
+
 
 def fold(
     time: Any, columns: Mapping[str, Any], *, frequency: float | None = None, rows: int = ROWS
@@ -75,12 +110,12 @@ def fold(
     Parameters
     ----------
     time : array_like, shape (samples,)
-        Equally spaced times.
+        Equally spaced times, s.  Deviations by the rounding of decimals are allowed.
     columns : mapping of array_like, shape (samples,)
-        Columns forward, lateral, angle, load and indentation, in any units.
+        Columns forward, lateral, angle, and load or indentation, in any units.
     frequency : float or None
-        Approximate frequency, which is refined.  Over the whole record, its error must be less than
-        half a period.  The default is the frequency of the strongest component.
+        Approximate frequency, Hz, which is refined.  Over the whole record, its error must be less
+        than half a period.  The default is the frequency of the strongest component.
     rows : int
         Number of samples in the period, an even number.  Harmonics up to the order rows / 2 - 1 are
         kept.
@@ -92,60 +127,155 @@ def fold(
     Raises
     ------
     InputError
-        If an argument is invalid, or if the record has fewer than FEWEST_PERIODS periods.
+        If an argument is invalid, if the record has fewer than FEWEST_PERIODS periods, if its
+        frequency drifts, or if its oscillation is not larger than the noise.
     """
     rows = count("rows", rows, 2 * FEWEST_SAMPLES, most=MOST_ROWS, even=True)
     step, values = _checked(time, columns)
     samples = len(next(iter(values.values())))
     longest = (samples - 1) * step
+    typed = frequency is not None
     if frequency is None:
         frequency = _strongest(values) / (samples * step)
     else:
         frequency = real("frequency", frequency, 0.0)
-    if not FEWEST_PERIODS <= frequency * longest <= 0.25 * samples:
-        allowed = f"allowed are {FEWEST_PERIODS} periods or more, of at least 4 samples each, in "
-        raise InputError("frequency", frequency, f"{allowed}a record of {longest:.6g}")
+    _check_periods(frequency, longest, step, typed)
     splines = {name: _spline(step, one) for name, one in values.items()}
-    error = math.inf
+    error, variance, order = math.inf, 0.0, 1
     for _ in range(REFINEMENTS):
         harmonics = {n: _harmonics(s, frequency, longest, step, rows) for n, s in splines.items()}
-        change, error = _correction(harmonics)
+        change, error, variance, order = _correction(harmonics)
         frequency += change * frequency
+        _check_periods(frequency, longest, step, typed)
+    _check_drift(frequency, longest, variance, order)
     mean, errors, drift = {}, {}, {}
     for name, spline in splines.items():
-        periods = np.fft.irfft(_harmonics(spline, frequency, longest, step, rows), rows) * rows
+        harmonic = _harmonics(spline, frequency, longest, step, rows)
+        periods = np.fft.irfft(harmonic, rows) * rows
         mean[name] = periods.mean(axis=0)
-        errors[name] = periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
+        loss = -np.expm1(-_exponent(variance, np.arange(harmonic.shape[1])))
+        lost = np.fft.irfft(loss * harmonic.mean(axis=0), rows) * rows
+        errors[name] = periods.std(axis=0, ddof=1) / math.sqrt(len(periods)) + np.abs(lost)
         integral, half = spline.antiderivative(), 0.5 / frequency
         ends = [_moving_mean(integral, one, half) for one in (half, longest - half)]
         drift[name] = float((ends[1] - ends[0]) / (longest - 2.0 * half))
         if name in NORMAL:
             mean[name] += values[name].mean()
-    return Fold(frequency, error * frequency, len(periods), mean, errors, drift)
+    result = Fold(frequency, error * frequency, len(periods), mean, errors, drift)
+    _check_noise(result)
+    return result
+
+
+def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
+    """Raise InputError if the record has too few periods, or too few samples in a period."""
+    periods, samples = frequency * longest, 1.0 / max(frequency * step, 1e-300)
+    if periods >= FEWEST_PERIODS and samples >= FEWEST_PER_PERIOD:
+        return
+    if periods < FEWEST_PERIODS:
+        problem = f"the record of {longest:.6g} s has {periods:.6g} periods"
+        allowed = f"allowed are at least {FEWEST_PERIODS}"
+    else:
+        problem = f"a period has {samples:.3g} samples in steps of {step:.6g} s"
+        allowed = f"allowed are at least {FEWEST_PER_PERIOD}"
+    if typed:
+        raise InputError("frequency", float(f"{frequency:.6g}"), f"{problem}; {allowed}")
+    where = f"at {frequency:.6g} Hz, the strongest component, {problem}"
+    hint = "if this is not the frequency of the motion, give its approximate frequency"
+    raise InputError("time", float(f"{longest:.6g}"), f"{where}; {allowed}; {hint}")
+
+
+def _exponent(variance: float, order: Any) -> Any:
+    """Return x, where exp(-x) is the factor of the averaged harmonic for this variance of the
+    phase, in periods squared."""
+    return 0.5 * (2.0 * np.pi * order) ** 2 * variance
+
+
+def _check_drift(frequency: float, longest: float, variance: float, order: int) -> None:
+    """Raise InputError if the frequency drifts so much that the periods are out of phase."""
+    loss = float(_exponent(variance, order))
+    if loss <= LARGEST_LOSS:
+        return
+    change = math.sqrt(variance) / (PHASE_OF_A_DRIFT * longest)
+    most = change * math.sqrt(LARGEST_LOSS / loss)
+    problem = f"the frequency changes by about {change:.2g} Hz during the record of {longest:.6g} s"
+    allowed = f"allowed are {most:.2g} Hz at this length; cut the record into shorter ones"
+    raise InputError("time", float(f"{longest:.6g}"), f"{problem}; {allowed}")
+
+
+def _check_noise(result: Fold) -> None:
+    """Raise InputError if no column has an oscillation that is larger than its noise."""
+    sizes = {name: result.peak_to_peak(name) for name in result.columns}
+    name = max(sizes, key=lambda one: sizes[one][0] / (sizes[one][1] or 1e-300))
+    size, error = sizes[name]
+    if size > SIGNIFICANT * error:
+        return
+    problem = (
+        f"peak to peak at {result.frequency:.6g} Hz, with a standard error of {error:.2g}; allowed "
+        f"are at least {SIGNIFICANT:g} standard errors; use a longer record, or give the "
+        "approximate frequency of the motion"
+    )
+    raise InputError(name, float(f"{size:.3g}"), problem)
 
 
 def _checked(time: Any, columns: Mapping[str, Any]) -> tuple[float, dict[str, np.ndarray]]:
     """Return the time step and the columns as arrays.  Raises InputError."""
-    values = {}
-    for name, one in {"time": time, **columns}.items():
+    if not hasattr(columns, "keys"):
+        raise InputError("columns", columns, f"allowed is a mapping with {', '.join(COLUMNS)}")
+    if len(columns) == 0:
+        raise InputError("columns", None, "allowed is one column or more")
+    for name in columns:
+        if name not in COLUMNS:
+            raise InputError("columns", name, f"unknown; allowed are {', '.join(COLUMNS)}")
+    if all(name in columns for name in NORMAL):
+        raise InputError("indentation", "with a load", "allowed is one of the two")
+    values: dict[str, np.ndarray] = {}
+    for name, one in {"time": time, **{name: columns[name] for name in columns}}.items():
         try:
             values[name] = np.array(one, float)
         except (TypeError, ValueError):
             raise InputError(name, one, "allowed is an array of numbers") from None
-        if values[name].ndim != 1 or len(values[name]) != len(values["time"]):
+        if values[name].ndim != 1:
+            raise InputError(name, one, "allowed is an array of one dimension")
+        if len(values[name]) != len(values["time"]):
             allowed = f"allowed are as many numbers as times: {len(values['time'])}"
             raise InputError(name, values[name].shape, allowed)
         if not np.isfinite(values[name]).all():
             raise InputError(name, math.nan, "allowed are finite numbers")
     time = values.pop("time")
-    if not values:
-        raise InputError("columns", None, "allowed is one column or more")
-    if len(time) < 4 * FEWEST_PERIODS:
-        raise InputError("time", len(time), f"allowed are at least {4 * FEWEST_PERIODS} samples")
-    row = uneven_row(time, JITTER)
+    fewest = FEWEST_PER_PERIOD * FEWEST_PERIODS
+    if len(time) < fewest:
+        allowed = f"the record is too short; allowed are at least {fewest} samples"
+        raise InputError("time", time.shape, allowed)
+    for name in NORMAL:
+        if name in values and values[name].mean() <= 0.0:
+            mean = float(f"{values[name].mean():.6g}")
+            raise InputError(name, mean, "the mean; allowed is a mean above 0")
+    return _step(time), values
+
+
+def _step(time: np.ndarray) -> float:
+    """Return the time step.  Raises InputError if the steps differ by more than rounding."""
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    if step <= 0.0:
+        problem = f"the last time, and the first is {time[0]:.9g} s; allowed are increasing times"
+        raise InputError("time", float(time[-1]), problem)
+    # Numbers with a fixed number of significant digits have the fewest decimals at the end.
+    place = _resolution(time[-len(time) // 8 :])
+    row = uneven_row(time, max(JITTER, min(place / step, ROUNDED)))
     if row is not None:
-        raise InputError("time", float(time[row]), f"not equally spaced; this is row {row}")
-    return float(time[-1] - time[0]) / (len(time) - 1), values
+        allowed = "allowed are equal steps, except for rounded decimals"
+        problem = f"not equally spaced, in row {row} (the first is 0); {allowed}"
+        raise InputError("time", float(time[row]), problem)
+    return step
+
+
+def _resolution(time: np.ndarray) -> float:
+    """Last decimal place of rounded times; 0 for times that are not rounded."""
+    for decimals in range(MOST_DECIMALS + 1):
+        place = time * 10.0**decimals
+        if np.abs(place - np.rint(place)).max() <= 1e-6:
+            return 10.0**-decimals
+    return 0.0
 
 
 def _strongest(values: Mapping[str, np.ndarray]) -> float:
@@ -162,7 +292,8 @@ def _strongest(values: Mapping[str, np.ndarray]) -> float:
     first, height = SLOWEST + int(np.argmax(power[SLOWEST:])), np.sqrt(power)  # type: ignore[index]
     low, top, high = (height[min(n, len(height) - 1)] for n in (first - 1, first, first + 1))
     curve = low - 2.0 * top + high
-    return first + (0.5 * (low - high) / curve if curve else 0.0)
+    shift = 0.5 * (low - high) / curve if curve else 0.0
+    return float(first + np.clip(shift, -0.5, 0.5))
 
 
 def _spline(step: float, values: np.ndarray) -> Any:
@@ -191,10 +322,11 @@ def _harmonics(spline: Any, frequency: float, longest: float, step: float, rows:
     return coefficients
 
 
-def _correction(harmonics: Mapping[str, np.ndarray]) -> tuple[float, float]:
-    """Return the relative correction of the frequency, and the standard error of the correction.
+def _correction(harmonics: Mapping[str, np.ndarray]) -> tuple[float, float, float, int]:
+    """Return the relative correction of the frequency, its standard error, the variance of the slow
+    phase drift in periods squared, and the order of the strongest harmonic.
 
-    Both follow from the phases of the strongest harmonic.
+    The first three follow from the phases of this harmonic.
     """
     powers = {name: np.mean(np.abs(one) ** 2, axis=0) for name, one in harmonics.items()}
     shares = {name: one / (one.sum() or 1.0) for name, one in powers.items()}
@@ -207,4 +339,5 @@ def _correction(harmonics: Mapping[str, np.ndarray]) -> tuple[float, float]:
     spread = float(np.sum(place**2))
     slope = float(np.sum(place * turns)) / spread
     rest = turns - turns.mean() - slope * place
-    return slope, math.sqrt(float(np.sum(rest**2)) / max(len(turns) - 2, 1) / spread)
+    error = math.sqrt(float(np.sum(rest**2)) / max(len(turns) - 2, 1) / spread)
+    return slope, error, max(float(np.mean(rest[1:] * rest[:-1])), 0.0), order

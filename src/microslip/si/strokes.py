@@ -23,7 +23,6 @@ from microslip.motions.from_file import COLUMNS, columns_of, table_of
 from microslip.motions.samples import NORMAL, PLANE, Sampled
 from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
-from microslip.si.record import JITTER
 
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path or a period."""
@@ -139,7 +138,7 @@ def read_record(
 ) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, str]]:
     """Read a record for `microslip.fold`.  Returns the times in s, the columns, and their units.
 
-    The columns are in the units of the file.
+    The columns are in the units of the file.  `microslip.fold` checks the times.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def read_record(
     """
     csv_text.check_format(decimal, encoding)
     try:
-        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=JITTER)
+        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=None)
         factors = _factors(table)
         if "time" not in table.columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
