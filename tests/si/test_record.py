@@ -158,7 +158,7 @@ def test_a_large_drift_of_the_frequency_is_refused(change):
 def test_noise_is_refused(frequency, seed):
     time = np.arange(2000) / 1000.0
     noise = np.random.default_rng(seed).standard_normal(2000)
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match="standard error|samples in steps"):
         microslip.fold(time, {"lateral": noise}, frequency=frequency)
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -147,23 +147,23 @@ def fold(
         change, error, variance, order = _correction(harmonics)
         frequency += change * frequency
         _check_periods(frequency, longest, step, typed)
-    _check_drift(frequency, longest, variance, order)
-    mean, errors, drift = {}, {}, {}
+    mean, scatter, lost, drift = {}, {}, {}, {}
     for name, spline in splines.items():
         harmonic = _harmonics(spline, frequency, longest, step, rows)
         periods = np.fft.irfft(harmonic, rows) * rows
         mean[name] = periods.mean(axis=0)
         loss = -np.expm1(-_exponent(variance, np.arange(harmonic.shape[1])))
-        lost = np.fft.irfft(loss * harmonic.mean(axis=0), rows) * rows
-        errors[name] = periods.std(axis=0, ddof=1) / math.sqrt(len(periods)) + np.abs(lost)
+        lost[name] = np.fft.irfft(loss * harmonic.mean(axis=0), rows) * rows
+        scatter[name] = periods.std(axis=0, ddof=1) / math.sqrt(len(periods))
         integral, half = spline.antiderivative(), 0.5 / frequency
         ends = [_moving_mean(integral, one, half) for one in (half, longest - half)]
         drift[name] = float((ends[1] - ends[0]) / (longest - 2.0 * half))
         if name in NORMAL:
             mean[name] += values[name].mean()
-    result = Fold(frequency, error * frequency, len(periods), mean, errors, drift)
-    _check_noise(result)
-    return result
+    result = Fold(frequency, error * frequency, len(periods), mean, scatter, drift)
+    _check_noise(result)  # first, since the phases of noise look like a drift
+    _check_drift(frequency, longest, variance, order)
+    return replace(result, errors={n: one + np.abs(lost[n]) for n, one in scatter.items()})
 
 
 def _check_periods(frequency: float, longest: float, step: float, typed: bool) -> None:
@@ -212,7 +212,7 @@ def _check_noise(result: Fold) -> None:
     problem = (
         f"peak to peak at {result.frequency:.6g} Hz, with a standard error of {error:.2g}; allowed "
         f"are at least {SIGNIFICANT:g} standard errors; use a longer record, or give the "
-        "approximate frequency of the motion"
+        "correct approximate frequency of the motion"
     )
     raise InputError(name, float(f"{size:.3g}"), problem)
 
