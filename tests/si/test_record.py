@@ -1,6 +1,7 @@
 """Periods from records with noise and drift, compared with the known motion."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -158,7 +159,7 @@ def test_a_large_drift_of_the_frequency_is_refused(change):
 def test_noise_is_refused(frequency, seed):
     time = np.arange(2000) / 1000.0
     noise = np.random.default_rng(seed).standard_normal(2000)
-    with pytest.raises(InputError, match="standard error|samples in steps"):
+    with pytest.raises(InputError, match="times its standard error|samples in steps"):
         microslip.fold(time, {"lateral": noise}, frequency=frequency)
 
 
@@ -186,3 +187,13 @@ def test_the_peak_to_peak_does_not_depend_on_the_samples():
     exact = np.ptp(motion(np.linspace(0.0, 2.0 * np.pi, 10001)))
     size, _ = microslip.fold(time, {"lateral": lateral}).peak_to_peak("lateral")
     assert size == pytest.approx(exact, rel=5e-4)
+
+
+def test_a_message_has_the_unit_of_the_column(tmp_path, capsys):
+    noise = np.random.default_rng(4).standard_normal(2000)
+    lines = "\n".join(f"{t},{x:.4f}" for t, x in enumerate(noise))
+    (tmp_path / "record.csv").write_text(f"time [ms],lateral [um]\n{lines}\n")
+    words = ["fold", str(tmp_path / "record.csv"), "--output", str(tmp_path / "stroke.csv")]
+    assert main([*words, "--frequency", "40 Hz"]) == 2
+    assert re.search(r"lateral = [0-9.]+ um: .* Hz", capsys.readouterr().err)
+    assert not (tmp_path / "stroke.csv").exists()

@@ -79,7 +79,11 @@ def _answer(options: argparse.Namespace) -> Answer:
     except InputError as error:
         if error.argument in ("rows", "frequency"):
             raise
-        raise InputError("record", options.record, str(error)) from None
+        problem = str(error)
+        if error.argument in units and isinstance(error.value, float):
+            value = f"{error.value:.9g} {units[error.argument]}"
+            problem = f"{error.argument} = {value}: {error.allowed}"
+        raise InputError("record", options.record, problem) from None
     _write(options.output, result, units)
     plain = {
         "frequency_Hz": result.frequency,
@@ -116,7 +120,7 @@ def _write(output: str, result: Fold, units: dict[str, str]) -> None:
     from microslip.foundation.files import writing_beside
 
     columns = {"time": result.time} | result.columns
-    heading = ",".join(f"{name} [{units.get(name, 's')}]" for name in columns)
+    heading = ",".join(f"{name} [{units[name]}]" for name in columns)
     errors = ", ".join(f"{n} {np.max(e):.2g} {units[n]}" for n, e in result.errors.items())
     lines = [
         f"# mean of {result.periods} periods; standard error of a sample: {errors}",

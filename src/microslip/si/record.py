@@ -210,9 +210,9 @@ def _check_noise(result: Fold) -> None:
     if size > SIGNIFICANT * error:
         return
     problem = (
-        f"peak to peak at {result.frequency:.6g} Hz, with a standard error of {error:.2g}; allowed "
-        f"are at least {SIGNIFICANT:g} standard errors; use a longer record, or give the "
-        "correct approximate frequency of the motion"
+        f"peak to peak at {result.frequency:.6g} Hz, only {size / (error or 1e-300):.2g} times its "
+        f"standard error; allowed is at least {SIGNIFICANT:g} times; use a longer record, or give "
+        "the correct approximate frequency of the motion"
     )
     raise InputError(name, float(f"{size:.3g}"), problem)
 

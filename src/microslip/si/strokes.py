@@ -157,4 +157,4 @@ def read_record(
     except ValueError as error:
         raise InputError("record", path, str(error)) from None
     time = table.columns.pop("time") * factors["time"]
-    return time, table.columns, table.units
+    return time, table.columns, table.units | {"time": "s"}
