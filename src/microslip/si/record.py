@@ -52,8 +52,8 @@ PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
 """Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
 per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
 FINER = 32
-"""Number of interpolated points per sample for the peak to peak value.  With 32 samples, a peak is
-too small by at most 1e-5 of the amplitude."""
+"""Number of interpolated points per sample for the peak to peak value.  With 32 samples, the peak
+of a sine is too small by at most 5e-6 of its amplitude."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""
 SLOWEST = 3
