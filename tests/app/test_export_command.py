@@ -137,7 +137,7 @@ def test_interpolated_friction_is_within_the_stated_difference(capsys):
     _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis} --json")
     rows = json.loads(out)
     _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis}")
-    (stated,) = re.findall(r"values by up to ([\d.e-]+)", out)
+    (stated,) = re.findall(r"values: up to ([\d.e-]+) along amplitude", out)
     amplitude, friction = (
         np.array([row[name] for row in rows]) for name in ("amplitude", "mu_apparent")
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -134,7 +134,7 @@ def _iwan(options: argparse.Namespace) -> Answer:
 def _table(options: argparse.Namespace) -> Answer:
     from tqdm import tqdm
 
-    from microslip.si.grid import grid_of, interpolation_error
+    from microslip.si.grid import grid_of, interpolation_errors
     from microslip.si.table import predictions
 
     refuse_output(options.output, endings=(".csv", ".txt"))
@@ -157,14 +157,24 @@ def _table(options: argparse.Namespace) -> Answer:
     comments = [
         f"friction of a contact, motion {options.motion}, from microslip predict",
         f"largest errors of the values: {errors[0]:.2g} of mu_apparent, {errors[1]:.2g} N",
-        "mu_apparent differs from the linear interpolation of the neighbouring values by up to "
-        f"{interpolation_error(dataset.mu_apparent):.2g}",
+        _interpolation_text(interpolation_errors(dataset.mu_apparent)),
     ]
     frame = dataset.to_dataframe().reset_index()
     plain = frame.to_dict("records")
     frame.columns = [_heading(name, dataset[name].attrs["units"]) for name in frame.columns]
     writers = {".txt": lambda file: file.write_text(modelica_text.text_of(dataset, comments))}
     return _answer(options, plain, frame, comments, writers)
+
+
+def _interpolation_text(errors: Mapping[str, float | None]) -> str:
+    """Describe the differences from linear interpolation along each axis."""
+    largest = [f"{one:.2g} along {name}" for name, one in errors.items() if one is not None]
+    short = [name for name, one in errors.items() if one is None]
+    texts = [f"up to {', '.join(largest)}"] if largest else []
+    if short:
+        texts.append(f"cannot be computed along {', '.join(short)} with fewer than 3 values")
+    subject = "difference of mu_apparent from the linear interpolation of the neighbouring values"
+    return f"{subject}: {'; '.join(texts)}"
 
 
 def _friction_table(dataset: xr.Dataset) -> xr.Dataset:

@@ -312,7 +312,7 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
-    if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
+    if not motions.unit_of_amplitude(motion) and missing != ["speed"]:
         what = "several amplitudes" if motions.has_several_amplitudes(motion) else "no amplitude"
         raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:
