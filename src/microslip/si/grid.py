@@ -107,6 +107,14 @@ class Axis(NamedTuple):
     unit: str
 
 
+class _Points(Table):
+    """Combinations of values.  Messages name a combination by its values."""
+
+    def place(self, case: int) -> str:
+        """Phrase for a combination in messages, such as "at load 1 N, speed 1 mm/s"."""
+        return f"at {', '.join(f'{name} {one[case]}' for name, one in self.columns.items())}"
+
+
 @dataclass(frozen=True)
 class Grid:
     """All combinations of values for some arguments of `predict`.
@@ -183,7 +191,7 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
         raise InputError(name, arguments.get(name), allowed if axes else ALLOWED)
     cases = zip(*product(*(axis.texts for axis in axes.values())), strict=True)
     columns = {axis.name: list(texts) for axis, texts in zip(axes.values(), cases, strict=True)}
-    return Grid(motion, axes, Table(columns, [], {}), shared)
+    return Grid(motion, axes, _Points(columns, [], {}), shared)
 
 
 def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:

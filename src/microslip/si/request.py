@@ -145,6 +145,9 @@ class Request:
         for name in REFUSED:
             if self.arguments[name] is not None:
                 raise InputError(name, self.arguments[name], "allowed only without a map")
+        if self.motion.stroke is not None:
+            allowed = "not allowed for a motion from a file: no map has its unit of the amplitude"
+            raise InputError("map", self.motion.name, allowed)
         return FrictionMap(dataset, str(self.solver_motion), self.contact.pressure)
 
     def problem(self) -> Problem:
