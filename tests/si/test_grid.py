@@ -74,6 +74,7 @@ def test_sequences_are_axes_and_other_points_survive_a_bad_one():
         ({"amplitude": "0..1 um +- 0.1 um"}, "amplitude"),
         ({"amplitude": "0..1 um, 1000", "speed": "0..1 m/s, 500"}, "amplitude"),
         ({"amplitude": "0..1 s"}, "amplitude"),
+        ({"nu": "0..0.3 um"}, "nu"),
         ({"amplitude": "0..1 um", "load": "1 kg"}, "load"),
         ({"amplitude": "0..1 um", "speeds": "0..1 m/s"}, "speeds"),
     ],

@@ -72,7 +72,7 @@ def _options(name: str, text: str, options: Sequence[str]) -> tuple[int, bool]:
     """
     counts = [option for option in options if option != LOG]
     if len(counts) > 1 or options.count(LOG) > 1:
-        problem = f"{len(options)} words after the range; allowed are one number of values, and log"
+        problem = "at most one number of values and one word log can follow the range"
         raise InputError(name, text, f"{problem}; {ALLOWED}")
     for word in counts:
         try:
@@ -80,8 +80,8 @@ def _options(name: str, text: str, options: Sequence[str]) -> tuple[int, bool]:
         except InputError:
             count = 0
         if not 2 <= count <= MOST_CASES:
-            there = f"log and a whole number of values from 2 to {MOST_CASES}"
-            raise InputError(name, text, f"{word!r} after the range; allowed is {there}; {ALLOWED}")
+            problem = f"{word!r} is neither log nor a whole number of values from 2 to {MOST_CASES}"
+            raise InputError(name, text, f"{problem}; {ALLOWED}")
         return count, LOG in options
     return VALUES, LOG in options
 
