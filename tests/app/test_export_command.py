@@ -7,9 +7,11 @@ import shlex
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import microslip
-from microslip.app import cli
+from microslip.app import cli, export_command
+from microslip.si.friction_map import FrictionMap
 
 BODY = "--young '210 GPa' --nu 0 --mu 0.3 --radius '5 mm'"
 SAME = {"young": "210 GPa", "nu": 0, "mu": 0.3, "radius": "5 mm"}
@@ -137,7 +139,7 @@ def test_interpolated_friction_is_within_the_stated_difference(capsys):
     _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis} --json")
     rows = json.loads(out)
     _, out, _ = run(capsys, f"table transverse {VIBRATED} {axis}")
-    (stated,) = re.findall(r"values by up to ([\d.e-]+)", out)
+    (stated,) = re.findall(r"values: up to ([\d.e-]+) along amplitude", out)
     amplitude, friction = (
         np.array([row[name] for row in rows]) for name in ("amplitude", "mu_apparent")
     )
@@ -156,6 +158,10 @@ def test_interpolated_friction_is_within_the_stated_difference(capsys):
         ("iwan --elements 2 --tolerance 1e-2", ("--elements", "without")),
         ("iwan --material steel", ("--mu", "needed")),
         ("iwan --nu 0.7", ("--poisson", "0.5")),
+        (
+            "iwan --material steel --mu 0.3 --load '1 N' --radius '5 mm' --radius-across '8 mm'",
+            ("--radius-across = '8 mm'", "nu = 0"),
+        ),
         ("iwan --output a.txt", ("--output = 'a.txt'", ".csv")),
         (f"table transverse {VIBRATED} --load '1 N' --speed 0", ("--amplitude", "range")),
         (f"table transverse {VIBRATED} {GRID} --output a.nc", ("--output = 'a.nc'", ".txt")),
@@ -170,12 +176,52 @@ def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
     assert line.startswith("microslip export") and all(part in line for part in parts)
 
 
-def test_a_table_with_a_point_that_is_not_converged_is_not_written(tmp_path, capsys):
+def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, capsys, monkeypatch):
+    def outside(*_):
+        raise ValueError("outside the map")
+
+    monkeypatch.setattr(FrictionMap, "at", outside)
+    dataset = xr.Dataset(attrs={"motion": "transverse"})
+    monkeypatch.setattr(export_command, "opened_map", lambda _: dataset)
     file = tmp_path / "a.csv"
-    code, out, error = run(
-        capsys,
-        f"table transverse {VIBRATED} --load '10 N' --speed '10 mm/s' --amplitude '0.1e-6..1 m, 2' "
-        f"--output {file}",
-    )
-    assert code == 1 and not file.exists()
-    assert "amplitude_si = 1" in error and "no table" in error and not out.strip()
+    axis = "--load '10 N' --speed '10 mm/s' --amplitude '0.1..0.2 um, 2' --map certified.nc"
+    code, out, error = run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")
+    assert code == 1 and not file.exists() and not out
+    assert "amplitude_si = 1e-07: --map = 'certified.nc': at velocity" in error
+    assert "outside the map" in error and "no table" in error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            "transverse --amplitude '-1..1 um, 3'",
+            "-amplitude = '-1..1 um, 3': at amplitude -1 um",
+        ),
+        (
+            "transverse --amplitude '1e-7..1 m, 2'",
+            "-amplitude = '1e-7..1 m, 2': at amplitude 1 m",
+        ),
+        ("normal --load-amplitude '0..9 N, 3'", "--load-amplitude = '0..9 N, 3': at "),
+        ("transverse --amplitude '0..1 um' --mass '1 g'", "only with --drive-stiffness\n"),
+    ],
+)
+def test_bad_values_of_a_grid_are_refused_before_any_work(capsys, monkeypatch, arguments, message):
+    monkeypatch.setattr("microslip.si.table.predict_arguments", None)
+    code, out, error = run(capsys, f"table {arguments} {VIBRATED} --load '10 N' --speed '1 mm/s'")
+    assert code == 2 and not out and message in error
+
+
+def test_a_table_suggests_its_own_options_only(capsys):
+    code, _, error = run(capsys, f"table transverse {VIBRATED} --load '10 N' --amplitude '0..1 um'")
+    assert code == 2 and error == "microslip export table: --speed: needed\n"
+    with pytest.raises(SystemExit):
+        run(capsys, "table --help")
+    text = capsys.readouterr().out
+    assert "--speed" in text and "--force" not in text and "--propulsion" not in text
+
+
+def test_two_values_have_no_difference_from_interpolation(capsys):
+    axes = "--load '10..20 N, 2' --speed '10 mm/s' --amplitude '0..0.2 um, 2'"
+    code, out, _ = run(capsys, f"table transverse {VIBRATED} {axes}")
+    assert code == 0 and "cannot be computed along load, amplitude" in out and "up to" not in out

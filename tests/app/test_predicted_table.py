@@ -9,8 +9,9 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.app import cli
+from microslip.app import cli, predict_command
 from microslip.datasets import certified_map
+from microslip.si.friction_map import FrictionMap
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -220,6 +221,11 @@ def test_a_point_of_a_range_without_a_prediction_is_named(folder, capsys):
         (["--table", "contacts.csv"], "--amplitude = '0..0.4 um, 3': a range; allowed without"),
         (["--propulsion"], "--amplitude = '0..0.4 um, 3': allowed without --propulsion"),
         (["--figure", "a.jpg"], "--figure = 'a.jpg': allowed is a name that ends in .png or .pdf"),
+        (
+            ["--figure", "nowhere/a.png"],
+            "--figure = 'nowhere/a.png': allowed is a file in a",
+        ),
+        (["--output", "nowhere/a.nc"], "--output = 'nowhere/a.nc': allowed is a file in a folder"),
         (["--output", "a.txt"], "--output = 'a.txt': allowed is a name that ends in .csv or .nc"),
         (["--phase", "0..1 deg", "--figure", "a.png"], "allowed with one range, or with a second"),
         (["--decimal", ","], "--decimal = ',': allowed only with --table"),
@@ -229,6 +235,26 @@ def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, c
     assert cli.main([*RANGED, *words]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
+
+
+def test_a_point_outside_a_map_is_reported_with_the_path_of_the_map(folder, capsys, monkeypatch):
+    def outside(*_):
+        raise ValueError("outside the map")
+
+    monkeypatch.setattr(FrictionMap, "at", outside)
+    dataset = xr.Dataset(attrs={"motion": "transverse"})
+    monkeypatch.setattr(predict_command, "opened_map", lambda _: dataset)
+    assert cli.main([*RANGED, "--map", "certified.nc"]) == 1
+    assert "--map = 'certified.nc': at velocity" in capsys.readouterr().err
+
+
+def test_a_long_period_gives_a_hint_to_fold_before_any_work(folder, capsys):
+    rows = "\n".join(map(str, range(2001)))
+    (folder / "record.csv").write_text(f"lateral [um]\n{rows}\n")
+    assert cli.main(["predict", "file:record.csv", *WORDS]) == 2  # the load is missing
+    hint, problem = capsys.readouterr().err.splitlines()
+    assert "MOTION = 'file:record.csv'" in hint and "microslip fold" in hint
+    assert "--load: needed" in problem
 
 
 @pytest.mark.long

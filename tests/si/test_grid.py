@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.foundation.errors import InputError
-from microslip.si.grid import interpolation_error, values_of
+from microslip.si.grid import grid_of, interpolation_errors, values_of
 
 CONTACT = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
 
@@ -17,7 +17,7 @@ CONTACT = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency"
         ("0.1..10 mm/s, 3, log", ["0.1 mm/s", "1 mm/s", "10 mm/s"]),
         ("1..100um,log,3", ["1 um", "10 um", "100 um"]),
         ("1e-1 .. .5, 2", ["0.1", "0.5"]),
-        ("0...5 N,2", ["0 N", "0.5 N"]),
+        ("0 .. .5 N,2", ["0 N", "0.5 N"]),
     ],
 )
 def test_a_range_has_equal_steps_or_equal_ratios(text, values):
@@ -74,6 +74,7 @@ def test_sequences_are_axes_and_other_points_survive_a_bad_one():
         ({"amplitude": "0..1 um +- 0.1 um"}, "amplitude"),
         ({"amplitude": "0..1 um, 1000", "speed": "0..1 m/s, 500"}, "amplitude"),
         ({"amplitude": "0..1 s"}, "amplitude"),
+        ({"nu": "0..0.3 um"}, "nu"),
         ({"amplitude": "0..1 um", "load": "1 kg"}, "load"),
         ({"amplitude": "0..1 um", "speeds": "0..1 m/s"}, "speeds"),
     ],
@@ -89,6 +90,28 @@ def test_interpolation_errors_of_parabolas():
     # x^2 differs from the interpolation of its neighbours at x - h and x + k by h k
     import xarray as xr
 
-    x, y = np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0])
-    values = xr.DataArray(np.add.outer(x**2, y**2), {"x": x, "y": y}, dims=("x", "y"))
-    assert interpolation_error(values) == pytest.approx(1.0 * 2.0)
+    x, y, z = np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0]), np.array([0.0, 2.0, 4.0])
+    f = x[:, None, None] ** 2 + y[:, None] ** 2 + z**2
+    values = xr.DataArray(f, {"x": x, "y": y, "z": z}, dims=("x", "y", "z"))
+    errors = interpolation_errors(values)
+    assert errors == {"x": pytest.approx(1.0 * 2.0), "y": None, "z": pytest.approx(2.0 * 2.0)}
+
+
+@pytest.mark.parametrize("word", ["1", "0", "1e9", "1000000000", "-3", "lin"])
+def test_a_wrong_word_after_a_range_is_quoted_with_the_allowed_counts(word):
+    with pytest.raises(InputError, match=f"'{word}'.*from 2 to 100000"):
+        values_of("load", f"0..2 N, {word}")
+
+
+def test_three_dots_are_refused():
+    with pytest.raises(InputError, match="three dots"):
+        values_of("amplitude", "0...1 um, 3")
+
+
+@pytest.mark.parametrize("factor", ["0.5..1.5, 3", "50..150 %, 3"])
+def test_the_factor_of_a_motion_from_a_file_is_a_range(factor, tmp_path):
+    file = tmp_path / "stroke.csv"
+    file.write_text("lateral [um]\n0\n0.1\n0\n-0.1\n")
+    grid = grid_of(f"file:{file}", {"amplitude": factor, "load": "1 N"})
+    assert grid.axes["amplitude_si"].values == [0.5, 1.0, 1.5]
+    assert grid.axes["amplitude_si"].unit == ""

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import microslip
 from microslip.foundation.errors import InputError
@@ -64,6 +65,25 @@ def test_amplitude_is_a_factor_and_the_mean_of_a_displacement_has_no_effect(tmp_
     same(one, other)
     assert one.amplitude == pytest.approx(other.amplitude)
     assert one.amplitude_si is None
+
+
+@pytest.mark.parametrize(("rows", "hint"), [(2000, False), (2001, True)])
+def test_a_long_period_has_a_hint_to_fold(tmp_path, rows, hint):
+    name = file_of(tmp_path / "record.csv", lateral_um=np.sin(np.arange(rows)))
+    assert ("microslip fold" in read_stroke(name).hint) == hint
+
+
+def test_a_record_with_too_many_rows_is_refused_with_a_hint_to_fold(tmp_path):
+    name = file_of(tmp_path / "record.csv", lateral_um=np.sin(np.arange(10_001)))
+    with pytest.raises(InputError, match="10001 rows; allowed .* 10000 rows.* `microslip fold`"):
+        read_stroke(name)
+
+
+def test_a_map_of_a_motion_from_a_file_is_refused(tmp_path):
+    name = file_of(tmp_path / "stroke.csv", lateral_um=0.2 * SINE)
+    shared = BALL | {"load": "10 N", "speed": "20 um/s", "frequency": "200 Hz"}
+    with pytest.raises(InputError, match="map = .*not allowed for a motion from a file"):
+        microslip.predict(name, **shared, map=xr.Dataset(attrs={"motion": "transverse"}))
 
 
 def test_time_gives_the_frequency_and_the_file_the_load(tmp_path):

@@ -55,6 +55,18 @@ def test_force_errors_are_within_the_tolerance_and_sharp(pressure, tolerance):
     assert difference.max() == pytest.approx(model.force_error.max(), rel=1e-6)
 
 
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_a_loop_has_at_most_the_error_of_any_path(pressure):
+    model = microslip.iwan(pressure, elements=1)
+    assert model.error <= model.error_on_any_path
+
+
+@pytest.mark.parametrize("path", [1.0, [[0.0, 1.0]], ["a"], [0.0, np.nan], [np.inf], None, [1j]])
+def test_a_path_that_is_not_one_of_finite_numbers_is_refused(path):
+    with pytest.raises(InputError, match="displacement"):
+        microslip.iwan(elements=2).force(path)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.sampled_from(PRESSURES), st.integers(1, 30), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
 def test_loops_are_those_of_masing_within_the_error(pressure, elements, first, second):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.app import modelica_text
 from microslip.app.predict_command import GROUPS
+from microslip.app.predicted_table import problem_text
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
     Answer,
@@ -23,6 +25,7 @@ from microslip.app.question import (
 from microslip.app.response_command import LOAD
 from microslip.app.terminal import complain
 from microslip.foundation import spec
+from microslip.foundation.errors import InputError
 from microslip.si.prediction import NoPrediction
 
 if TYPE_CHECKING:
@@ -38,11 +41,15 @@ IWAN_OPTIONS = {
     ),
     "output": ("FILE", "write a .csv file"),
 }
-TABLE_OPTIONS = {name: GROUPS["output"][name] for name in ("tolerance", "map")} | {
-    "output": ("FILE", "write a .csv file, or a .txt file for Modelica.Blocks.Tables")
+TABLE_OPTIONS = {
+    "tolerance": ("T", "largest accepted absolute error of mu_macro (1e-3)"),
+    "map": GROUPS["output"]["map"],
+    "output": ("FILE", "write a .csv file, or a .txt file for Modelica.Blocks.Tables"),
 }
 NO_FRICTION = ("force", "reduction")
 """Options of predict that are left out, because their answer is not the friction."""
+FORCE_AS_REMEDY = re.compile(r", or a force\b|\ba force or (?=a drive_stiffness)")
+"""Suggestions in messages of predict that do not apply to a table."""
 WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
 """Options that are also allowed without a contact in SI units."""
 COLUMNS = {
@@ -134,7 +141,7 @@ def _iwan(options: argparse.Namespace) -> Answer:
 def _table(options: argparse.Namespace) -> Answer:
     from tqdm import tqdm
 
-    from microslip.si.grid import grid_of, interpolation_error
+    from microslip.si.grid import grid_of, interpolation_errors
     from microslip.si.table import predictions
 
     refuse_output(options.output, endings=(".csv", ".txt"))
@@ -143,13 +150,21 @@ def _table(options: argparse.Namespace) -> Answer:
     if options.map is not None:
         arguments["map"] = opened_map(options.map)
     grid = grid_of(options.motion, arguments)
-    lazy = predictions(options.motion, grid.table, grid.shared)
+    try:
+        lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
+    except InputError as error:
+        allowed = FORCE_AS_REMEDY.sub("", error.allowed)
+        raise InputError(error.argument, error.value, allowed) from None
     points = grid.combinations
     answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))
     for point, one in zip(points, answers, strict=True):
         if not one.converged:
             where = ", ".join(f"{name} = {x:.4g}" for name, x in zip(grid.axes, point, strict=True))
-            reason = one.error if isinstance(one, NoPrediction) else one.reason
+            reason = (
+                problem_text(one.error, map_=options.map)
+                if isinstance(one, NoPrediction)
+                else one.reason
+            )
             complain(f"microslip export table: not converged at {where}: {reason}; no table")
             return Answer({"converged": False}, "", False)
     dataset = _friction_table(grid.dataset(answers))
@@ -157,14 +172,24 @@ def _table(options: argparse.Namespace) -> Answer:
     comments = [
         f"friction of a contact, motion {options.motion}, from microslip predict",
         f"largest errors of the values: {errors[0]:.2g} of mu_apparent, {errors[1]:.2g} N",
-        "mu_apparent differs from the linear interpolation of the neighbouring values by up to "
-        f"{interpolation_error(dataset.mu_apparent):.2g}",
+        _interpolation_text(interpolation_errors(dataset.mu_apparent)),
     ]
     frame = dataset.to_dataframe().reset_index()
     plain = frame.to_dict("records")
     frame.columns = [_heading(name, dataset[name].attrs["units"]) for name in frame.columns]
     writers = {".txt": lambda file: file.write_text(modelica_text.text_of(dataset, comments))}
     return _answer(options, plain, frame, comments, writers)
+
+
+def _interpolation_text(errors: Mapping[str, float | None]) -> str:
+    """Describe the differences from linear interpolation along each axis."""
+    largest = [f"{one:.2g} along {name}" for name, one in errors.items() if one is not None]
+    short = [name for name, one in errors.items() if one is None]
+    texts = [f"up to {', '.join(largest)}"] if largest else []
+    if short:
+        texts.append(f"cannot be computed along {', '.join(short)} with fewer than 3 values")
+    subject = "difference of mu_apparent from the linear interpolation of the neighbouring values"
+    return f"{subject}: {'; '.join(texts)}"
 
 
 def _friction_table(dataset: xr.Dataset) -> xr.Dataset:

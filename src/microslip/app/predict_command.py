@@ -13,10 +13,13 @@ from microslip.app.question import (
     respond,
     typed_options,
 )
+from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import speaks_of_file
 from microslip.si.grid import is_range
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
+from microslip.si.strokes import read_stroke
 
 GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "bodies": {
@@ -162,6 +165,8 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip import predict
     from microslip.app.progress import elapsed_time
 
+    if speaks_of_file(options.motion) and (hint := read_stroke(options.motion).hint):
+        complain(f"microslip predict: MOTION = {options.motion!r}: {hint}")
     arguments = typed_options(options)
     if options.map is not None:
         arguments["map"] = opened_map(options.map)

@@ -102,10 +102,10 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
         from_table = error.argument in cases.table.columns and error.argument not in cases.shared
         if not (options.table and from_table):
             raise
-        problem = _problem(error, cases.table.columns)
+        problem = problem_text(error, cases.table.columns)
         raise InputError("table", options.table, problem) from None
     answers = list(tqdm(lazy, "contacts", len(cases.names), leave=False, disable=None))
-    rows = _rows(cases, answers, cases.table.columns if options.table else ())
+    rows = _rows(cases, answers, cases.table.columns if options.table else (), options.map)
     if options.output is not None or options.figure is not None:
         dataset = cases.dataset(answers)
         errors = np.reshape([row["error"] or "" for row in rows], dataset["error"].shape)
@@ -168,26 +168,31 @@ def _short(text: str) -> str:
 
 
 def _rows(
-    cases: _Cases, answers: Sequence[Prediction | NoPrediction], headings: Collection[str]
+    cases: _Cases,
+    answers: Sequence[Prediction | NoPrediction],
+    headings: Collection[str],
+    map_: str | None,
 ) -> list[dict[str, Any]]:
     """Return a dict for each contact: its first values, its error message or None, and its columns.
 
-    headings: arguments that messages show by name, not as options.
+    headings: arguments that messages show by name, not as options; map_: value of --map.
     """
     rows = []
     for values, one in zip(zip(*cases.values.values(), strict=True), answers, strict=True):
         row = dict(zip(cases.values, values, strict=True))
         if isinstance(one, NoPrediction):
-            rows.append(row | {"error": _problem(one.error, headings)})
+            rows.append(row | {"error": problem_text(one.error, headings, map_)})
         else:
             rows.append(row | {"error": None} | one.to_dict())
     return rows
 
 
-def _problem(error: InputError | str, columns: Collection[str]) -> str:
+def problem_text(
+    error: InputError | str, columns: Collection[str] = (), map_: str | None = None
+) -> str:
     """Format a contact's error message, with columns and options in place of Python arguments.
 
-    For an empty cell or a missing column, the message contains no value.
+    For an empty cell or a missing column, the message contains no value.  map_: value of --map.
     """
     from microslip.si.predict import NOTHING
 
@@ -195,7 +200,8 @@ def _problem(error: InputError | str, columns: Collection[str]) -> str:
         return format_as_options(error)
     others = [name for name in NOTHING if name not in columns]
     name = error.argument if error.argument in columns else option(error.argument)
-    value = "" if error.value is None else f" = {shown(error.value)}"
+    wrong = map_ if error.argument == "map" else error.value
+    value = "" if wrong is None else f" = {shown(wrong)}"
     allowed = format_as_options(error.allowed, others)
     return " ".join(f"{name}{value}: {allowed}".split())
 

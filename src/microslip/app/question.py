@@ -23,6 +23,7 @@ ENDINGS = (".csv", ".nc")
 """File extensions of output files."""
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
+WRITABLE = "a file in a folder that can be written to"
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
 
@@ -121,7 +122,8 @@ def respond(
     text = json.dumps(plain(result.plain)) if options.json else result.text
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     # The encoding may lack characters that units use.
-    print(text.encode(encoding, "backslashreplace").decode(encoding))
+    if text:
+        print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if result.complete else 1
 
 
@@ -134,20 +136,27 @@ def refuse_output(
     file, allowed = Path(path), ""
     if file.suffix.lower() not in endings:
         allowed = f"a name that ends in {' or '.join(endings)}"
-    elif file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
-        allowed = "a file in a folder that can be written to"
+    elif not _is_writable(file):
+        allowed = WRITABLE
     elif table is not None and file.resolve() == Path(table).resolve():
         allowed = "another file than the table that is read"
     if allowed:
         raise InputError("output", path, f"allowed is {allowed}")
 
 
+def _is_writable(file: Path) -> bool:
+    """True for a file in an existing folder that can be written to."""
+    return not file.is_dir() and file.parent.is_dir() and os.access(file.parent, os.W_OK)
+
+
 def refuse_figure(path: str | None) -> None:
-    """Raise InputError if the figure has an unknown file extension, or if matplotlib is missing."""
+    """Raise InputError if the figure cannot be written, or if matplotlib is missing."""
     if path is None:
         return
     if Path(path).suffix.lower() not in FIGURES:
         raise InputError("figure", path, f"allowed is a name that ends in {' or '.join(FIGURES)}")
+    if not _is_writable(Path(path)):
+        raise InputError("figure", path, f"allowed is {WRITABLE}")
     if hint := extras.missing("matplotlib"):
         raise InputError("figure", path, hint)
 

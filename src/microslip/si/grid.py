@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 VALUES = 11
 """Default number of values of a range."""
-DOTS = ".."
+DOTS, THREE_DOTS, LOG = "..", "...", "log"
 ALLOWED = (
     "allowed is a range such as '0..2 um' (11 values), '0..2 um, 21' (21 values) or "
     "'0.1..10 mm/s, 21, log' (21 values in equal ratios)"
@@ -46,21 +46,44 @@ def is_range(name: str, value: object) -> bool:
 def values_of(name: str, text: str) -> list[str]:
     """Return the values of a range as texts with the unit of the range.  Raises InputError."""
     ends, *options = (part.strip() for part in text.split(","))
-    log = "log" in options
-    numbers = [option for option in options if option != "log"]
+    if THREE_DOTS in ends:
+        problem = "three dots in a row; a number after two dots begins with a digit, as in '0..0.5'"
+        raise InputError(name, text, f"{problem}; {ALLOWED}")
     first, _, last = ends.partition(DOTS)
     try:
         digits, unit = split_number(last)
         low, high = spec.read(name, first), float(digits)
-        count = spec.read(name, numbers.pop(0), whole=True) if numbers else VALUES
     except (UnitError, InputError):
         raise InputError(name, text, ALLOWED) from None
-    fits = -math.inf < low < high < math.inf and 2 <= count <= MOST_CASES and DOTS not in last
-    if not fits or numbers or options.count("log") > 1 or log and low <= 0.0:
+    count, log = _options(name, text, options)
+    fits = -math.inf < low < high < math.inf and DOTS not in last
+    if not fits or log and low <= 0.0:
         above = ", from a number above 0 with log" if log else ""
         raise InputError(name, text, f"{ALLOWED}; the second number is the larger one{above}")
-    values = (np.geomspace if log else np.linspace)(low, high, int(count))
+    values = (np.geomspace if log else np.linspace)(low, high, count)
     return [f"{value:.12g} {unit}".strip() for value in values]
+
+
+def _options(name: str, text: str, options: Sequence[str]) -> tuple[int, bool]:
+    """Return the number of values of a range, and whether they have equal ratios.  Raises
+    InputError.
+
+    options: words after the range.
+    """
+    counts = [option for option in options if option != LOG]
+    if len(counts) > 1 or options.count(LOG) > 1:
+        problem = "at most one number of values and one word log can follow the range"
+        raise InputError(name, text, f"{problem}; {ALLOWED}")
+    for word in counts:
+        try:
+            count = int(spec.read(name, word, whole=True))
+        except InputError:
+            count = 0
+        if not 2 <= count <= MOST_CASES:
+            problem = f"{word!r} is neither log nor a whole number of values from 2 to {MOST_CASES}"
+            raise InputError(name, text, f"{problem}; {ALLOWED}")
+        return count, LOG in options
+    return VALUES, LOG in options
 
 
 class Axis(NamedTuple):
@@ -82,6 +105,14 @@ class Axis(NamedTuple):
     texts: list[Any]
     values: list[float]
     unit: str
+
+
+class _Points(Table):
+    """Combinations of values.  Messages name a combination by its values."""
+
+    def place(self, case: int) -> str:
+        """Phrase for a combination in messages, such as "at load 1 N, speed 1 mm/s"."""
+        return f"at {', '.join(f'{name} {one[case]}' for name, one in self.columns.items())}"
 
 
 @dataclass(frozen=True)
@@ -146,7 +177,8 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
             values = values_of(name, values)
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
-        unit = (name == "amplitude" and unit_of_amplitude(motion)) or QUANTITIES[name].unit
+        own = unit_of_amplitude(motion) if name == "amplitude" else None
+        unit = QUANTITIES[name].unit if own is None else own
         for value in values:
             refuse_uncertainty({name: value}, "a range")
         si = [read(name, value, unit, low=-math.inf).si for value in values]
@@ -159,7 +191,7 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
         raise InputError(name, arguments.get(name), allowed if axes else ALLOWED)
     cases = zip(*product(*(axis.texts for axis in axes.values())), strict=True)
     columns = {axis.name: list(texts) for axis, texts in zip(axes.values(), cases, strict=True)}
-    return Grid(motion, axes, Table(columns, [], {}), shared)
+    return Grid(motion, axes, _Points(columns, [], {}), shared)
 
 
 def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
@@ -191,19 +223,22 @@ def predict_grid(motion: str, **arguments: Any) -> xr.Dataset:
     return grid.dataset(list(predictions(motion, grid.table, grid.shared)))
 
 
-def interpolation_error(values: xr.DataArray) -> float:
-    """Largest difference between a value and the linear interpolation of its neighbours.
+def interpolation_errors(values: xr.DataArray) -> dict[str, float | None]:
+    """Largest difference between a value and the linear interpolation of its neighbours, by axis.
 
-    It is the sum of the largest differences along each axis with three or more values.  Where the
-    values are smooth, linear interpolation between them has an error of a quarter of this sum.
+    The difference is None for an axis with fewer than three values.  If the values are smooth,
+    linear interpolation between them has an error of a quarter of the sum over the axes.
     """
-    total = 0.0
-    for name in values.dims:
+    errors: dict[str, float | None] = {}
+    for name in map(str, values.dims):
+        if values.sizes[name] < 3:
+            errors[name] = None
+            continue
         f = np.moveaxis(values.values, values.get_axis_num(name), -1)
         left, right = np.diff(values[name].values)[:-1], np.diff(values[name].values)[1:]
         between = (right * f[..., :-2] + left * f[..., 2:]) / (left + right)
-        total += float(np.max(np.abs(f[..., 1:-1] - between), initial=0.0))
-    return total
+        errors[name] = float(np.abs(f[..., 1:-1] - between).max())
+    return errors
 
 
 def _coordinate(name: str, unit: str) -> str:

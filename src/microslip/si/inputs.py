@@ -355,7 +355,7 @@ def read_motion(
         if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
     stroke = read_stroke(motion) if speaks_of_file(motion) else None
-    unit = motions.unit_of_amplitude(motion) if stroke is None else ""
+    unit = motions.unit_of_amplitude(motion)
     quantities = {
         name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
         for name in ("speed", *MOTION_ARGUMENTS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from microslip.adaptive.iwan import iwan
+from microslip.foundation.errors import InputError
 from microslip.si.response import contact_of
 from microslip.theory.iwan import Iwan
 
@@ -34,5 +35,12 @@ def predict_iwan(
         If an argument is invalid.  The message names it.
     """
     real = contact_of(contact)
-    model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)
+    try:
+        model = iwan(real.pressure, poisson=real.poisson, elements=elements, tolerance=tolerance)
+    except InputError as error:
+        across = contact.get("radius_across")
+        if error.argument != "pressure" or across is None:
+            raise
+        allowed = "allowed only if nu = 0, because the contact is an ellipse"
+        raise InputError("radius_across", across, allowed) from None
     return model.scaled(real.mu * real.load, real.u_lim)

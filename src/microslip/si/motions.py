@@ -81,8 +81,13 @@ def has_several_amplitudes(motion: str) -> bool:
 
 
 def unit_of_amplitude(motion: str) -> str | None:
-    """SI unit of the amplitude; None for a steady motion or one with several oscillations."""
-    if motion in MOTIONS or speaks_of_file(motion):
+    """SI unit of the amplitude; None for a steady motion or one with several oscillations.
+
+    The amplitude of a motion from a file is a factor, so its unit is empty.
+    """
+    if speaks_of_file(motion):
+        return ""
+    if motion in MOTIONS:
         return UNIT_OF_AMPLITUDE.get(motion)
     record = _record(motion)
     return _unit(record) if record.periodic else None

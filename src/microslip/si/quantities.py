@@ -115,7 +115,8 @@ def read(
     except UnitError as error:
         allowed = _described(unit)
         if unit == "":
-            allowed += f" {_bounds(low, low_open, high)}"
+            bounds = "" if low == -math.inf else _bounds(low, low_open, high)
+            allowed = f"{allowed} {bounds}".rstrip(", ")
         raise InputError(name, value, f"{error}; allowed is {allowed}") from None
     below = quantity.si <= low if low_open else quantity.si < low
     if not math.isfinite(quantity.si) or below or quantity.si > high:

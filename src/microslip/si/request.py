@@ -145,6 +145,9 @@ class Request:
         for name in REFUSED:
             if self.arguments[name] is not None:
                 raise InputError(name, self.arguments[name], "allowed only without a map")
+        if self.motion.stroke is not None:
+            allowed = "not allowed for a motion from a file: no map has its unit of the amplitude"
+            raise InputError("map", self.motion.name, allowed)
         return FrictionMap(dataset, str(self.solver_motion), self.contact.pressure)
 
     def problem(self) -> Problem:
@@ -312,7 +315,7 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
-    if motions.unit_of_amplitude(motion) is None and missing != ["speed"]:
+    if not motions.unit_of_amplitude(motion) and missing != ["speed"]:
         what = "several amplitudes" if motions.has_several_amplitudes(motion) else "no amplitude"
         raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:

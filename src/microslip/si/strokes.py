@@ -23,9 +23,14 @@ from microslip.motions.from_file import COLUMNS, columns_of, table_of
 from microslip.motions.samples import NORMAL, PLANE, Sampled
 from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
+from microslip.si.record import MOST_ROWS
 
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path or a period."""
+USUAL_ROWS = 2_000
+"""Largest number of rows in a period without a hint to `microslip fold`.  With more rows, a
+prediction can take minutes, and the file may be a record of many periods."""
+FOLD = "for a record of many periods, `microslip fold` writes the mean period"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +50,14 @@ class Stroke:
     name: str
     columns: dict[str, np.ndarray]
     frequency: float | None
+
+    @property
+    def hint(self) -> str:
+        """Hint for a period with many rows; empty for other periods."""
+        rows = len(next(iter(self.columns.values())))
+        if rows <= USUAL_ROWS:
+            return ""
+        return f"one period of {rows} rows, which can take minutes; {FOLD}"
 
     @property
     def mean_load(self) -> float | None:
@@ -117,6 +130,9 @@ def _factors(table: NumberTable) -> dict[str, float]:
 def _of_content(file: NamedFile, content: bytes) -> Stroke:
     table = table_of(file, content)
     factors = _factors(table)
+    rows = len(next(iter(table.columns.values())))
+    if rows > MOST_ROWS:
+        raise ValueError(f"{rows} rows; allowed is one period of at most {MOST_ROWS} rows; {FOLD}")
     columns = {name: values * factors[name] for name, values in table.columns.items()}
     time, frequency = columns.pop("time", None), None
     if time is not None:

@@ -62,7 +62,7 @@ def predict_table(
     ------
     InputError
         If the table is invalid or has no valid case.  If no case is valid, the error of the first
-        case is raised, with the number of the case.
+        case is raised.  An error due to the table contains the number of the case.
     """
     table = Table({}, [], {})
     if is_table(cases):
@@ -77,12 +77,14 @@ def predict_table(
 
 
 def predictions(
-    motion: str, table: Table, shared: Mapping[str, object]
+    motion: str, table: Table, shared: Mapping[str, object], *, need_all: bool = False
 ) -> Iterator[Prediction | NoPrediction]:
     """Yield the prediction of each case in turn.
 
     All cases are checked before the first one is solved.  A search without a solution gives a
     Prediction that is not converged.  The arguments and errors are the same as for predict_table.
+
+    need_all: True to raise InputError if any case is invalid.
     """
     count = _count(table.columns, shared)
     wrong: dict[int, str | InputError] = dict(table.errors)
@@ -97,11 +99,13 @@ def predictions(
                 _request(motion, arguments)
             except InputError as error:
                 wrong[case] = error
-    if len(wrong) == count:
-        for case, one in wrong.items():
-            if isinstance(one, InputError):
-                where = f"line {table.lines[case]}" if table.lines else f"case {case}"
-                raise InputError(one.argument, one.value, f"in {where}: {one.allowed}")
+    if len(wrong) == count or need_all:
+        problems = {case: one for case, one in wrong.items() if isinstance(one, InputError)}
+        same = len(wrong) == count and len({str(one) for one in wrong.values()}) == 1
+        for case, one in problems.items():
+            if same and one.argument not in table.columns:
+                raise one
+            raise InputError(one.argument, one.value, f"{table.place(case)}: {one.allowed}")
     return (
         NoPrediction(wrong[case]) if case in wrong else _prediction(motion, arguments)
         for case, arguments in enumerate(cases)

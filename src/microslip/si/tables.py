@@ -48,6 +48,10 @@ class Table:
     lines: list[int]
     errors: dict[int, str]
 
+    def place(self, case: int) -> str:
+        """Phrase for a row in messages, such as "in line 3"."""
+        return f"in line {self.lines[case]}" if self.lines else f"in case {case}"
+
     @property
     def labels(self) -> dict[str, list[Any]]:
         """Text columns that are copied to the output."""

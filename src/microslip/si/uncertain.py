@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import Any
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import speaks_of_file
 from microslip.si.inputs import QUANTITIES
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.outcomes import Ends, UncertainInput, half_difference, uncertainty_of_outcomes
@@ -51,7 +50,8 @@ def without_uncertainty(
         if parts is not None:
             unit = quantity.unit
             if name == "amplitude" and isinstance(motion, str):
-                unit = "" if speaks_of_file(motion) else unit_of_amplitude(motion) or unit
+                own = unit_of_amplitude(motion)
+                unit = unit if own is None else own
             plain[name] = parts[0]
             uncertain.append(_uncertain(name, arguments[name], parts, unit))
     return plain, uncertain

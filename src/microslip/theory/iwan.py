@@ -23,6 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.foundation.errors import InputError
 from microslip.theory.indenter_pressure import IndenterPressure
 
 _GRID = 1.0 - np.linspace(0.0, 1.0, 4097)
@@ -60,8 +61,12 @@ class Iwan:
 
     @property
     def error(self) -> float:
-        """Error of the force on a first loading and on loops between any two displacements."""
-        return LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
+        """Error of the force on a first loading and on loops between any two displacements.
+
+        It is never above the error on any path, which is the smaller one with a single element.
+        """
+        on_loops = LOOP_ERRORS * float(self.force_error.max()) + self.poisson_error
+        return min(on_loops, self.error_on_any_path)
 
     @property
     def error_on_any_path(self) -> float:
@@ -84,9 +89,21 @@ class Iwan:
         -------
         np.ndarray, shape (rows,)
             Sum of the forces of the elements.
+
+        Raises
+        ------
+        InputError
+            If the displacement is not an array of finite numbers with one dimension.
         """
+        try:
+            path = np.asarray(displacement, float)
+        except (TypeError, ValueError):
+            path = np.array(np.nan)
+        if path.ndim != 1 or not np.isfinite(path).all():
+            allowed = "allowed is an array of finite numbers with one dimension"
+            raise InputError("displacement", displacement, allowed)
         forces, out = np.zeros_like(self.stiffness), []
-        for step in np.diff(np.asarray(displacement, float), prepend=0.0):
+        for step in np.diff(path, prepend=0.0):
             forces = np.clip(forces + step * self.stiffness, -self.limit_force, self.limit_force)
             out.append(forces.sum())
         return np.array(out)
