@@ -94,8 +94,14 @@ def test_equal_content_is_one_motion(tmp_path):
     assert motion_named(one).name != names[0]
 
 
-def test_files_may_come_from_spreadsheets(tmp_path):
-    content = "Lateral;Time\n0,0;0\n1,0;0,25\n0,0;0,5\n-1,0;0,75\n"
+@pytest.mark.parametrize(
+    "content",
+    [
+        "Lateral;Time\n0,0;0\n1,0;0,25\n0,0;0,5\n-1,0;0,75\n",
+        "Lateral;Time\n0;0\n1,000;0,25\n0;0,5\n-1;0,75\n",
+    ],
+)
+def test_files_may_come_from_spreadsheets(tmp_path, content):
     (tmp_path / "s.csv").write_text(content)
     motion = motion_named(f"file:{tmp_path / 's.csv'},decimal=comma")
     assert motion.rows[:, 1] == pytest.approx([0.0, 1.0, 0.0, -1.0])

@@ -297,6 +297,8 @@ MATRIX_LOADS = np.array([[0.1, 0.2], [0.3, 0.4]])
         ("1.0\t2.0\t\r\n3.0\t4.0\t\r\n", ""),
         ("left;right\n1,0; 2,0\n3,0; 4,0\n;;\n", ",decimal=comma"),
         ("1,0 2,0\n3,0 4,0\n", ",decimal=comma"),
+        ("1;2,000\n3;4\n", ",decimal=comma"),
+        ("1,2.000\n3,4\n", ""),
         (BOM + b"1,2\n3,4", ""),
         (TEKSCAN, ""),
         (TEKSCAN.replace("\n", "\r\n"), ""),

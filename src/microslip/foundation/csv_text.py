@@ -118,13 +118,13 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
 class Thousands:
     """Detector of columns in which points may be thousands separators.
 
-    In a file with decimal commas, 900 and 1.100 may mean 900 and 1100.  If commas separate the
-    cells, the decimal mark is a point, so no column is refused.
+    Programs with decimal commas may write 900 and 1.100 for 900 and 1100.  No column is refused if
+    commas separate the cells, or if `decimal` is a comma, because numbers then have no points.
     """
 
-    def __init__(self, separator: str, columns: Sequence[str]):
+    def __init__(self, separator: str, decimal: str, columns: Sequence[str]):
         self.columns = tuple(columns)
-        self.possible = dict.fromkeys(columns if separator != "," else ())
+        self.possible = dict.fromkeys(columns if "," not in (separator, decimal) else ())
         self.plain: set[str] = set()
 
     def see(self, where: int, cells: Sequence[str]) -> None:

@@ -77,7 +77,7 @@ def read_numbers(
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
     separator, units = _headings(where, heading, names, allowed, complete)
-    rows, places, thousands = [], [], csv_text.Thousands(separator, list(units))
+    rows, places, thousands = [], [], csv_text.Thousands(separator, decimal, list(units))
     for where, line in lines:
         cells = csv_text.cells(where, line, separator, len(units))
         pairs = list(zip(units, cells, strict=True))

@@ -49,22 +49,22 @@ def grid(
         coordinates.
     """
     forward, lateral, units = read_pitch(pitch)
-    lines = [(n, _cells(line, decimal)) for n, line in csv_text.lines(content, encoding)]
-    if lines and lines[-1][1] == END:
+    lines = [(n, *_split(line, decimal)) for n, line in csv_text.lines(content, encoding)]
+    if lines and lines[-1][-1] == END:
         lines.pop()
-    header = next((i for i, (_, cells) in enumerate(lines) if all(map(_is_number, cells))), None)
+    header = next((i for i, (*_, cells) in enumerate(lines) if all(map(_is_number, cells))), None)
     if header is None:
         raise ValueError(f"no row of numbers; {ALLOWED}")
-    start, first = lines[header]
-    for where, cells in lines[:header]:
+    start, separator, first = lines[header]
+    for where, _, cells in lines[:header]:
         titles = filter(None, map(csv_text.HEADING.fullmatch, cells))
         if {title[1].lower() for title in titles} == set(COLUMNS):
             raise ValueError(f"line {where}: a heading of columns; allowed without pitch only")
         if len(cells) == len(first) and any(map(_is_number, cells)):
             text = next(cell for cell in cells if not _is_number(cell))
             raise ValueError(f"line {where}: {text[:40]!r} between numbers; {ALLOWED}")
-    rows, thousands = [], csv_text.Thousands(";", ["pressure"])
-    for expected, (where, cells) in enumerate(lines[header:], start):
+    rows, thousands = [], csv_text.Thousands(separator, decimal, ["pressure"])
+    for expected, (where, _, cells) in enumerate(lines[header:], start):
         if where != expected:
             raise ValueError(f"line {expected}: no row of the matrix; {ALLOWED}")
         if len(cells) != len(first):
@@ -90,11 +90,12 @@ def grid(
     return (np.arange(n) * forward, np.arange(m) * lateral, values), units
 
 
-def _cells(line: str, decimal: str) -> list[str]:
-    """Split a line into cells, without empty last cells."""
+def _split(line: str, decimal: str) -> tuple[str, list[str]]:
+    """Return the separator of a line, and its cells without empty last cells."""
     separators = [";", "\t"] + [","] * (decimal == ".")
-    separator = next((one for one in separators if one in line), None)
-    return csv_text.words(line, separator) if separator else line.split()
+    for separator in filter(line.__contains__, separators):
+        return separator, csv_text.words(line, separator)
+    return " ", line.split()
 
 
 def _is_number(cell: str) -> bool:

@@ -123,7 +123,7 @@ def read_table(
     separator, units = _headings(where, heading, names)
     table = Table({name: [] for name in units}, [], {})
     quantities = [name for name in units if name not in TEXTS]
-    thousands = csv_text.Thousands(separator if decimal == "." else ",", quantities)
+    thousands = csv_text.Thousands(separator, decimal, quantities)
     for where, line in lines:
         row: dict[str, str | None] = dict.fromkeys(units)
         try:
