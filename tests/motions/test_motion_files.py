@@ -99,6 +99,7 @@ def test_equal_content_is_one_motion(tmp_path):
     [
         "Lateral;Time\n0,0;0\n1,0;0,25\n0,0;0,5\n-1,0;0,75\n",
         "Lateral;Time\n0;0\n1,000;0,25\n0;0,5\n-1;0,75\n",
+        "Lateral\n0,0\n1,0\n0,0\n-1,0\n",
     ],
 )
 def test_files_may_come_from_spreadsheets(tmp_path, content):

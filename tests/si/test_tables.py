@@ -46,8 +46,8 @@ def test_a_decimal_comma_is_read_if_declared():
     assert table.columns["mu"] == [".3", "0.3 +- 0.03", None]
     assert table.columns["counterbody"] == ["70 GPa, 0.22", "steel", None]
     assert table.errors == {2: "line 4: load is '1.5'; allowed: no points where commas are decimal"}
-    quoted = 'load [N],mu\n"1,5","0,3"\n'
-    assert read_table(quoted.encode(), NAMES, decimal=",").columns["load"] == ["1.5 N"]
+    for text in ('load [N],mu\n"1,5","0,3"\n', "load [N]\n1,5\n"):
+        assert read_table(text.encode(), NAMES, decimal=",").columns["load"] == ["1.5 N"]
 
 
 def test_a_line_that_cannot_be_read_does_not_refuse_the_others():

@@ -79,6 +79,19 @@ def words(line: str, separator: str) -> list[str]:
     return cells
 
 
+def headings(line: str, decimal: str) -> Iterator[tuple[str, list[re.Match]]]:
+    """Separators that split a line into headings of columns, each with the matches of HEADING.
+
+    The comma is the last separator if it is the decimal mark, because a file with a single column
+    then has commas only in its numbers.
+    """
+    for separator in sorted(SEPARATORS, key=decimal.__eq__):
+        parts = words(line, separator)
+        matches = [match for match in map(HEADING.fullmatch, parts) if match]
+        if len(matches) == len(parts):
+            yield separator, matches
+
+
 def cells(where: int, line: str, separator: str, count: int) -> list[str]:
     """Cells of a line.  Additional empty cells at the end are omitted.  Raises ValueError unless
     `count` cells remain."""

@@ -76,7 +76,7 @@ def read_numbers(
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
-    separator, units = _headings(where, heading, names, allowed, complete)
+    separator, units = _headings(where, heading, names, allowed, complete, decimal)
     rows, places, thousands = [], [], csv_text.Thousands(separator, decimal, list(units))
     for where, line in lines:
         cells = csv_text.cells(where, line, separator, len(units))
@@ -98,15 +98,13 @@ def read_numbers(
 
 
 def _headings(
-    where: int, heading: str, names: Sequence[str], allowed: str, complete: bool
+    where: int, heading: str, names: Sequence[str], allowed: str, complete: bool, decimal: str
 ) -> tuple[str, dict[str, str]]:
     """Return the separator and the unit of each column."""
-    for separator in csv_text.SEPARATORS:
-        words = csv_text.words(heading, separator)
-        matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
+    for separator, matches in csv_text.headings(heading, decimal):
         units = {match[1].lower(): (match[2] or match[3] or "").strip() for match in matches}
         fits = units.keys() == set(names) if complete else units.keys() <= set(names)
-        if fits and len(units) == len(words):
+        if fits and len(units) == len(matches):
             return separator, units
     raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {allowed}")
 

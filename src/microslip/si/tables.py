@@ -120,7 +120,7 @@ def read_table(
     """
     lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
-    separator, units = _headings(where, heading, names)
+    separator, units = _headings(where, heading, names, decimal)
     table = Table({name: [] for name in units}, [], {})
     quantities = [name for name in units if name not in TEXTS]
     thousands = csv_text.Thousands(separator, decimal, quantities)
@@ -150,18 +150,14 @@ def read_table(
 
 
 def _headings(
-    where: int, heading: str, names: Mapping[str, bool]
+    where: int, heading: str, names: Mapping[str, bool], decimal: str
 ) -> tuple[str, dict[str, str | None]]:
     """The separator of a table, and the unit of each column.  A column without brackets has the
     unit None."""
     units_are = "each with its unit" if any(names.values()) else "with a unit or without"
     allowed = f"allowed: some of {', '.join(names)}, {units_are}, as in speed [mm/s]"
-    for separator in csv_text.SEPARATORS:
-        parts = csv_text.words(heading, separator)
-        matches = [match for match in map(HEADING.fullmatch, parts) if match]
-        if len(matches) == len(parts) and (len(parts) > 1 or separator == ","):
-            break
-    else:
+    separator, matches = next(csv_text.headings(heading, decimal), ("", []))
+    if not matches:
         raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
     units: dict[str, str | None] = {}
     for match in matches:
