@@ -19,19 +19,29 @@ from microslip.motions.samples import NORMAL, PLANE, Sampled, uneven_row
 COLUMNS = (*PLANE, *NORMAL)
 ALLOWED = "some of forward,lateral,angle, and load or indentation, and time"
 EVEN = 1e-2
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing."""
+"""Largest allowed deviation of a time from equal spacing, divided by the spacing.  It changes a
+sine with N samples by at most 2 pi EVEN / N of its amplitude."""
 
 
 def table_of(file: NamedFile, content: bytes) -> NumberTable:
-    """Parse the content of a file; raises ValueError.  See `columns_of`."""
+    """Parse the content of a file with equally spaced samples.
+
+    Raises
+    ------
+    ValueError
+        If the content has another format, or if the times are not equally spaced.
+    """
     if file.grid != GRID or file.pitch:
         raise ValueError("allowed after the path: decimal=comma or encoding=cp1252")
-    return columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
+    table = columns_of(content, decimal=DECIMALS[file.decimal], encoding=file.encoding)
+    time = table.columns.get("time")
+    if time is not None and (row := uneven_row(time, EVEN)) is not None:
+        where = table.lines[row]
+        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
+    return table
 
 
-def columns_of(
-    content: bytes, *, decimal: str, encoding: str, even: float | None = EVEN
-) -> NumberTable:
+def columns_of(content: bytes, *, decimal: str, encoding: str) -> NumberTable:
     """Parse the content of a file.  The table has at least one of the columns in COLUMNS.
 
     Parameters
@@ -40,24 +50,17 @@ def columns_of(
         Content of the file.
     decimal, encoding : str
         Decimal mark and encoding of the file.
-    even : float or None
-        Largest allowed deviation of a time from equal spacing, divided by the spacing.  The times
-        are not checked if it is None.
 
     Raises
     ------
     ValueError
-        If the content has another format, or if the times are not equally spaced.
+        If the content has another format.
     """
     table = read_numbers(content, (*COLUMNS, "time"), ALLOWED, decimal=decimal, encoding=encoding)
     if not table.units.keys() & set(COLUMNS):
         raise ValueError(f"there is no displacement or load; allowed: {ALLOWED}")
     if not table.lines:
         raise ValueError("no line follows the heading; allowed: one for each sample")
-    time = table.columns.get("time") if even is not None else None
-    if time is not None and even is not None and (row := uneven_row(time, even)) is not None:
-        where = table.lines[row]
-        raise ValueError(f"line {where}: time is not equally spaced; allowed: equal steps")
     return table
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from microslip.foundation.arguments import count, real
 from microslip.foundation.errors import InputError
-from microslip.motions.from_file import COLUMNS
+from microslip.motions.from_file import COLUMNS, EVEN
 from microslip.motions.samples import FEWEST_SAMPLES, NORMAL, uneven_row
 
 FEWEST_PERIODS = 4
@@ -35,8 +35,6 @@ REFINEMENTS = 3
 remains."""
 FEWEST_PER_PERIOD = 4
 """Smallest number of samples in a period of the record."""
-JITTER = 0.01
-"""Largest allowed deviation of a time from equal spacing, divided by the spacing."""
 ROUNDED = 0.4
 """Largest allowed deviation of rounded times, divided by the spacing.  A missing sample shifts some
 times by at least half a spacing."""
@@ -261,7 +259,7 @@ def _step(time: np.ndarray) -> float:
         raise InputError("time", float(time[-1]), problem)
     # Numbers with a fixed number of significant digits have the fewest decimals at the end.
     place = _resolution(time[-len(time) // 8 :])
-    row = uneven_row(time, max(JITTER, min(place / step, ROUNDED)))
+    row = uneven_row(time, max(EVEN, min(place / step, ROUNDED)))
     if row is not None:
         allowed = "allowed are equal steps, except for rounded decimals"
         problem = f"not equally spaced, in row {row} (the first is 0); {allowed}"

@@ -163,7 +163,7 @@ def read_record(
     """
     csv_text.check_format(decimal, encoding)
     try:
-        table = columns_of(content_of(path), decimal=decimal, encoding=encoding, even=None)
+        table = columns_of(content_of(path), decimal=decimal, encoding=encoding)
         factors = _factors(table)
         if "time" not in table.columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
