@@ -6,6 +6,8 @@ import math
 import re
 from collections.abc import Sequence
 
+from microslip.foundation.csv_text import PURE
+
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}
 EXAMPLES = {"forward": "mm", "lateral": "mm", "pressure": "MPa"}
@@ -70,7 +72,7 @@ def read_pitch(text: str) -> tuple[float, float, Units]:
 def _factor(name: str, text: str) -> float | None:
     """Return the factor that converts a unit to SI units, or None if the column is
     dimensionless."""
-    if text in ("", "1", "-"):
+    if text in PURE:
         return None
     import pint  # only here, because it takes a while to load
 

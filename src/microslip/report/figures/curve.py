@@ -35,7 +35,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for panel, which, (variable, error, label, si) in zip(axes, "ab", shown, strict=False):
         factor, prefixed = look.prefixed(dataset[variable].fillna(0.0).values, si)
         for line, (color, marker, ls) in zip(lines, look.LINES, strict=False):
-            title = "".join(f"{_title(line[other])}" for other in others)
+            title = "".join(_title(line[other]) for other in others)
             y, band = (
                 line[one].where(line["converged"] == 1) / factor for one in (variable, error)
             )
