@@ -81,6 +81,21 @@ def _judge(values: Values, formula: Callable[..., Any], margin: Margin) -> Check
     return checks
 
 
+def _nearer(values: Values, formula: Callable[..., Any], other: Callable[..., Any]) -> Checks:
+    """Return a function that checks whether a formula is nearer to each value than another formula.
+
+    An error of the value can change each of the two distances, so it counts twice.
+    """
+
+    def checks(study: Claims, runs: Runs) -> Iterator[Check]:
+        for place, value, error, behind in values(study, runs):
+            against, second = (float(eq(*place.values())) for eq in (formula, other))
+            margin = abs(second - value) - abs(against - value)
+            yield check(value, against, margin, 2.0 * error, behind, **place)
+
+    return checks
+
+
 # Sources of values
 
 
@@ -236,23 +251,6 @@ def _steady(amplitude: float, velocity: float) -> float:
 # Checks of other forms
 
 
-def _zone_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
-    for place, mu, error, behind in _limit("transverse", _below_one)(study, runs):
-        slider, zone = (
-            float(eq(place["amplitude"])) for eq in (paper.static_slider, paper.static_transverse)
-        )
-        yield check(mu, zone, abs(slider - mu) - abs(zone - mu), error, behind, **place)
-
-
-def _sine_nearer(study: Claims, runs: Runs) -> Iterator[Check]:
-    for place, mu, error, behind in _flat_end(study, runs):
-        sums, power = (
-            float(eq(*place.values()))
-            for eq in (constant_stiffness.sum_of_powers, constant_stiffness.single_power)
-        )
-        yield check(mu, sums, abs(power - mu) - abs(sums - mu), 2.0 * error, behind, **place)
-
-
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
     """Yield checks of the paper's own runs.
 
@@ -376,7 +374,9 @@ CHECKS: dict[str, Checks] = {
     "rigid_near": _judge(_map("transverse"), _rigid, within(SLIGHT)),
     "rigid_below_squares": _rigid_below_squares,
     "slider_above": _judge(_limit("transverse", _below_one), paper.static_slider, below),
-    "zone_nearer": _zone_nearer,
+    "zone_nearer": _nearer(
+        _limit("transverse", _below_one), paper.static_transverse, paper.static_slider
+    ),
     "slider_above_march": _judge(_slow("transverse", _below_one), paper.static_slider, below),
     "zone_above": _judge(_limit("transverse", _below_one), paper.static_transverse, below),
     "force_settles": _judge(_end("force_forward"), paper.bore_forward, within(AGREES)),
@@ -410,7 +410,9 @@ CHECKS: dict[str, Checks] = {
     "rises_bore": _rises_on_map("bore"),
     "rises_continuous_bore": _rises(lambda study: [claims.steady(study)], "velocity"),
     "sine_near": _judge(_flat_end, constant_stiffness.sum_of_powers, within(GOOD)),
-    "sine_nearer": _sine_nearer,
+    "sine_nearer": _nearer(
+        _flat_end, constant_stiffness.sum_of_powers, constant_stiffness.single_power
+    ),
     "sine_below": _judge(_flat_end, constant_stiffness.sum_of_powers, above),
 }
 """For each part, by name: the function that returns its checks."""
