@@ -292,6 +292,9 @@ def popov_static() -> list[Comparison]:
 
 # Luo et al. (2024)
 
+PERCENT = 0.01
+"""Rounding errors of two reductions in whole percent: the fitted one and the compared one."""
+
 
 def luo() -> tuple[float, list[Comparison]]:
     """Fit u_lim to one measured reduction and compare the others.
@@ -315,10 +318,10 @@ def luo() -> tuple[float, list[Comparison]]:
     rigid = 1.0 - 2.0 / np.pi * np.arcsin(sliding["speed_m_s"] / (omega * stroke))
     at = f"{1e3 * sliding['speed_m_s']:g} mm/s"
     return u_lim, [
-        Comparison("reduction at rest", static["value"], reduction(0.0, u_lim), 0.02),
-        Comparison("smallest reduction of five speeds", low, min(values), 0.02),
-        Comparison("largest reduction of five speeds", high, max(values), 0.02),
-        Comparison(f"reduction at {at}, rigid bodies", sliding["value"], rigid, 0.02),
+        Comparison("reduction at rest", static["value"], reduction(0.0, u_lim), PERCENT),
+        Comparison("smallest reduction of five speeds", low, min(values), PERCENT),
+        Comparison("largest reduction of five speeds", high, max(values), PERCENT),
+        Comparison(f"reduction at {at}, rigid bodies", sliding["value"], rigid, PERCENT),
     ]
 
 

@@ -14,10 +14,12 @@ OUTSIDE = "B"
 END = ["@@"]
 """Last line of Tekscan files, as a list of cells."""
 LEAST_COORDINATES = 4
-"""Smallest number of evenly spaced values that count as coordinates."""
+"""Smallest number of evenly spaced values that count as coordinates.  Three pressures can be evenly
+spaced by chance."""
 EVEN = 0.05
 """Largest difference between the steps of evenly spaced coordinates, divided by the first step.  It
-allows for coordinates rounded to two digits."""
+allows for coordinates rounded to 1/40 of their step, because rounding changes a step by at most one
+unit of the last place."""
 ALLOWED = (
     "allowed: a header without numbers in columns, then one row of the matrix in each line up to "
     "the end of the file, with decimal=comma after the path for decimal commas"
