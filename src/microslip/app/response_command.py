@@ -109,7 +109,7 @@ def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
     file = {name: arguments.pop(name) for name in ("decimal", "encoding") if name in arguments}
     if "nu" in arguments:
         arguments["poisson"] = spec.read("nu", arguments.pop("nu"))
-    return response_to(path, read_path(path, PLAIN, **file), **arguments)
+    return response_to(path, read_path(path, PLAIN, **file), {}, **arguments)
 
 
 def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:

@@ -145,10 +145,10 @@ def predict_response(
     """
     real = contact_of(contact)
     columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
-    units = scales(real, columns)
     answer = response_to(
         path,
-        {name: columns[name] / units[name] for name in columns},
+        columns,
+        scales(real, columns),
         pressure=real.pressure,
         poisson=real.poisson,
         tolerance=tolerance,
@@ -191,16 +191,26 @@ def contact_of(contact: Mapping[str, object]) -> TwoBodies:
     return real
 
 
-def response_to(path: Any, columns: dict[str, Any], **settings: Any) -> Response:
-    """Call `microslip.response` with the columns of a table.  Error messages refer to the table as
-    `path`."""
+def response_to(
+    path: Any, columns: dict[str, np.ndarray], scales: Mapping[str, float], **settings: Any
+) -> Response:
+    """Call `microslip.response` with the columns of a table, each divided by its scale in SI units.
+    Error messages refer to the table as `path`, and show SI values.
+
+    scales: empty for a dimensionless table.
+    """
+    over = {name: one / scales.get(name, 1.0) for name, one in columns.items()}
     try:
-        return response(**columns, **settings)
+        return response(**over, **settings)
     except InputError as error:
-        if error.argument not in UNITS:
+        name, value = error.argument, error.value
+        if name not in UNITS:
             raise
-        problem = f"{error.argument} = {shown(error.value)}: {error.allowed}"
-        raise InputError("path", named(path), problem) from None
+        text = shown(value)
+        if name in scales and isinstance(value, float):
+            si, unit = scales[name], UNITS[name]
+            text = f"{value * si:.6g} {unit} ({value:.6g} times {si:.6g} {unit})"
+        raise InputError("path", named(path), f"{name} = {text}: {error.allowed}") from None
 
 
 def read_path(

@@ -28,6 +28,8 @@ LABELS = ("label", "name", "id", "sample", "comment")
 """Text columns that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
 """Text columns; all others are quantities."""
+EXAMPLES = {"speed": "mm/s", "forward": "um"}
+"""Columns with a unit that a message can show as an example."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,8 @@ def _headings(
     """The separator of a table, and the unit of each column.  A column without brackets has the
     unit None."""
     units_are = "each with its unit" if any(names.values()) else "with a unit or without"
-    allowed = f"allowed: some of {', '.join(names)}, {units_are}, as in speed [mm/s]"
+    example = next((f", as in {n} [{unit}]" for n, unit in EXAMPLES.items() if n in names), "")
+    allowed = f"allowed: some of {', '.join(names)}, {units_are}{example}"
     separator, matches = next(csv_text.headings(heading, decimal), ("", []))
     if not matches:
         raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
@@ -163,8 +166,8 @@ def _headings(
     for match in matches:
         name, unit = match[1].lower(), _unit(match)
         if name not in names and name not in LABELS:
-            copied = f"names of other columns, which are copied: {', '.join(LABELS)}"
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {copied}")
+            texts = f"columns of text: {', '.join(LABELS)}"
+            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {texts}")
         if name in units:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
         if names.get(name) and not unit:
