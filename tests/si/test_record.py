@@ -197,3 +197,8 @@ def test_a_message_has_the_unit_of_the_column(tmp_path, capsys):
     assert main([*words, "--frequency", "40 Hz"]) == 2
     assert re.search(r"lateral = [0-9.]+ um: .* Hz", capsys.readouterr().err)
     assert not (tmp_path / "stroke.csv").exists()
+
+
+def test_the_output_is_a_csv_file(tmp_path, capsys):
+    assert main(["fold", "record.csv", "--output", str(tmp_path / "stroke.nc")]) == 2
+    assert "allowed is a name that ends in .csv" in capsys.readouterr().err

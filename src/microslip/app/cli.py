@@ -38,7 +38,6 @@ BORE = "Bore means spin: rotation about the contact normal."
 def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
     """Return the parser of the command line.  Only the command `selected` gets its options."""
     parser = option_parser.OneLineParser(
-        allow_abbrev=False,
         prog="microslip",
         description="How far friction falls when a frictional contact is vibrated: an elastic "
         "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
@@ -51,7 +50,6 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     point = commands.add_parser(
         "point",
-        allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force divided by mu F_z at one point, with an error "
         "estimate.  mu_macro is a ratio: 1 if the vibration has no effect, 0 if no friction "
@@ -65,7 +63,7 @@ def build_parser(selected: str | None = None) -> option_parser.OneLineParser:
     else:
         point.add_argument("motion", metavar="MOTION")
     for name, summary in COMMANDS.items():
-        command = commands.add_parser(name, help=summary, allow_abbrev=False)
+        command = commands.add_parser(name, help=summary)
         if name == selected:
             _module_of(name).fill(command)
     return parser
@@ -95,7 +93,6 @@ def _add_motions(parser: argparse.ArgumentParser) -> None:
             description=f"The indenter is {record.summary}. u_lim: the tangential displacement at "
             "which the whole contact slides; a: contact radius; phi_lk(a/2): the angle at which "
             f"the stick radius is a/2.{numbers}{spin}",
-            allow_abbrev=False,
         )
         motion.add_argument(
             "--velocity",

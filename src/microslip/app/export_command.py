@@ -67,7 +67,6 @@ def fill(parser: argparse.ArgumentParser) -> None:
     models = parser.add_subparsers(dest="export", required=True, metavar="MODEL")
     iwan = models.add_parser(
         "iwan",
-        allow_abbrev=False,
         help="an Iwan model: parallel springs with sliders",
         description="An Iwan model of a contact that moves along a line: the stiffness and the "
         "limit force of parallel Jenkins elements, each a spring in series with a slider.  At "
@@ -81,7 +80,6 @@ def fill(parser: argparse.ArgumentParser) -> None:
     add_json(iwan)
     table = models.add_parser(
         "table",
-        allow_abbrev=False,
         help="a table of friction over speed, amplitude, load or other quantities",
         description="Friction over the ranges of one or more quantities, such as --speed '0.1..10 "
         "mm/s, 21, log': 21 values in equal ratios.  '0..2 um' has 11 values in equal steps.",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,9 +14,10 @@ from microslip.app.question import (
     refuse_output,
     respond,
     typed_options,
+    write_output,
 )
 from microslip.foundation import spec
-from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _answer(options: argparse.Namespace) -> Answer:
     from microslip.si.strokes import read_record
 
     arguments = typed_options(options)
-    refuse_output(options.output, options.record)
+    refuse_output(options.output, options.record, (".csv",))
     rows, frequency = ROWS, None
     if "rows" in arguments:
         rows = int(spec.read("rows", arguments["rows"], whole=True))
@@ -84,7 +84,8 @@ def _answer(options: argparse.Namespace) -> Answer:
             value = f"{error.value:.9g} {units[error.argument]}"
             problem = f"{error.argument} = {value}: {error.allowed}"
         raise InputError("record", options.record, problem) from None
-    _write(options.output, result, units)
+    text = _as_csv(result, units)
+    write_output(options.output, {".csv": lambda file: file.write_text(text, encoding="utf-8")})
     plain = {
         "frequency_Hz": result.frequency,
         "frequency_error_Hz": result.frequency_error,
@@ -116,9 +117,8 @@ def _as_text(result: Fold, units: dict[str, str], output: str) -> str:
     return "\n".join([*lines, f"written to   {output}: the motion file:{output}"])
 
 
-def _write(output: str, result: Fold, units: dict[str, str]) -> None:
-    from microslip.foundation.files import writing_beside
-
+def _as_csv(result: Fold, units: dict[str, str]) -> str:
+    """Return the content of the output file."""
     columns = {"time": result.time} | result.columns
     heading = ",".join(f"{name} [{units[name]}]" for name in columns)
     errors = ", ".join(f"{n} {np.max(e):.2g} {units[n]}" for n, e in result.errors.items())
@@ -127,8 +127,4 @@ def _write(output: str, result: Fold, units: dict[str, str]) -> None:
         heading,
         *(",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values(), strict=True)),
     ]
-    try:
-        with writing_beside(Path(output)) as beside:
-            beside.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    except (OSError, CacheError) as error:
-        raise InputError("output", output, f"cannot be written: {error}") from None
+    return "\n".join(lines) + "\n"

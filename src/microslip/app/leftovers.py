@@ -153,7 +153,6 @@ def _parser() -> OneLineParser:
         description="List points, batches, datasets and figures in a folder of results that none "
         "of the configurations requests, with this version of the solver. This includes "
         "points that the command line or solve_stored has stored there.",
-        allow_abbrev=False,
     )
     parser.add_argument(
         "--configfile",

@@ -7,7 +7,7 @@ import difflib
 import re
 import sys
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from microslip.app.terminal import complain
 
@@ -24,7 +24,13 @@ NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Argument parser that reports bad input in one line on standard error, with exit code 2."""
+    """Argument parser that reports bad input in one line on standard error, with exit code 2.
+
+    Options cannot be abbreviated.  The arguments are those of `argparse.ArgumentParser`.
+    """
+
+    def __init__(self, **settings: Any):
+        super().__init__(**settings, allow_abbrev=False)
 
     def error(self, message: str) -> NoReturn:
         if message.startswith("unrecognized arguments"):
