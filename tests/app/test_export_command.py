@@ -7,11 +7,10 @@ import shlex
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
+from stubs import certified_stub
 
 import microslip
 from microslip.app import cli, export_command
-from microslip.si.friction_map import FrictionMap
 
 BODY = "--young '210 GPa' --nu 0 --mu 0.3 --radius '5 mm'"
 SAME = {"young": "210 GPa", "nu": 0, "mu": 0.3, "radius": "5 mm"}
@@ -177,12 +176,7 @@ def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
 
 
 def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, capsys, monkeypatch):
-    def outside(*_):
-        raise ValueError("outside the map")
-
-    monkeypatch.setattr(FrictionMap, "at", outside)
-    dataset = xr.Dataset(attrs={"motion": "transverse"})
-    monkeypatch.setattr(export_command, "opened_map", lambda _: dataset)
+    certified_stub.open_without_points(monkeypatch, export_command)
     file = tmp_path / "a.csv"
     axis = "--load '10 N' --speed '10 mm/s' --amplitude '0.1..0.2 um, 2' --map certified.nc"
     code, out, error = run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")

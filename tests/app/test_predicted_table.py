@@ -11,7 +11,6 @@ from stubs import certified_stub
 import microslip
 from microslip.app import cli, predict_command
 from microslip.datasets import certified_map
-from microslip.si.friction_map import FrictionMap
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -238,12 +237,7 @@ def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, c
 
 
 def test_a_point_outside_a_map_is_reported_with_the_path_of_the_map(folder, capsys, monkeypatch):
-    def outside(*_):
-        raise ValueError("outside the map")
-
-    monkeypatch.setattr(FrictionMap, "at", outside)
-    dataset = xr.Dataset(attrs={"motion": "transverse"})
-    monkeypatch.setattr(predict_command, "opened_map", lambda _: dataset)
+    certified_stub.open_without_points(monkeypatch, predict_command)
     assert cli.main([*RANGED, "--map", "certified.nc"]) == 1
     assert "--map = 'certified.nc': at velocity" in capsys.readouterr().err
 

@@ -53,6 +53,7 @@ def test_json_and_files_have_the_same_columns(tmp_path, capsys):
         code, out, _ = run(capsys, tmp_path / "a.csv", text, f"{CONTACT} --json --output {path}")
         assert code == 0
     answer = json.loads(out)
+    assert run(capsys, tmp_path / "a.csv", text, f"{CONTACT} --output {path}")[:2] == (0, "")
     assert answer["converged"] is True and answer["stick_fraction"][0] is None
     with xr.open_dataset(paths[0]) as dataset:
         assert dataset.force_forward.values == pytest.approx(answer["force_forward"])

@@ -5,6 +5,7 @@ import xarray as xr
 
 from microslip.config import load
 from microslip.datasets import certified_map
+from microslip.si.friction_map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
 from microslip.theory.drift_threshold import threshold
@@ -88,3 +89,14 @@ def solved(request):
     """Record of a request, from the solver."""
     result = evaluate.computed(request)
     return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+
+
+def open_without_points(monkeypatch, command):
+    """Let a command open a map of transverse that contains no point."""
+
+    def outside(*_):
+        raise ValueError("outside the map")
+
+    monkeypatch.setattr(FrictionMap, "at", outside)
+    dataset = xr.Dataset(attrs={"motion": "transverse"})
+    monkeypatch.setattr(command, "opened_map", lambda _: dataset)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,9 +15,11 @@ from microslip.app.question import (
     Answer,
     add_json,
     add_options,
+    heading,
     opened_map,
     refuse_output,
     respond,
+    short_csv,
     typed_options,
     write_output,
 )
@@ -48,8 +49,6 @@ TABLE_OPTIONS = {
 }
 NO_FRICTION = ("force", "reduction")
 """Options of predict that are left out, because their answer is not the friction."""
-FORCE_AS_REMEDY = re.compile(r", or a force\b|\ba force or (?=a drive_stiffness)")
-"""Suggestions in messages of predict that do not apply to a table."""
 WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
 """Options that are also allowed without a contact in SI units."""
 COLUMNS = {
@@ -130,7 +129,7 @@ def _iwan(options: argparse.Namespace) -> Answer:
     if not real:
         comments.append("forces are divided by mu times the load, displacements by u_lim")
     units = {"stiffness": stiffness, "limit_force": force, "force_error": force}
-    frame = pd.DataFrame({_heading(name, one): getattr(model, name) for name, one in units.items()})
+    frame = pd.DataFrame({heading(name, one): getattr(model, name) for name, one in units.items()})
     plain = {name: getattr(model, name).tolist() for name in units}
     plain |= {"error": model.error, "error_on_any_path": model.error_on_any_path}
     return _answer(options, plain, frame, comments, {})
@@ -145,14 +144,14 @@ def _table(options: argparse.Namespace) -> Answer:
     refuse_output(options.output, endings=(".csv", ".txt"))
     arguments = typed_options(options)
     arguments.pop("output", None)
+    if options.speed is None:
+        raise InputError("speed", None, "needed")
+    if options.mass is not None and options.drive_stiffness is None:
+        raise InputError("mass", options.mass, "allowed only with a drive_stiffness")
     if options.map is not None:
         arguments["map"] = opened_map(options.map)
     grid = grid_of(options.motion, arguments)
-    try:
-        lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
-    except InputError as error:
-        allowed = FORCE_AS_REMEDY.sub("", error.allowed)
-        raise InputError(error.argument, error.value, allowed) from None
+    lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
     points = grid.combinations
     answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))
     for point, one in zip(points, answers, strict=True):
@@ -174,7 +173,7 @@ def _table(options: argparse.Namespace) -> Answer:
     ]
     frame = dataset.to_dataframe().reset_index()
     plain = frame.to_dict("records")
-    frame.columns = [_heading(name, dataset[name].attrs["units"]) for name in frame.columns]
+    frame.columns = [heading(name, dataset[name].attrs["units"]) for name in frame.columns]
     writers = {".txt": lambda file: file.write_text(modelica_text.text_of(dataset, comments))}
     return _answer(options, plain, frame, comments, writers)
 
@@ -201,10 +200,6 @@ def _friction_table(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.drop_vars(list(dataset.data_vars)).assign(variables).rename(axes)
 
 
-def _heading(name: str, unit: str) -> str:
-    return name if unit == "1" else f"{name} [{unit}]"
-
-
 def _answer(
     options: argparse.Namespace,
     plain: Any,
@@ -214,9 +209,8 @@ def _answer(
 ) -> Answer:
     """Write the --output file, or print the table as CSV with six digits."""
     if options.output is None:
-        csv = frame.to_csv(index=False, float_format="%.6g", lineterminator="\n")
-        comments = [f"# {one}" for one in comments]
-        return Answer(plain, "\n".join([*comments, csv.rstrip("\n")]), True)
+        texts = [*(f"# {one}" for one in comments), short_csv(frame)]
+        return Answer(plain, "\n".join(texts), True)
 
     def write_csv(file: Path) -> None:
         with file.open("w", encoding="utf-8", newline="\n") as stream:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from microslip.app.option_parser import format_as_options
 from microslip.app.question import (
+    FILE_FORMAT,
     Answer,
     add_json,
     add_options,
@@ -35,8 +36,7 @@ OPTIONS = {
     "map": ("FILE", "dataset of a sweep of this motion, in place of the solver"),
     "confidence": ("P", "confidence level of the intervals (0.95)"),
     "tolerance": ("T", "largest accepted error of mu_macro of the solver (1e-3)"),
-    "decimal": ("MARK", "the decimal mark of the table, a point or a comma (.)"),
-    "encoding": ("NAME", "the encoding of the table, such as cp1252 (utf-8)"),
+    **FILE_FORMAT,
     "figure": ("FILE", "figure of measured and fitted friction, .png or .pdf"),
     "output": ("FILE", "dataset of rows, fitted friction and residuals, .nc"),
 }

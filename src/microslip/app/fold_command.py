@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.app.question import (
+    FILE_FORMAT,
     Answer,
     add_json,
     add_options,
@@ -35,8 +36,7 @@ OPTIONS = {
         "number of samples of the period, an even number (32).  More samples keep more harmonics, "
         "and more noise",
     ),
-    "decimal": ("MARK", "decimal mark of the record, a point or a comma (.)"),
-    "encoding": ("NAME", "encoding of the record, such as cp1252 (utf-8)"),
+    **FILE_FORMAT,
 }
 """Options, each with a metavar and a help text."""
 
@@ -72,7 +72,7 @@ def _answer(options: argparse.Namespace) -> Answer:
         rows = int(spec.read("rows", arguments["rows"], whole=True))
     if "frequency" in arguments:
         frequency = read("frequency", arguments["frequency"], "Hz").si
-    form = {name: arguments[name] for name in ("decimal", "encoding") if name in arguments}
+    form = {name: arguments[name] for name in FILE_FORMAT if name in arguments}
     time, columns, units = read_record(options.record, **form)
     try:
         result = fold(time, columns, frequency=frequency, rows=rows)

@@ -6,6 +6,7 @@ import argparse
 
 from microslip.app import predicted_propulsion, predicted_table
 from microslip.app.question import (
+    FILE_FORMAT,
     Answer,
     add_json,
     add_options,
@@ -93,13 +94,11 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
             "certified map (a name, or a .nc file) of this motion, pressure and Poisson's ratio, "
             "in place of the solver",
         ),
-        "decimal": ("MARK", "with --table: decimal mark of the file, a point or a comma (.)"),
-        "encoding": ("NAME", "with --table: encoding of the file, such as cp1252 (utf-8)"),
+        **{name: (word, f"with --table: {text}") for name, (word, text) in FILE_FORMAT.items()},
     },
 }
 """Options by heading in the help text.  Each option has a metavar and a help text."""
-WITH = {"output": "--table or a range", "figure": "a range", "decimal": "--table"}
-WITH["encoding"] = "--table"
+WITH = {"output": "--table or a range", "figure": "a range"} | dict.fromkeys(FILE_FORMAT, "--table")
 """Options that require another option."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "

@@ -10,6 +10,7 @@ import numpy as np
 
 from microslip.app.option_parser import format_as_options, option
 from microslip.app.question import (
+    FILE_FORMAT,
     Answer,
     dataset_writers,
     refuse_figure,
@@ -27,8 +28,6 @@ from microslip.si.tables import Table
 if TYPE_CHECKING:
     import xarray as xr
 
-FORMAT = ("decimal", "encoding")
-"""Options that describe the format of the file."""
 WIDTH = 13
 MOST_COMPLAINTS = 10
 """Largest number of error messages about contacts without a prediction."""
@@ -127,8 +126,8 @@ def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) ->
     from microslip.si.table import NAMES, as_dataset
     from microslip.si.tables import table_of
 
-    format: dict[str, Any] = {name: arguments[name] for name in FORMAT if name in arguments}
-    shared = {name: value for name, value in arguments.items() if name not in FORMAT}
+    format: dict[str, Any] = {name: arguments[name] for name in FILE_FORMAT if name in arguments}
+    shared = {name: value for name, value in arguments.items() if name not in FILE_FORMAT}
     table = table_of("table", options.table, NAMES, **format)
 
     def dataset(answers: Sequence[Prediction | NoPrediction]) -> xr.Dataset:

@@ -24,6 +24,11 @@ ENDINGS = (".csv", ".nc")
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
 WRITABLE = "a file in a folder that can be written to"
+FILE_FORMAT = {
+    "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
+    "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
+}
+"""Options that describe the format of a CSV file."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
 
@@ -188,6 +193,16 @@ def write_output(path: str, writers: Mapping[str, Callable[[Path], object]]) -> 
             writers[Path(path).suffix.lower()](beside)
     except (OSError, CacheError) as error:
         raise InputError("output", path, f"cannot be written: {error}") from None
+
+
+def heading(name: str, unit: str) -> str:
+    """Return the heading of a column.  A unit other than 1 is in brackets."""
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+def short_csv(frame: pd.DataFrame) -> str:
+    """Format a table as CSV with six digits."""
+    return frame.to_csv(index=False, float_format="%.6g", lineterminator="\n").rstrip("\n")
 
 
 def dataset_writers(dataset: xr.Dataset, frame: pd.DataFrame, **to_csv: Any) -> dict[str, Any]:

@@ -10,12 +10,15 @@ import numpy as np
 from microslip.app.predict_command import GROUPS
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
+    FILE_FORMAT,
     Answer,
     add_json,
     add_options,
     dataset_writers,
+    heading,
     refuse_output,
     respond,
+    short_csv,
     typed_options,
     write_output,
 )
@@ -29,14 +32,13 @@ if TYPE_CHECKING:
     from microslip.si.response import RealResponse
 
 OUTPUT = {
-    "output": ("FILE", "write all columns to a .csv or .nc file"),
+    "output": ("FILE", "write all columns to a .csv or .nc file in place of printing them"),
     "tolerance": (
         "T",
         "largest error of a force divided by mu times the load, and of the torque divided by its "
         "value at full slip (1e-3)",
     ),
-    "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
-    "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
+    **FILE_FORMAT,
 }
 LOAD = {"load": ("F", "normal load of the reference state, such as '10 N'")}
 ROUNDING = 1e-9
@@ -90,11 +92,14 @@ def _answer(options: argparse.Namespace) -> Answer:
     with elapsed_time("microslip response"):
         answer = (_real if real else _dimensionless)(options.path, arguments)
     dataset = answer.to_xarray()
+    texts = [] if answer.converged else [f"# NOT CONVERGED: {answer.reason}"]
     if output is not None:
         write_output(output, dataset_writers(dataset, _frame(dataset), index=False))
+    else:
+        texts.append(short_csv(_frame(_without_rounding(dataset))))
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
     plain |= answer.attributes | {"converged": answer.converged}
-    return Answer(plain, _as_text(dataset, answer), answer.converged)
+    return Answer(plain, "\n".join(texts), answer.converged)
 
 
 def _real(path: str, arguments: dict[str, Any]) -> RealResponse:
@@ -106,26 +111,22 @@ def _real(path: str, arguments: dict[str, Any]) -> RealResponse:
 def _dimensionless(path: str, arguments: dict[str, Any]) -> Response:
     from microslip.si.response import read_path, response_to
 
-    file = {name: arguments.pop(name) for name in ("decimal", "encoding") if name in arguments}
+    file = {name: arguments.pop(name) for name in FILE_FORMAT if name in arguments}
     if "nu" in arguments:
         arguments["poisson"] = spec.read("nu", arguments.pop("nu"))
     return response_to(path, read_path(path, PLAIN, **file), {}, **arguments)
 
 
-def _as_text(dataset: xr.Dataset, answer: Response | RealResponse) -> str:
-    """Format the columns as CSV with six digits.  If the response is not converged, the reason
-    comes first."""
-    reason = "" if answer.converged else f"# NOT CONVERGED: {answer.reason}\n"
+def _without_rounding(dataset: xr.Dataset) -> xr.Dataset:
+    """Replace the forces that are only rounding errors by 0."""
     forces = {}
     for name, error in ERRORS.items():
         least = ROUNDING * np.abs(dataset[error])
         forces[name] = dataset[name].where(np.abs(dataset[name]) > least, 0.0)
-    frame = _frame(dataset.assign(forces))
-    return reason + frame.to_csv(index=False, float_format="%.6g", lineterminator="\n").rstrip("\n")
+    return dataset.assign(forces)
 
 
 def _frame(dataset: xr.Dataset) -> pd.DataFrame:
-    """Return the columns of a response.  Units other than 1 are part of the headings."""
-    units = {name: one.attrs["units"] for name, one in dataset.items()}
-    headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+    """Return the columns of a response."""
+    headings = {name: heading(str(name), one.attrs["units"]) for name, one in dataset.items()}
     return dataset.to_dataframe().rename(columns=headings)

@@ -199,7 +199,7 @@ def response_to(
 
     scales: empty for a dimensionless table.
     """
-    over = {name: one / scales.get(name, 1.0) for name, one in columns.items()}
+    over: dict[str, Any] = {n: one / scales.get(n, 1.0) for n, one in columns.items()}
     try:
         return response(**over, **settings)
     except InputError as error:
