@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from microslip import __version__
 from microslip.app import option_parser, terminal
+from microslip.app.question import add_json, add_options
 from microslip.foundation import spec
 from microslip.foundation.errors import CacheError, InputError
 
@@ -171,21 +172,12 @@ DEFAULTS = {"pressure": "hertz", "poisson": "0", "model": "auto", "tolerance": "
 DEFAULTS["method"] = "shipped"
 DRIVE = ("force", "stiffness", "mass", "damping")
 REALS = ("velocity", "amplitude", "poisson", "tolerance", *DRIVE)
-OTHER_NAMES = {"poisson": ("--nu",)}
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    for name, (metavar, text) in OPTIONS.items():
-        parser.add_argument(
-            *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            action=option_parser.StoreSpelling,
-            default=DEFAULTS.get(name),
-            metavar=metavar,
-            help=text,
-        )
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object and nothing else"
-    )
+    add_options(parser, OPTIONS)
+    parser.set_defaults(**DEFAULTS)
+    add_json(parser)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -279,8 +271,8 @@ def _option_of(options: argparse.Namespace, argument: str) -> tuple[str, object]
     """Return the option for an argument of `solve`, and its text on the command line."""
     if argument == "motion":
         return "MOTION", options.motion
-    option = getattr(options, "spellings", {}).get(argument, f"--{argument.replace('_', '-')}")
-    return option, getattr(options, argument, None)
+    spelling = getattr(options, "spellings", {}).get(argument, option_parser.option(argument))
+    return spelling, getattr(options, argument, None)
 
 
 def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:

@@ -176,11 +176,9 @@ def _answer(options: argparse.Namespace) -> Answer:
             raise InputError(name, value, "allowed without --propulsion")
     if options.table is not None and ranges:
         raise InputError(*next(iter(ranges.items())), "a range; allowed without --table")
-    for name in WITH:
-        allowed = WITH[name]
-        if getattr(options, name) is not None and not (
-            options.table is not None and "--table" in allowed or ranges and "range" in allowed
-        ):
+    source = "--table" if options.table is not None else "range" if ranges else "nothing"
+    for name, allowed in WITH.items():
+        if getattr(options, name) is not None and source not in allowed:
             raise InputError(name, getattr(options, name), f"allowed only with {allowed}")
     if many:
         return predicted_table.answer(options, arguments)

@@ -70,20 +70,19 @@ def _options(name: str, text: str, options: Sequence[str]) -> tuple[int, bool]:
 
     options: words after the range.
     """
-    counts = [option for option in options if option != LOG]
-    if len(counts) > 1 or options.count(LOG) > 1:
+    words, count = [option for option in options if option != LOG], VALUES
+    if len(words) > 1 or options.count(LOG) > 1:
         problem = "at most one number of values and one word log can follow the range"
         raise InputError(name, text, f"{problem}; {ALLOWED}")
-    for word in counts:
+    if words:
         try:
-            count = int(spec.read(name, word, whole=True))
+            count = int(spec.read(name, words[0], whole=True))
         except InputError:
             count = 0
-        if not 2 <= count <= MOST_CASES:
-            problem = f"{word!r} is neither log nor a whole number of values from 2 to {MOST_CASES}"
-            raise InputError(name, text, f"{problem}; {ALLOWED}")
-        return count, LOG in options
-    return VALUES, LOG in options
+    if not 2 <= count <= MOST_CASES:
+        values = f"a whole number of values from 2 to {MOST_CASES}"
+        raise InputError(name, text, f"{words[0]!r} is neither log nor {values}; {ALLOWED}")
+    return count, LOG in options
 
 
 class Axis(NamedTuple):
