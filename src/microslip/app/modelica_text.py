@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from microslip.app.question import heading
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -49,5 +51,4 @@ def _tables(dataset: xr.Dataset) -> Iterator[tuple[str, str, np.ndarray]]:
 
 def _title(values: xr.DataArray) -> str:
     """Return the long name and the unit of a variable."""
-    unit = values.attrs["units"]
-    return values.attrs["long_name"] + (f" [{unit}]" if unit != "1" else "")
+    return heading(values.attrs["long_name"], values.attrs["units"])

@@ -17,13 +17,14 @@ import numpy as np
 from microslip.foundation import csv_text
 from microslip.foundation.csv_text import PURE
 from microslip.foundation.errors import InputError
-from microslip.foundation.named_files import FileReader, NamedFile, content_of
+from microslip.foundation.named_files import FileReader, NamedFile
 from microslip.foundation.number_table import NumberTable
 from microslip.motions.from_file import COLUMNS, columns_of, table_of
 from microslip.motions.samples import NORMAL, PLANE, Sampled
 from microslip.si.bodies import TwoBodies
 from microslip.si.quantities import read
 from microslip.si.record import MOST_ROWS
+from microslip.si.tables import parsed_file
 
 UNITS = {"forward": "m", "lateral": "m", "angle": "rad", "load": "N", "indentation": "m"}
 """SI units of the columns of a path or a period."""
@@ -162,15 +163,13 @@ def read_record(
         If the file cannot be read, or has no time.
     """
     csv_text.check_format(decimal, encoding)
-    try:
-        table = columns_of(content_of(path), decimal=decimal, encoding=encoding)
-        factors = _factors(table)
+
+    def parse(content: bytes) -> tuple[NumberTable, dict[str, float]]:
+        table = columns_of(content, decimal=decimal, encoding=encoding)
         if "time" not in table.columns:
             raise ValueError("no column time; allowed is one, as in time [s]")
-    except OSError as error:
-        problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
-        raise InputError("record", path, problem) from None
-    except ValueError as error:
-        raise InputError("record", path, str(error)) from None
+        return table, _factors(table)
+
+    table, factors = parsed_file("record", path, parse)
     time = table.columns.pop("time") * factors["time"]
     return time, table.columns, table.units | {"time": "s"}

@@ -13,14 +13,16 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from microslip.foundation import csv_text
 from microslip.foundation.csv_text import HEADING, PURE
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import content_of
+
+T = TypeVar("T")
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """Pattern of a text that resembles a number.  `quantities.read` checks it later."""
@@ -96,13 +98,23 @@ def table_of(
     csv_text.check_format(decimal, encoding)
     if not isinstance(source, str | os.PathLike):
         return Table(_by_names(argument, source), [], {})
+    return parsed_file(
+        argument,
+        source,
+        lambda content: read_table(content, names, decimal=decimal, encoding=encoding),
+    )
+
+
+def parsed_file(argument: str, path: str | os.PathLike, parse: Callable[[bytes], T]) -> T:
+    """Return parse(content) of a CSV file.  Raises InputError about the argument if the file cannot
+    be read, or if `parse` raises ValueError."""
     try:
-        return read_table(content_of(source), names, decimal=decimal, encoding=encoding)
+        return parse(content_of(path))
     except OSError as error:
         problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
-        raise InputError(argument, str(source), problem) from None
+        raise InputError(argument, str(path), problem) from None
     except ValueError as error:
-        raise InputError(argument, str(source), str(error)) from None
+        raise InputError(argument, str(path), str(error)) from None
 
 
 def read_table(
