@@ -63,6 +63,8 @@ def test_a_dataset_has_the_columns_with_their_units():
     [
         ({"forward [N]": [0, 1]}, {}, "path"),
         ({"forward": [0, None]}, {}, "path"),
+        ({"forward": 1.0}, {}, "forward"),
+        (None, {}, "path"),
         ({"speed": [0, 1]}, {}, "path"),
         ({"label": ["a", "b"]}, {}, "path"),
         ({"forward": [0, 1]}, {"mu": None}, "mu"),

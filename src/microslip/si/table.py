@@ -14,7 +14,7 @@ from microslip.si.predict import NOTHING, predict_arguments, without_solution
 from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, unit_of
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
-from microslip.si.tables import LABELS, Table, is_table, table_of
+from microslip.si.tables import ALLOWED, LABELS, Table, table_of
 from microslip.si.uncertain import without_uncertainty
 
 if TYPE_CHECKING:
@@ -64,15 +64,10 @@ def predict_table(
         If the table is invalid or has no valid case.  If no case is valid, the error of the first
         case is raised.  An error due to the table contains the number of the case.
     """
-    table = Table({}, [], {})
-    if is_table(cases):
-        argument = "table" if isinstance(cases, str | os.PathLike) else "cases"
-        table = table_of(argument, cases, NAMES, decimal=decimal, encoding=encoding)
+    argument = "table" if isinstance(cases, str | os.PathLike) else "cases"
+    table = table_of(argument, cases, NAMES, decimal=decimal, encoding=encoding)
     if not table.columns:
-        allowed = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences, "
-        raise InputError(
-            "cases", {} if is_table(cases) else cases, f"{allowed}with one column at least"
-        )
+        raise InputError("cases", {}, f"{ALLOWED}, with one column at least")
     return as_dataset(motion, table, list(predictions(motion, table, shared)))
 
 
@@ -132,11 +127,9 @@ def _request(motion: str, arguments: Mapping[str, object]) -> Request:
 
 def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
     """Number of cases.  Raises InputError for an invalid table."""
-    for name, values in columns.items():
+    for name in columns:
         if name in shared:
             raise InputError(name, shared[name], "not allowed: the table has it")
-        if isinstance(values, str) or not hasattr(values, "__len__"):
-            raise InputError(name, values, "allowed is a sequence of one value for each case")
     counts = sorted({len(values) for values in columns.values()})
     if len(counts) > 1:
         lengths = " and ".join(map(str, counts))

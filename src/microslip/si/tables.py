@@ -26,6 +26,7 @@ T = TypeVar("T")
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """Pattern of a text that resembles a number.  `quantities.read` checks it later."""
+ALLOWED = "allowed is a path, a DataFrame of pandas, or a mapping of names to sequences"
 LABELS = ("label", "name", "id", "sample", "comment")
 """Text columns that are copied to the output."""
 TEXTS = ("material", "pressure", "contacts", *LABELS)
@@ -96,6 +97,8 @@ def table_of(
         If the table is invalid, or the file has no valid line.
     """
     csv_text.check_format(decimal, encoding)
+    if not is_table(source):
+        raise InputError(argument, source, ALLOWED)
     if not isinstance(source, str | os.PathLike):
         return Table(_by_names(argument, source), [], {})
     return parsed_file(
@@ -214,24 +217,24 @@ def _text(
     return f"{cell} {unit}".strip()
 
 
-def _by_names(argument: str, table: Any) -> dict[str, Any]:
+def _by_names(argument: str, table: Any) -> dict[str, list[Any]]:
     """Columns of a mapping or a DataFrame as lists.  Missing values become None.
 
-    Numbers under a heading with a unit become texts with this unit.  A value that is not a sequence
-    is returned unchanged.
+    Numbers under a heading with a unit become texts with this unit.
     """
-    columns: dict[str, Any] = {}
+    columns: dict[str, list[Any]] = {}
     for name, values in table.items():
         if not isinstance(name, str):
             allowed = "names of columns must be texts, such as 'load [N]'"
             raise InputError(argument, name, allowed)
         heading = HEADING.fullmatch(name)
-        if not isinstance(values, str | bytes) and hasattr(values, "__len__"):
-            values = [None if _is_missing(value) else value for value in values]
-            unit = _unit(heading) if heading else None
-            if heading and unit is not None:
-                name = heading[1].lower()
-                values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
+        if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+            raise InputError(name, values, "allowed is a sequence of one value for each row")
+        values = [None if _is_missing(value) else value for value in values]
+        unit = _unit(heading) if heading else None
+        if heading and unit is not None:
+            name = heading[1].lower()
+            values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
         if name in columns:
             raise InputError(argument, name, "is there twice; allowed: once")
         columns[name] = values

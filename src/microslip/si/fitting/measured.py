@@ -18,7 +18,7 @@ from microslip.foundation.errors import InputError
 from microslip.si.inputs import QUANTITIES, Range
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
-from microslip.si.tables import LABELS, Table, is_table, table_of
+from microslip.si.tables import LABELS, Table, table_of
 
 CONDITIONS = ("speed", "amplitude", "frequency", "load")
 """Names of the conditions in each row."""
@@ -101,8 +101,6 @@ def read_measured(
     shared : quantity or None
         Values of speed, amplitude, frequency and load that replace columns.
     """
-    if not is_table(source):
-        raise InputError("measured", source, "allowed is the path of a CSV file, or its columns")
     units = {name: column.unit for name, column in COLUMNS.items()}
     units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
     needed = {name: bool(unit) for name, unit in units.items()}
@@ -152,10 +150,6 @@ def _numbers(
         which = repr(unknown[0]) if unknown else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
         raise InputError("measured", named(source), allowed)
-    for name, column in table.columns.items():
-        if not isinstance(column, list):
-            allowed = f"allowed is a sequence of numbers, in {units.get(name, 'a text each')}"
-            raise InputError(name, column, allowed)
     if len({len(column) for column in table.columns.values()}) > 1:
         raise InputError("measured", named(source), "columns of several lengths; allowed is one")
     rows, indices, left_out = [], [], []
