@@ -174,7 +174,8 @@ def _table(options: argparse.Namespace) -> Answer:
     frame = dataset.to_dataframe().reset_index()
     plain = frame.to_dict("records")
     frame.columns = [heading(name, dataset[name].attrs["units"]) for name in frame.columns]
-    writers = {".txt": lambda file: file.write_text(modelica_text.text_of(dataset, comments))}
+    text = modelica_text.text_of(dataset, comments)
+    writers = {".txt": lambda file: file.write_text(text, encoding="utf-8")}
     return _answer(options, plain, frame, comments, writers)
 
 
