@@ -147,6 +147,15 @@ def test_a_stiff_spring_and_a_prescribed_velocity_dissipate_the_same():
         assert apart <= free.dissipated_energy_error + spring.dissipated_energy_error, contacts
 
 
+def test_the_energy_of_a_fast_contact_has_the_relative_error_of_its_velocity():
+    result = microslip.solve("transverse", amplitude=12.0, force=0.98, tolerance=1e-3)
+    finer = microslip.solve("transverse", amplitude=12.0, force=0.98, tolerance=1e-4)
+    assert result.velocity > 30.0
+    assert result.dissipated_energy_error < 1e-3 * result.dissipated_energy
+    apart = abs(result.dissipated_energy - finer.dissipated_energy)
+    assert apart <= result.dissipated_energy_error
+
+
 def test_contacts_add_up_in_the_units_of_the_body():
     """A contact with the fraction s of the load and e times u_lim adds s e times its energy."""
     body = microslip.solve("longitudinal", 0.2, 1.0, contacts="load=2;load=1")

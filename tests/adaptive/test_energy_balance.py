@@ -14,7 +14,7 @@ import microslip
 from microslip.adaptive.checks import checked_driven_problem
 from microslip.adaptive.choice import choose_model
 from microslip.contacts.coulomb import project
-from microslip.models.contact import FORWARD, forces
+from microslip.models.contact import FORWARD, forces, rigid_displacement
 from microslip.models.path import make_path
 from microslip.solver import simulate, static_run
 
@@ -35,13 +35,10 @@ def energy_of_slip(contact, path, periodic):
     if periodic.body is not None:
         places[..., FORWARD] += periodic.body[:, :1]
     columns = tractions.shape[-1] // places.shape[1]
-    forward, lateral, angle = np.repeat(places, columns, axis=1)[:, None].transpose(3, 0, 1, 2)
-    rigid = (
-        forward + angle * contact.lateral_position,
-        lateral - angle * contact.forward_position,
-    )
+    each = np.repeat(places, columns, axis=1)[:, None].transpose(3, 0, 1, 2)
+    rigid = np.moveaxis(rigid_displacement(contact, each), 0, 1)
     elastic = np.array([contact.displacement(one) for one in tractions])
-    slip = np.diff(np.stack(rigid, axis=1) - elastic, axis=0)
+    slip = np.diff(rigid - elastic, axis=0)
     bounds = np.broadcast_to(bounds, tractions[:, 0].shape)
     lost = contact.weight * 0.5 * (bounds[1:] + bounds[:-1]) * np.hypot(slip[:, 0], slip[:, 1])
     return float(lost.sum()) * 2.0 * np.pi / (path.phase[-1] - path.phase[0])

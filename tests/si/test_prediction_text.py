@@ -54,8 +54,8 @@ def test_lengths_of_one_answer_have_one_unit(capsys):
 
 @pytest.mark.parametrize(("amplitude", "force"), [("20 um", "2 N"), ("0.1 um", "2.6 N")])
 def test_the_unit_of_a_speed_follows_from_its_size(amplitude, force):
-    given = {"amplitude": amplitude, "force": force, "tolerance": "0.1"}
-    prediction = microslip.predict("transverse", **BALL | given)
+    settings = {"amplitude": amplitude, "force": force, "tolerance": "0.1"}
+    prediction = microslip.predict("transverse", **BALL | settings)
     number, unit = re.search(r"^speed +(\S+) \+- \S+ (\S+)/s$", str(prediction), re.M).groups()
     size = {"m": 1.0, "mm": 1e-3, "um": 1e-6}[unit]
     assert float(number) * size == pytest.approx(prediction.speed_m_s, rel=0.1)
@@ -66,8 +66,8 @@ def test_a_pressure_is_printed_in_one_readable_unit(capsys):
     """Hertz: p0 = 1/pi (6 F E*^2/R^2)^(1/3), with E* = 210 GPa/0.91."""
     for load, unit, size in (("1 N", "MPa", 1e6), ("50 N", "GPa", 1e9)):
         p0 = (6.0 * float(load.split()[0]) * (210e9 / 0.91) ** 2 / 5e-3**2) ** (1 / 3) / 3.14159265
-        given = BALL | SLOW | {"load": load, "hardness": f"{p0} Pa", "tolerance": "0.05"}
-        text = said(capsys, "transverse", **given)
+        settings = BALL | SLOW | {"load": load, "hardness": f"{p0} Pa", "tolerance": "0.05"}
+        text = said(capsys, "transverse", **settings)
         assert float(
             re.search(rf"^largest pressure +(\S+) {unit}$", text, re.M)[1]
         ) == pytest.approx(p0 / size, rel=1e-3)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from microslip.models.contact import forces
+from microslip.models.contact import forces, rigid_displacement
 from microslip.models.driven_body import Body
 from microslip.models.path import make_path
 from microslip.motions.by_name import motion_named
@@ -42,13 +42,6 @@ PLACES = {
 }
 
 
-def travel_of(contact, problem, phase):
-    """Displacement of all points of the sphere on the path, without x of the body."""
-    forward, lateral, angle = problem.displacement(phase)
-    turn = np.stack([contact.lateral_position, -contact.forward_position])
-    return np.array([forward, lateral])[:, None, None] + angle * turn
-
-
 def balance(problem, drive, model, resolution):
     """Mean powers of the vibration, the drive, the slip and the dashpot."""
     driven = replace(problem, drive=drive)
@@ -68,7 +61,8 @@ def balance(problem, drive, model, resolution):
         step = make_path(problem.displacement, np.array([begin, end]))
         march = contact.march(step, q, 1e-11, body=body, start=at)
         ahead = march.body[1, 0] - march.body[0, 0]
-        displacement = travel_of(contact, problem, end) - travel_of(contact, problem, begin)
+        travel = np.subtract(problem.displacement(end), problem.displacement(begin))
+        displacement = rigid_displacement(contact, travel)
         displacement[0] += ahead
         slip = displacement - contact.displacement(march.state - q)
         slipped += np.sum(contact.weight * contact.bound * np.hypot(*slip))

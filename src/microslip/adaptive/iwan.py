@@ -17,11 +17,13 @@ from microslip.theory.iwan import Iwan, with_elements, with_tolerance
 TOLERANCE = 1e-3
 """Default tolerance of the discretisation, and tolerance of the full contact in the comparison."""
 MOST_ELEMENTS = 10_000
+"""Largest number of elements.  At nu = 0, the error is then below 1e-8."""
 BEYOND_FULL_SLIP = 1.2
-"""The loop of the comparison turns at plus and minus this displacement, in u_lim."""
+"""The loop of the comparison turns at plus and minus this displacement, in u_lim.  At nu = 0.5, the
+force is within 2e-4 of full friction there."""
 ROWS = 13
-"""Number of rows in the first loading of the comparison.  A branch of the loop has twice as many
-intervals."""
+"""Number of rows in the first loading of the comparison, one for every 0.1 u_lim.  A branch of the
+loop has twice as many intervals.  With 49 rows, the difference is up to 7 % larger."""
 
 
 def iwan(

@@ -25,8 +25,10 @@ def solve_each(request: Request) -> Result:
 
     each = zip(problem.shares, problem.parts, strict=True)
     means = [share * alone[part.problem].friction for share, part in each]
-    parts = ((part.share * part.extent, alone[part.problem]) for part in problem.parts)
-    energies = [unit * (one.dissipation or Estimate(0.0)) for unit, one in parts]
+    dissipated = (
+        (part.share * part.extent, alone[part.problem].dissipation) for part in problem.parts
+    )
+    energies = [unit * energy for unit, energy in dissipated if energy]
 
     def most(name: str) -> Any:
         return max(getattr(result, name) for result in results)

@@ -199,8 +199,9 @@ class _Levels:
         floor = SMALLEST_SHARE * min(goal, LOOSEST)
         value, errors, order = self._of(self.read, floor, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), floor, three, others)
-        # a fraction of the energy, which can be far below the unit of energy
-        floor *= max(abs(three[-1].energy), self.drive_work)
+        # a fraction of the energy, which can be far below the unit of energy; for a velocity above
+        # 1, the tolerance is already proportional to the velocity
+        floor *= max(abs(three[-1].energy) / max(1.0, abs(value)), self.drive_work)
         energy, energy_errors, _ = self._of(attrgetter("energy"), floor, three, others)
         base = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
         # a run that did not converge has a weight of at least 1, since levels can agree by chance

@@ -52,7 +52,11 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
 
 
 def _power_of_oscillation(request: Request, answer: Result) -> tuple[Estimate, float]:
-    """Power of the oscillation, and the error of the dissipated power, W."""
+    """Power of the oscillation, and the error of the dissipated power, W.
+
+    The drag is that at the velocity of the answer, which is smaller than the requested velocity if
+    this is outside the range of the solver.
+    """
     problem, dissipation = request.problem(), answer.dissipation
     assert dissipation is not None  # checked by energy_fields
     unit = request.still * request.contact.u_lim * request.motion.turn / problem.mean_load

@@ -219,11 +219,6 @@ def _spread(record: Any, show: Show) -> list[str]:
     return show("spread", f"{', '.join(parts)}: {text}")
 
 
-def _largest_speed(record: Any) -> float:
-    """Magnitude of the speed plus its error estimate, m/s."""
-    return abs(record.speed_m_s) + (getattr(record, "speed_error_m_s", None) or 0.0)
-
-
 class _Texts(dict[str, Any]):
     """Texts of the columns of a Prediction: numbers with errors and units."""
 
@@ -231,7 +226,8 @@ class _Texts(dict[str, Any]):
         length, force = length_unit(record.u_lim_m), force_unit(record.friction_force_still_N)
         powers = [record.drag_power_W or 0.0, record.vibration_power_W or 0.0]
         watts = prefixed(max(map(abs, powers)) or 1.0, "W")
-        speed, self.record = speed_unit(_largest_speed(record), record.u_lim_m), record
+        largest_speed = abs(record.speed_m_s) + (record.speed_error_m_s or 0.0)
+        speed, self.record = speed_unit(largest_speed, record.u_lim_m), record
         pressure = prefixed(record.largest_pressure_Pa, "Pa")
         self.units = {"_m_s": speed, "_m": length, "_N": force, "_W": watts, "_Pa": pressure}
         super().__init__(understood=record.understood, added=ADDED.get(record.motion, "vibration"))

@@ -66,12 +66,8 @@ class RigidContact(contact.Contact):
         path."""
         velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))
-        for k, (forward, lateral, angle) in enumerate(velocity):
-            q = contact.full_slip(
-                self,
-                forward + angle * self.lateral_position,
-                lateral - angle * self.forward_position,
-            )
+        for k, rate in enumerate(velocity):
+            q = contact.full_slip(self, *contact.rigid_displacement(self, rate))
             forces[k] = contact.forces(self, q)
         if self.angles > 1:
             forces[:, contact.LATERAL] = 0.0  # the other half of the disc cancels it

@@ -174,9 +174,13 @@ function warningsOf(si, measures) {
       unit ? withPrefix(si, measures[name], Number(count), unit) : general(measures[name], Number(count))));
 }
 
-// A number with the largest unit prefix for which it is at least 1.
+// The largest unit prefix for which a value is at least 1, and its size. For 0, there is no prefix.
+function prefixOf(si, value) {
+  return si.prefixes.find(([, size]) => (Math.abs(value) || 1) >= size) ?? si.prefixes.at(-1);
+}
+
 function withPrefix(si, value, count, unit) {
-  const [prefix, size] = si.prefixes.find(([, one]) => value >= one) ?? si.prefixes.at(-1);
+  const [prefix, size] = prefixOf(si, value);
   return `${Number(general(value / size, count))} ${prefix}${unit}`;
 }
 

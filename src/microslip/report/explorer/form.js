@@ -1,7 +1,6 @@
 // The form for a real contact: the fields, and the text of the answer.
 
 const SI = NUMBERS.si;
-const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
 const TEXTS = {}; // contents of the form, by field name
 const ONE_COLUMN = matchMedia("(max-width: 1199px)"); // as in style.css
 
@@ -21,14 +20,9 @@ function contactOn(map) {
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
-// The power of ten of the SI prefix for a value.
-function prefixPower(value) {
-  return value === 0 ? 0 : clipped(3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9), -12, 9);
-}
-
 function inUnit(value, unit) {
-  const power = prefixPower(value);
-  return `${digits(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
+  const [prefix, size] = prefixOf(SI, value);
+  return `${digits(value / size)} ${prefix}${unit}`;
 }
 
 // A value with its significant digits.
@@ -146,9 +140,9 @@ function tellContact(said) {
   const { friction, static_friction, near } = said;
   if (friction) {
     const times = (factor) => withError(factor * friction.value, factor * friction.error);
-    const power = prefixPower(said.still);
+    const [prefix, size] = prefixOf(SI, said.still);
     paragraph("contact-value", `Coefficient of friction ${times(said.mu)} with vibration, instead of ` +
-      `${digits(said.mu)}: a force of ${times(said.still / 10 ** power)} ${PREFIXES[power]}N, instead of ${inUnit(said.still, "N")}`);
+      `${digits(said.mu)}: a force of ${times(said.still / size)} ${prefix}N, instead of ${inUnit(said.still, "N")}`);
     paragraph("contact-note", `Ratio of both (mu_macro): ${withError(friction.value, friction.error)}; ` +
       `source: ${friction.source}.${approach(said)}${outside(said)}`);
   } else {

@@ -17,7 +17,14 @@ import numpy as np
 
 from microslip.contacts.coulomb import coulomb_residual, shrink
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import Contact, Guess, March, StepFailure, forces
+from microslip.models.contact import (
+    Contact,
+    Guess,
+    March,
+    StepFailure,
+    forces,
+    rigid_displacement,
+)
 from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
@@ -140,13 +147,7 @@ class DenseContact:
         return self.contact.displacement(q.reshape(self.shape)).reshape(2, -1)
 
     def _rigid(self, position: np.ndarray) -> np.ndarray:
-        forward, lateral, angle = position
-        return np.stack(
-            [
-                forward + angle * self.contact.lateral_position.ravel(),
-                lateral - angle * self.contact.forward_position.ravel(),
-            ]
-        )
+        return rigid_displacement(self.contact, position).reshape(2, -1)
 
 
 def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
