@@ -3,7 +3,8 @@
 A field has the shape (2, points), with a forward and a lateral component.  A module registers a
 class of operators with `operator`.  An object of such a class contains several operators: number 0
 is A, which maps tractions to displacements, and the others are the resolvents for the step
-solver."""
+solver.
+"""
 
 from __future__ import annotations
 

@@ -12,8 +12,9 @@ BETWEEN_BALANCES iterations, `rebalance` solves the equation of the body for the
 
 A small penalty is best for points that stick, and a large penalty is best for points that slip.
 Let D be the derivative of the projection, averaged over the points and both directions.  It is 1
-for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about (1 -
-D) / D times the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES."""
+for a point that sticks, and |q| / (2 |y|) for a point that slips.  The best penalty is about
+(1 - D) / D times the best penalty for D = 1/2.  Each step uses the nearest of PENALTIES.
+"""
 
 from __future__ import annotations
 
@@ -178,7 +179,8 @@ def rebalance(
     """Shift y, in place, to the displacement at which the forces on the body balance.
 
     The splitting alone converges slowly if nearly all points slip and the drive is soft. If the
-    shift would exceed LONGEST_ADVANCE, y does not change."""
+    shift would exceed LONGEST_ADVANCE, y does not change.
+    """
     imbalance = _imbalance(system, balance, step, y, displacement, 0.0)
     if not abs(imbalance) > step.tolerance:
         return

@@ -2,7 +2,8 @@
 
 The unknowns of a step are tractions q with |q| <= g.  The slip b - A q occurs only where |q| = g,
 in the direction of q.  A driven body (drive.py) adds one unknown, its displacement d, and one
-equation, stiffness d + forward force = load.  The displacement d is added to b."""
+equation, stiffness d + forward force = load.  The displacement d is added to b.
+"""
 
 from __future__ import annotations
 

@@ -5,7 +5,8 @@ replaces the path in the name of a pressure or a motion:
 "file:sha256=0123456789abcdef,grid=samples".  A process stores the path for each digest.  `remember`
 stores paths from another process.
 
-The module imports nothing slow, because each start of the workflow imports the module."""
+The module imports nothing slow, because each start of the workflow imports the module.
+"""
 
 from __future__ import annotations
 

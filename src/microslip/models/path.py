@@ -66,7 +66,8 @@ def theta_method(theta: float) -> Integrator:
     """Return the integrator with one stage, at the fraction `theta` of the step.
 
     theta is between 0.5 (midpoint rule, second order) and 1 (backward Euler); the order is 1 for
-    every theta above 0.5.  Raises ValueError for another theta."""
+    every theta above 0.5.  Raises ValueError for another theta.
+    """
     if not 0.5 <= theta <= 1.0:
         raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
     return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((0.0,),), theta)
@@ -109,7 +110,8 @@ def turning_point_width(drift: float, stroke: float) -> float:
     strokes, the width is infinite, and only the grading applies.  The slip reverses within the
     phase max(1, drift) / stroke, in which the velocity of the oscillation is below u_lim per radian
     or below the drift.  For strokes above LONG_STROKE, the term LONG_STROKE**2 / stroke shrinks the
-    zone gradually.  At the stroke LONG_STROKE, the longest step is twice the shortest."""
+    zone gradually.  At the stroke LONG_STROKE, the longest step is twice the shortest.
+    """
     if stroke <= LONG_STROKE:
         return math.inf
     return max(1.0, drift, LONG_STROKE**2 / stroke) / stroke
@@ -244,7 +246,8 @@ def phases_between(
     """Phases from the first turning point to the last, ((len(turns) - 1) steps + 1,).
 
     There are `steps` steps between neighbouring turning points, graded towards them.  For grading
-    and width, see turning_point_grading and turning_point_width."""
+    and width, see turning_point_grading and turning_point_width.
+    """
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)
     if width < math.inf:

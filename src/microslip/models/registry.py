@@ -19,7 +19,8 @@ resolution.
 
 Every model has the interface `models.contact.Contact`.  To add a model, add a file to this folder
 and an entry to `MODELS`.  A model is imported when its first contact is built, because compiled
-code takes a while to load and closed forms do not need it."""
+code takes a while to load and closed forms do not need it.
+"""
 
 from __future__ import annotations
 

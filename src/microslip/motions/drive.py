@@ -5,7 +5,8 @@
 
 Here u is the forward displacement of the body without the oscillation of the motion, and f is the
 forward force of the contact.  Units are mu F_z, u_lim and the time 1 / omega, where F_z is the
-normal load without oscillation."""
+normal load without oscillation.
+"""
 
 from __future__ import annotations
 

@@ -8,7 +8,8 @@ sin(K t) instead.  There is no contact while the formula gives a load or a depth
 in-plane displacement is v~ t + A F sin(M t + P) forward and A L sin(N t + P) lateral, in u_lim.
 The angle is sin(Q t + P) times the largest angle of a bore with the amplitude A B.  P is in
 degrees.  The units u_lim, a and mu F_z are those of the state without oscillation.  Friction is
-divided by mu times the actual mean load."""
+divided by mu times the actual mean load.
+"""
 
 from __future__ import annotations
 

@@ -224,7 +224,7 @@ class Sampled(_Samples):
 
     @cached_property
     def cycles(self) -> int:
-        """Root-mean-square number of cycles in a period, for the column where it is largest."""
+        """Root-mean-square number of cycles in a period, in the column with the most cycles."""
         power = np.abs(np.fft.rfft(self.rows - self.rows.mean(axis=0), axis=0)) ** 2
         if self.height is not None:
             height = np.abs(np.fft.rfft(self.height - self.height.mean())) ** 2

@@ -7,7 +7,8 @@ By default, a value is the mean over the cell around its point, as sensors measu
 then the sum of the values times the cell areas.  With ",grid=samples" after the path, values apply
 at the points and are interpolated bilinearly. ",pitch=0.5 mm" reads a matrix of pressures without
 coordinates (see grid_matrix.py). ",decimal=comma" and ",encoding=cp1252" describe the format of a
-CSV file."""
+CSV file.
+"""
 
 from __future__ import annotations
 

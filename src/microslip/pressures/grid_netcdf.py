@@ -50,7 +50,8 @@ def _refuse_oversized(path: Path) -> None:
     """Raise ValueError if a dimension or a chunk is too large, before it is read into memory.
 
     xarray reads the coordinates of all dimensions when it opens a file, and HDF5 reads whole
-    chunks."""
+    chunks.
+    """
     import netCDF4  # only here, because it takes a while to load
 
     with netCDF4.Dataset(path) as file:

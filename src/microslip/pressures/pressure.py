@@ -12,7 +12,8 @@ For an axisymmetric indenter at the depth d, u_lim is mu d E*/G*, which is 3 mu 
 sphere.  A round contact that moves in one direction from rest slides everywhere once the
 displacement exceeds u_lim, and so does any contact at nu = 0.  Other contacts at nu > 0 slide a few
 percent earlier or later, depending on the direction.  In working units, the reduced shear modulus
-is the number G*, which is 3/4 for a sphere."""
+is the number G*, which is 3/4 for a sphere.
+"""
 
 from __future__ import annotations
 

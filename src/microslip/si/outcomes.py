@@ -222,8 +222,8 @@ def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any
 def _draws(count: int) -> np.ndarray:
     """Draws of independent standard normal numbers, shape (DRAWS, count).
 
-    They form a Kronecker sequence.  Its irrational numbers are powers of the root of x^(count + 1)
-    = x + 1.
+    They form a Kronecker sequence.  Its irrational numbers are powers of the root of
+    x^(count + 1) = x + 1.
     """
     from scipy.special import ndtri
 

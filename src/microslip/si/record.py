@@ -42,15 +42,15 @@ MOST_DECIMALS = 12
 """Largest number of decimals of times that count as rounded.  More decimals need no allowance."""
 LARGEST_LOSS = 0.01
 """Largest relative loss of the strongest harmonic by a drift of the frequency.  The estimate of the
-loss is of first order, so that it is correct for small losses only."""
+loss is of first order, so it is correct for small losses only."""
 SIGNIFICANT = 5.0
-"""Smallest ratio of the peak to peak value to its standard error.  White noise at the frequency of
+"""Smallest ratio of the peak-to-peak value to its standard error.  White noise at the frequency of
 its strongest component reaches about 3."""
 PHASE_OF_A_DRIFT = 0.5 * math.sqrt(1.0 / 80.0 - 1.0 / 144.0)
 """Standard deviation of the phase, in periods, for a frequency that changes linearly by one period
 per duration of the record: that of u**2 / 2 for u from -1/2 to 1/2."""
 FINER = 32
-"""Number of interpolated points per sample for the peak to peak value.  With 32 samples, the peak
+"""Number of interpolated points per sample for the peak-to-peak value.  With 32 samples, the peak
 of a sine is too small by at most 5e-6 of its amplitude."""
 TREND = 3
 """Degree of the polynomial that is subtracted before the search for the frequency."""

@@ -71,8 +71,8 @@ class Request:
     carriers : several.Carriers
         All contacts of the body.  The load of `contact` is their mean load.
     sought, share : str or None, float or None
-        Name of the quantity that a search determines, and the requested reduction of friction, 0 to
-        1.
+        Name of the quantity that a search determines, and the requested reduction of friction, from
+        0 to 1.
     tolerance : float
         Accepted error of mu_macro, or accepted relative error of the speed under a force.
     understood : dict of str

@@ -1,7 +1,8 @@
 """Radius of the slip front in slow motions, computed by a coarse run of the static limit.
 
 The run is needed for pressures without a closed form.  For rotating indenters, the radius is also
-the root of an integral (indenters.torsion_stick_radius); a test compares both results."""
+the root of an integral (indenters.torsion_stick_radius); a test compares both results.
+"""
 
 from __future__ import annotations
 

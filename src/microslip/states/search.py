@@ -30,7 +30,7 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 state, and the second value is for one near it."""
 NOISE = 1e-2
 """Largest accepted residual of a march, divided by the force that the drift adds in this march.  An
-error of the state decays only as fast as the state drifts."""
+error of the state decays no faster than the state drifts."""
 DRIFTING, MOST_RETURNS = 0.5, 3
 """DRIFTING: a state below the static limit is stuck if its residual exceeds this fraction of the
 force that the drift adds.  Such a state drifts without slip, so its change does not measure the

@@ -105,7 +105,8 @@ class MapCoordinates(NamedTuple):
         """Scaled coordinates, shape (n, directions), of points in the range.
 
         places: coordinates of the points, one array of shape (n,) for each direction, velocities
-        first."""
+        first.
+        """
         values = [np.asarray(part, float) for part in places]
         deep = [_share(values.pop(), self.poisson)] if self.poisson else []
         if not self.velocity:

@@ -40,8 +40,9 @@ def packed(period: Period, angles: int) -> dict:
     Returns
     -------
     dict
-        radius, bound: lists over rings, (cells,).  Each name in HISTORIES: a list over time, (steps
-        + 1,).
+        radius, bound: one value for each ring, (cells,).
+
+        The quantities in HISTORIES: one value for each time, (steps + 1,).
 
         tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, in steps of
         bound/127.

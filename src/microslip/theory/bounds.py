@@ -8,16 +8,16 @@ it follows that:
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
 - bore (forward v phi t, angle phi sin t): the work of the torque replaces the work of the lateral
-  force. Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
-  1/5 is the second moment of Hertz pressure about a diameter. Hence d <= 1 / (5 (v - 1)^2) for
+  force.  Forward tractions contribute at most phi d, and lateral tractions at most phi sqrt(d/5);
+  1/5 is the second moment of Hertz pressure about a diameter.  Hence d <= 1 / (5 (v - 1)^2) for
   v > 1.
 - longitudinal (forward v t + x sin t): the sphere never moves backward if v >= x, so d = 0.
 
 The dissipated energy per radian of the transverse motion is the work v mu + y <F_lateral cos t>.
 It is at least v and at most v (1 - d) + y sqrt(d), hence at most v + y^2 / (4 v).  For the bore,
 the energy divided by phi is between v and v + 1 / (20 (v - 1)).  With the bound b on d, both
-energies are at most v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with v
->= x.
+energies are at most v (1 + b / (4 - 2 b)).  The same bound applies to longitudinal motions with
+v >= x.
 
 The bounds hold for any nu and any stiffness.  The arguments are the paper's dimensionless groups.
 

@@ -72,8 +72,9 @@ class Iwan:
     def error_on_any_path(self) -> float:
         """Error of the force on any path, which can have many nested loops.
 
-        The force of a slider is a Lipschitz function of its slip displacement, with the constant
-        1.  Hence the error is at most the total variation of the error on the first loading.
+        The force of a slider is a Lipschitz function of its slip displacement, with the
+        constant 1.  Hence the error is at most the total variation of the error on the first
+        loading.
         """
         return 2.0 * float(self.force_error.sum()) + self.poisson_error
 

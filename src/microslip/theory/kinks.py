@@ -41,10 +41,9 @@ class Kinks(NamedTuple):
 KINKS = {
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
-    # Contact is lost at the amplitude 1. At smaller amplitudes friction is full above a certain
-    # velocity, because the load never grows faster than the springs at the growing edge are
-    # stretched. The velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up
-    # to 2 % larger.
+    # Contact is lost at the amplitude 1. At smaller amplitudes, friction is full above a certain
+    # velocity, because springs are then stretched faster than their friction bounds grow. This
+    # velocity is the maximum over t of A sin t / (1.5 (1 - A cos t)^(1/3)), here up to 2 % larger.
     "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
 """Name of a motion -> its kinks under Hertz pressure."""
@@ -58,8 +57,8 @@ UNDER_ANY = {
     # Friction is full at velocities above A, because the contact never moves backward. Above the
     # amplitude 1 the whole contact also slides backward.
     "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
-    # All springs in contact are pressed in at the same velocity. Contact is lost at the amplitude
-    # 1.
+    # All springs in contact are pressed in at the same velocity. Contact is lost at
+    # the amplitude 1.
     "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
 }
 """Name of a motion -> its kinks under any pressure, in the units of that pressure."""

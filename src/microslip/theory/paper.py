@@ -122,8 +122,8 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     """Kernel Q_M: torque of a ring of radius ratio*velocity, divided by bound and radius (Eq 20).
 
     Raises ValueError unless ratio >= 0; the argument can have any shape. The kernel is 4 (E - (1 -
-    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. It rises from
-    0 to 4 at ratio 1, and approaches 2 pi. At small ratios it is about pi*ratio.
+    k^2) K)/k at the modulus k = ratio for ratio <= 1, and Q_Y(1/ratio) for ratio > 1. At small
+    ratios, it is about pi*ratio. It is 4 at ratio 1, and approaches 2 pi at large ratios.
     """
     inside, even, odd = _ring_integrals(ratio)
     return np.where(inside, odd, even)[()]

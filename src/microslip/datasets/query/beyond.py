@@ -39,9 +39,9 @@ WIDE_EXPONENT = 1.0
 STEEPEST = 2.0
 """Largest local exponent of a power law, divided by the asymptotic exponent."""
 POISSON_DROP = 0.1
-"""Bound on the decrease of transverse static friction from Poisson's ratio 0 to nu, divided by (nu
-/ (2 - nu))^2.  solve("transverse", 0, A, poisson=nu) gives at most 0.067, near A = 0.9, for nu from
-0.1 to 0.5."""
+"""Bound on the decrease of transverse static friction from Poisson's ratio 0 to nu, divided by
+(nu / (2 - nu))^2.  solve("transverse", 0, A, poisson=nu) gives at most 0.067, near A = 0.9, for nu
+from 0.1 to 0.5."""
 
 
 class Estimate(NamedTuple):

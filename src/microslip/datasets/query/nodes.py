@@ -47,7 +47,8 @@ class Nodes:
     def table(self, poisson: float, *, still: bool = False) -> Table | None:
         """Return the map at a Poisson's ratio, or None if there is no such map.
 
-        The map contains velocities above 0 or, if `still` is True, only the velocity 0."""
+        The map contains velocities above 0 or, if `still` is True, only the velocity 0.
+        """
         chosen = self.velocity == 0.0 if still else self.velocity > 0.0
         if not chosen.any():
             return None

@@ -3,7 +3,8 @@
 Points are at the angles theta_j = (j + 1/2) pi / M of half the disc or of the whole disc.  At nu =
 0, the forward tractions of a mode cause only forward displacements, and the lateral tractions cause
 only lateral displacements.  Both have the same ring matrix.  At nu > 0, the complex waves e^{i m
-theta} of forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py)."""
+theta} of forward - i lateral are coupled in pairs m and 2 - m (see rings/influence.py).
+"""
 
 from __future__ import annotations
 
@@ -32,8 +33,8 @@ Wave = tuple[int, int]
 class Modes(NamedTuple):
     """Operators on fields, for one or several contacts.  The points are on rings and at angles.
 
-    Rows of a field have equal width.  At nu = 0, there are two sectors, forward and lateral.  At nu
-    > 0, there is one sector.
+    Rows of a field have equal width.  At nu = 0, there are two sectors, forward and lateral.  At
+    nu > 0, there is one sector.
 
     Attributes
     ----------

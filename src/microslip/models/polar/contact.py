@@ -10,7 +10,8 @@ A motion that combines a rotation and a translation has neither symmetry, so the
 resolved.
 
 Coulomb's law holds at the points.  The elastic operator is block-diagonal in the angular modes,
-with one ring matrix for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0."""
+with one ring matrix for each mode at nu = 0, and one for each pair m and 2 - m at nu > 0.
+"""
 
 from __future__ import annotations
 

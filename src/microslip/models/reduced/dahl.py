@@ -5,7 +5,8 @@
 Here k is the stiffness of the contact without slip.  The model has the stiffness and the friction
 bound of the contact, but it never sticks.  So any vibration reduces the friction to 0 as the
 velocity tends to 0.  Along a straight segment of the path, the equation has a closed-form solution,
-which is linear in the initial force."""
+which is linear in the initial force.
+"""
 
 from __future__ import annotations
 

@@ -158,7 +158,8 @@ class RadialContact(SystemContact):
         would carry over a jump from an earlier stage to the later stages.  A ring that joins at the
         last stage is strained for the fraction 1 / (1 + carried) of the step, but on average it
         should be strained for half of the step.  The contact radius is therefore evaluated at an
-        earlier time, to make up for the difference."""
+        earlier time, to make up for the difference.
+        """
         assert path.depth is not None  # otherwise the bounds are constant
         stages = path.stages.shape[1]
         ends = self._checked_growth.pressure.radius(path.depth[::stages])

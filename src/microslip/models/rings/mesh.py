@@ -2,7 +2,8 @@
 
 Edges are r = sin(psi) with equidistant psi, unless the mesh is graded towards a focus.  This
 refines the mesh at the edge of the contact, where smooth pressures fall like a square root.
-Contacts with a hole are refined at the edge of the hole in the same way."""
+Contacts with a hole are refined at the edge of the hole in the same way.
+"""
 
 from __future__ import annotations
 

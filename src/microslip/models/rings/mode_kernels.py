@@ -39,7 +39,8 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
     The radii r and s must be positive and different.  G_m is Q_{m-1/2}(chi) / (pi sqrt(r s)) with
     chi = (r^2 + s^2) / (2 r s).  Q is the decaying solution of a three-term recurrence in m.  An
     upward recurrence loses accuracy if m times the decay rate is large.  In this case, ratios are
-    computed by a downward recurrence (Miller's method)."""
+    computed by a downward recurrence (Miller's method).
+    """
     n = len(out)
     kc = abs(r - s) / (r + s)
     big_k, big_e = _elliptic_ke(kc)
@@ -74,7 +75,8 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
     Multiplication of e^{2 i alpha}/|z-z'| by conj(z - z') gives the recurrence r C_m - s C_{m-1} =
     r G_{m-2} - s G_{m-1}, with C_1 = -G_1.  The upward recurrence is stable if s < r or if (s/r)^m
     is of order one.  Otherwise the recurrence runs downward from an index at which C is negligible.
-    Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r)."""
+    Modes below 1 follow from C_{2-m}(r, s) = C_m(s, r).
+    """
     n = len(out)
     out[0] = -toroidal[1]
     if s <= r or (n + 1) * np.log(s / r) < 2.0:

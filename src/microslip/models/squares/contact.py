@@ -2,7 +2,8 @@
 
 This model uses the paper's discretisation and is the reference for the other models.  Tractions
 have the symmetries that the rigid displacement, the pressure and the influence operator have in
-common.  Of all cells related by these symmetries, only one is resolved (see `_images`)."""
+common.  Of all cells related by these symmetries, only one is resolved (see `_images`).
+"""
 
 from __future__ import annotations
 

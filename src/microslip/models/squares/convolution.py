@@ -139,7 +139,8 @@ def influence(
 
     The kernels of rings/influence.py are integrated over a square in closed form, and evaluated at
     the centres of cells.  Units are u_lim per unit of traction.  The first axis is the forward
-    offset, and the second axis is the lateral offset.  Negative offsets are wrapped around."""
+    offset, and the second axis is the lateral offset.  Negative offsets are wrapped around.
+    """
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")

@@ -11,7 +11,8 @@ transform at the frequencies k and L - k, and t = pi k / (2 L),
 All steps are linear, so one complex transform handles two real fields at once.  The influence
 coefficients are even as well.  Hence the cosine transform of the displacement is that of the
 tractions times that of the influence coefficients.  Rows are in the order of transform.py, in which
-the first row has the frequency 0."""
+the first row has the frequency 0.
+"""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool
     force, amplitude, velocity, rigid = columns(part, "force", "amplitude", "velocity", RIGID)
     filled, shown = velocity_bands(axes, force, amplitude, velocity)
     levels = np.log10(LINES)
-    # By default, contours of negative values (here logarithms) are dashed.
+    # Contours of negative values, here of logarithms, are dashed by default.
     white: look.Ink = {"colors": "white", "linestyles": "solid", "linewidths": 0.9}
     white |= {"gid": "contours"}
     lines = axes.contour(force, amplitude, shown, levels, **white)

@@ -59,7 +59,7 @@ class Scale:
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row.  rows: default is the rows of the fit."""
+        """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
         rows = self.rows if rows is None else rows
         u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
         return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
@@ -114,7 +114,7 @@ class Modulus(Scale):
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row.  rows: default is the rows of the fit."""
+        """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
         rows = self.rows if rows is None else rows
         if not self.spin:
             return super().points(mu, scale, rows)

@@ -63,7 +63,8 @@ class Marches:
 
     The estimated distance from the fixed point is a force.  It is the largest of three numbers (see
     search.largest_excess): the residual, the last correction, and the difference between the force
-    and the static limit, multiplied by residual / gain."""
+    and the static limit, multiplied by residual / gain.
+    """
 
     def __init__(self, period_map: PeriodMap):
         self.contact, self.path = period_map.contact, period_map.path

@@ -252,9 +252,9 @@ def _steady(amplitude: float, velocity: float) -> float:
 
 
 def _rigid_below_squares(study: Claims, runs: Runs) -> Iterator[Check]:
-    """Yield checks of the paper's own runs.
+    """Compare Eq 6 with the paper's own runs.
 
-    A run's error is its difference from a run at the study's tolerance.
+    The error of such a run is its difference from a run at the study's tolerance.
     """
     for amplitude in claims.sliding(study):
         place = {"amplitude": amplitude, "velocity": claims.PAPER_VELOCITY}
