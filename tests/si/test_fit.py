@@ -16,6 +16,7 @@ from microslip.si.fitting.friction_models import SolvedFriction
 from microslip.si.fitting.measured import Measured
 from microslip.si.fitting.scales import Displacement, Modulus, Points
 from microslip.si.materials import RIGID, Material
+from microslip.si.motions import MOTIONS
 from microslip.theory import paper
 
 MU, U_LIM, LOAD, FREQUENCY = 0.3, 2e-7, 10.0, 1e3
@@ -111,7 +112,9 @@ def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
     body = Material(2.0 * 80e9 * 1.3, 0.3)
     for k in range(3):
         contact = TwoBodies(body, body if alike else RIGID, 5e-3, load[k], 0.25)
-        expected = groups(RealMotion(motion, speed[k], size[k], frequency[k]), contact)
+        expected = groups(
+            RealMotion(motion, MOTIONS[motion].unit, speed[k], size[k], frequency[k]), contact
+        )
         assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
 
 

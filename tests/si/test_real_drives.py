@@ -41,7 +41,7 @@ def test_the_groups_of_a_drive_by_hand():
     A spring of this stiffness, a mass in resonance with it, and a dashpot of this impedance all
     have a group of 1.5.
     """
-    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
     stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
     drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
     result = drive_groups(drive, motion, CONTACT)
@@ -53,9 +53,9 @@ def test_the_groups_of_a_drive_by_hand():
 @pytest.mark.parametrize(
     "motion",
     [
-        RealMotion("transverse", 1e-3, 1e-6, 20e3),
-        RealMotion("bore", 1e-3, 0.01, 50.0),
-        RealMotion("continuous-bore", 1e-3, rotation=3.0),
+        RealMotion("transverse", "m", 1e-3, 1e-6, 20e3),
+        RealMotion("bore", "rad", 1e-3, 0.01, 50.0),
+        RealMotion("continuous-bore", None, 1e-3, rotation=3.0),
     ],
     ids=lambda motion: motion.name,
 )

@@ -255,7 +255,7 @@ def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     along = [None if size is None else size * BALL.u_lim for size in sizes[:2]]
     parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
     parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
-    motion = RealMotion(label, 1e-3, along[0], 1e3, **parts)
+    motion = RealMotion(label, None, 1e-3, along[0], 1e3, **parts)
     name, _, text = solver_motion(motion, BALL).partition(":")
     result = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
     assert name == label and result.pop("phase") == pytest.approx(90.0)

@@ -74,11 +74,11 @@ def test_the_stiffer_the_counterbody_the_more_the_bodies_differ():
 
 def test_dimensionless_groups_by_hand():
     contact = TwoBodies(STEEL, RIGID, 0.005, 10.0, 0.3)
-    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
     velocity, amplitude = groups(motion, contact)
     assert velocity == pytest.approx(1e-3 / (2 * math.pi * 20e3 * contact.u_lim))
     assert amplitude == pytest.approx(1e-6 / contact.u_lim)
-    turning = RealMotion("continuous-bore", 1e-3, rotation=2.0)
+    turning = RealMotion("continuous-bore", None, 1e-3, rotation=2.0)
     assert groups(turning, contact) == (1e-3 / (2.0 * contact.contact_radius), None)
 
 
@@ -88,7 +88,7 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
         contact = TwoBodies(STEEL, other, 0.005, 10.0, 0.3)
         a = contact.contact_radius
         angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_half()
-        velocity, amplitude = groups(RealMotion("bore", 1e-3, angle, 100.0), contact)
+        velocity, amplitude = groups(RealMotion("bore", "rad", 1e-3, angle, 100.0), contact)
         assert amplitude == pytest.approx(1.0)
         assert velocity == pytest.approx(1e-3 / (2 * math.pi * 100.0 * angle * a))
 
@@ -248,7 +248,7 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
 
 def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
     """The pull-off force is 2 pi R W for a small hard sphere, 3/2 pi R W for a large soft one."""
-    motion = RealMotion("transverse", 1e-3, 1e-8, 1e3)
+    motion = RealMotion("transverse", "m", 1e-3, 1e-8, 1e3)
     for young, radius, share, theory, unit, name in (
         (210e9, 1e-8, 2.0, "DMT", 1e-9, "nN"),
         (1e6, 1e-2, 1.5, "JKR", 1e-3, "mN"),

@@ -19,7 +19,7 @@ from microslip.app.question import (
     write_output,
 )
 from microslip.app.terminal import complain
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.motions import SINGLE
 from microslip.si.printed_lines import force_unit, in_unit, line, prefixed
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Exit codes: 0 both numbers determined; 1 only mu determined, or unreadable lines left "
         "out; 2 bad input, or neither number determined."
     )
-    motions = ", ".join(UNIT_OF_AMPLITUDE)
+    motions = ", ".join(SINGLE)
     parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
     parser.add_argument("measured", metavar="CSV", help="the table")
     add_options(parser, OPTIONS)

@@ -119,7 +119,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "outcome.  A quantity can be a range: '0..2 um' has 11 values, '0..2 um, 21' has 21, and "
         "'0.1..10 mm/s, 21, log' has equal ratios.  The answer is then a table."
     )
-    motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
+    motions = "; ".join(f"{name}: it {kind.description}" for name, kind in MOTIONS.items())
     parser.add_argument(
         "motion",
         metavar="MOTION",

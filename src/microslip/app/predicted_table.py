@@ -20,7 +20,7 @@ from microslip.app.question import (
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.motions import kind_of
 from microslip.si.prediction import EMPTY, NoPrediction, Prediction
 from microslip.si.printed_lines import not_converged, probability_text, runs_away
 from microslip.si.tables import Table
@@ -278,7 +278,7 @@ def _quantities(answers: Sequence[Prediction]) -> list[_Quantity]:
     for sought in dict.fromkeys(one.sought for one in answers):
         if sought is not None:  # each line can search for a different quantity
             results = [one for one in answers if one.sought == sought]
-            amplitude = unit_of_amplitude(results[0].motion)
+            amplitude = kind_of(results[0].motion).unit
             unit = {"amplitude": amplitude, "speed": "m/s", "load": "N"}[sought]
             spread = (
                 f"spread {unit}" if any(one.sought_spread is not None for one in results) else ""

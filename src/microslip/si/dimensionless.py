@@ -9,13 +9,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.motion import Motion
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.motions import (
-    MOTIONS,
-    PARTS,
-    has_several_amplitudes,
-    is_steady,
-    unit_of_amplitude,
-)
+from microslip.si.motions import MOTIONS, PARTS
 from microslip.si.strokes import Stroke
 from microslip.theory import hertz
 
@@ -26,8 +20,8 @@ class RealMotion:
 
     Attributes
     ----------
-    name : str
-        Name of the motion.
+    name, unit : str, str or None
+        Name of the motion, and the SI unit of its amplitude; see motions.RealMotionKind.
     speed : float or None
         Forward speed, m/s; None if a force is prescribed.
     amplitude : float or None
@@ -45,6 +39,7 @@ class RealMotion:
     """
 
     name: str
+    unit: str | None
     speed: float | None
     amplitude: float | None = None
     frequency: float | None = None
@@ -58,17 +53,17 @@ class RealMotion:
     @property
     def several(self) -> bool:
         """True for a motion with several amplitudes; see `parts`."""
-        return has_several_amplitudes(self.name)
+        return not (self.unit or self.steady)
 
     @property
     def steady(self) -> bool:
         """True if nothing oscillates."""
-        return is_steady(self.name)
+        return self.frequency is None
 
     @property
     def spins(self) -> bool:
         """True if the amplitude is an angle."""
-        return unit_of_amplitude(self.name) == "rad"
+        return self.unit == "rad"
 
     @property
     def swing(self) -> tuple[float, float]:
@@ -118,7 +113,7 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
         return {name: factor * float(abs(one).max()) for name, one in columns.items()}
     unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
     amplitudes = {}
-    for name, (share, _) in PARTS.items():
+    for name, share in PARTS.items():
         size = getattr(motion, name)
         if size is not None and share == "angle":
             angle = size * contact.contact_radius / contact.u_lim

@@ -17,8 +17,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.inputs import QUANTITIES, unit_of
 from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.quantities import read
 from microslip.si.table import MOST_CASES, as_dataset, predictions
@@ -176,8 +175,7 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
             values = values_of(name, values)
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
-        own = unit_of_amplitude(motion) if name == "amplitude" else None
-        unit = QUANTITIES[name].unit if own is None else own
+        unit = unit_of(name, motion)
         for value in values:
             refuse_uncertainty({name: value}, "a range")
         si = [read(name, value, unit, low=-math.inf).si for value in values]

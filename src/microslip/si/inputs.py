@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.named_files import speaks_of_file
-from microslip.si import motions
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import COMBINED, PARTS, TAKES
+from microslip.si.motions import PARTS, kind_of
 from microslip.si.quantities import Quantity, read
 from microslip.si.shapes import elliptic, of_size
 from microslip.si.strokes import Stroke, read_stroke
@@ -63,20 +62,26 @@ QUANTITIES = {
     "reduction": Range("", high=1.0),
     "wear_coefficient": Range("m^2/N", low_open=False),
 }
-"""Units and ranges of the quantities among `predict`'s arguments.  The amplitude of a rotation is
-an angle, in rad."""
+"""Units and ranges of the quantities among `predict`'s arguments; see also `unit_of`."""
+
+
+def unit_of(name: str, motion: object) -> str:
+    """SI unit of an argument listed in QUANTITIES.  The unit of the amplitude depends on the
+    motion."""
+    unit = kind_of(motion).unit if name == "amplitude" else None
+    return QUANTITIES[name].unit if unit is None else unit
 
 
 def read_argument(
-    name: str, value: object, unit: str | None = None, title: str | None = None
+    name: str, value: object, motion: str | None = None, title: str | None = None
 ) -> Quantity:
     """Read an argument listed in QUANTITIES and check its range.  Raises InputError.
 
-    unit: SI unit that replaces the default; title: name of the argument in messages.
+    motion: motion of the request, for its amplitude; title: name of the argument in messages.
     """
-    usual, *limits = QUANTITIES[name]
+    unit, *limits = QUANTITIES[name]
     ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
-    return read(title or name, value, usual if unit is None else unit, **ranges)
+    return read(title or name, value, unit if motion is None else unit_of(name, motion), **ranges)
 
 
 Arguments = Mapping[str, Any]
@@ -345,32 +350,29 @@ def read_motion(
     sought: name of the quantity that a search determines, or None.  This quantity and the speed may
     be missing.
     """
-    motions.check_motion(motion)
-    steady = motions.is_steady(motion)
-    needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
+    kind = kind_of(motion)
     for name in MOTION_ARGUMENTS:
-        if name not in (*needed, *TAKES.get(motion, ())) and arguments[name] is not None:
+        if name not in (*kind.needed, *kind.optional) and arguments[name] is not None:
             raise InputError(name, arguments[name], f"{motion} has none")
-    for name in needed:
+    for name in kind.needed:
         if arguments[name] is None and name != sought:
             raise InputError(name, None, f"{motion} needs it")
     stroke = read_stroke(motion) if speaks_of_file(motion) else None
-    unit = motions.unit_of_amplitude(motion)
     quantities = {
-        name: read_argument(name, arguments[name], unit if name == "amplitude" else None)
+        name: read_argument(name, arguments[name], motion)
         for name in ("speed", *MOTION_ARGUMENTS)
         if arguments[name] is not None
     }
     values: dict[str, Any] = {"speed": None} | {name: one.si for name, one in quantities.items()}
-    if motion in COMBINED and not any(values.get(name) for name in PARTS):
+    if kind.several and stroke is None and not any(values.get(name) for name in PARTS):
         allowed = "allowed is above 0 where no other amplitude is"
-        raise InputError(needed[0], arguments[needed[0]], allowed)
-    texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
+        raise InputError(kind.needed[0], arguments[kind.needed[0]], allowed)
+    texts = {"motion": f"{motion}: the sphere {kind.description}"}
     texts |= {name: one.text for name, one in quantities.items()}
     if stroke is not None:
         texts["amplitude"] += " times the samples"
-        return RealMotion(stroke.name, **values, stroke=stroke), texts
-    return RealMotion(motion, **values), texts
+        return RealMotion(stroke.name, kind.unit, **values, stroke=stroke), texts
+    return RealMotion(motion, kind.unit, **values), texts
 
 
 MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")

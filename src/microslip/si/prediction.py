@@ -52,7 +52,7 @@ UNITS = {
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 
 
-def unit_of(column: str) -> str:
+def column_unit(column: str) -> str:
     """SI unit of a column, "1" if it is dimensionless."""
     ends = (unit for end, unit in UNITS.items() if column.endswith(end))
     return OTHER_UNITS.get(column) or next(ends, "1")

@@ -172,7 +172,7 @@ def predict_propulsion(
     newtons = contact.mu * contact.load * problem.mean_load
     speed = 2.0 * math.pi * rate.si * contact.u_lim
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
-    real = RealMotion(motion, fastest, size.si, rate.si)
+    real = RealMotion(motion, "m", fastest, size.si, rate.si)
     holding, reason = _holding_forces(line, newtons)
     return RealPropulsionLine(
         understood=understood | {"motion": motion, "amplitude": size.text, "frequency": rate.text},

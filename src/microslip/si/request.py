@@ -15,7 +15,6 @@ from microslip.foundation.errors import InputError, shown
 from microslip.foundation.named_files import speaks_of_file
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
-from microslip.si import motions
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import (
     RealDrive,
@@ -38,6 +37,7 @@ from microslip.si.inputs import (
     read_motion,
     with_stroke,
 )
+from microslip.si.motions import kind_of
 from microslip.si.quantities import read
 from microslip.si.several import Carriers, read_carriers
 from microslip.si.strokes import read_stroke
@@ -306,8 +306,7 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
 
     Raises InputError unless exactly one quantity is missing.
     """
-    motions.check_motion(motion)
-    reduction = arguments["reduction"]
+    kind, reduction = kind_of(motion), arguments["reduction"]
     if reduction is None:
         if arguments["load"] is None:
             raise InputError("load", None, "needed")
@@ -315,8 +314,8 @@ def _sought(motion: str, arguments: Arguments) -> str | None:
     missing = [name for name in SOUGHT if arguments[name] is None]
     if "speed" in missing and arguments["force"] is not None:
         missing.remove("speed")
-    if not motions.unit_of_amplitude(motion) and missing != ["speed"]:
-        what = "several amplitudes" if motions.has_several_amplitudes(motion) else "no amplitude"
+    if not kind.unit and missing != ["speed"]:
+        what = "several amplitudes" if kind.several else "no amplitude"
         raise InputError("reduction", reduction, f"not allowed: {motion} has {what}")
     if not missing:
         allowed = "allowed only without the amplitude, the speed or the load, which it determines"

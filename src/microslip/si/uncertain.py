@@ -15,8 +15,7 @@ from dataclasses import replace
 from typing import Any
 
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES
-from microslip.si.motions import unit_of_amplitude
+from microslip.si.inputs import QUANTITIES, unit_of
 from microslip.si.outcomes import Ends, UncertainInput, half_difference, uncertainty_of_outcomes
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import EXCLUDED
@@ -45,15 +44,11 @@ def without_uncertainty(
     Raises InputError for a text with an invalid uncertainty.
     """
     plain, uncertain = dict(arguments), []
-    for name, quantity in QUANTITIES.items():
+    for name in QUANTITIES:
         parts = None if name in EXACT else _parts(arguments.get(name))
         if parts is not None:
-            unit = quantity.unit
-            if name == "amplitude" and isinstance(motion, str):
-                own = unit_of_amplitude(motion)
-                unit = unit if own is None else own
             plain[name] = parts[0]
-            uncertain.append(_uncertain(name, arguments[name], parts, unit))
+            uncertain.append(_uncertain(name, arguments[name], parts, unit_of(name, motion)))
     return plain, uncertain
 
 

@@ -14,6 +14,7 @@ from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel
 from microslip.si.fitting.scales import Modulus, Scale
+from microslip.si.motions import MOTIONS
 from microslip.si.validity import broken_assumptions
 
 WIDEST_MU = 2.0
@@ -183,5 +184,5 @@ def _warnings(
         widest = int(np.argmax(rows.amplitude))
         columns = (rows.speed, rows.amplitude, rows.frequency)
         speed, amplitude, frequency = (float(column[widest]) for column in columns)
-        real_motion = RealMotion(motion, speed, amplitude, frequency)
+        real_motion = RealMotion(motion, MOTIONS[motion].unit, speed, amplitude, frequency)
         yield from broken_assumptions(scale.contact(mu, math.exp(best.theta[1])), real_motion)

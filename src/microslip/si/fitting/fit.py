@@ -21,7 +21,7 @@ from microslip.si.fitting.friction_models import (
 from microslip.si.fitting.measured import Measured, named, read_measured
 from microslip.si.fitting.scales import Displacement, Modulus, Points, Scale
 from microslip.si.inputs import LARGEST_MU
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.motions import SINGLE
 from microslip.si.quantities import read
 
 SMALLEST_MU = 1e-5
@@ -100,8 +100,8 @@ def fit(
         If the table cannot be read, if it has too few rows or a single condition, or if the rows do
         not determine mu.
     """
-    if not isinstance(motion, str) or motion not in UNIT_OF_AMPLITUDE:
-        raise InputError("motion", motion, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
+    if not isinstance(motion, str) or motion not in SINGLE:
+        raise InputError("motion", motion, f"allowed is one of {', '.join(SINGLE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
     _refuse_too_few(rows, measured)

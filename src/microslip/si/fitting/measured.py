@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES, Range
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.inputs import QUANTITIES, Range, unit_of
 from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, table_of
 
@@ -92,7 +91,7 @@ def read_measured(
     Parameters
     ----------
     motion : str
-        One of motions.UNIT_OF_AMPLITUDE.
+        One of motions.SINGLE.
     source : path, mapping or pandas DataFrame
         The file, or columns by name.  A heading can have a unit, as in "speed [mm/s]".  A column
         without one is in SI units.
@@ -102,7 +101,7 @@ def read_measured(
         Values of speed, amplitude, frequency and load that replace columns.
     """
     units = {name: column.unit for name, column in COLUMNS.items()}
-    units["amplitude"] = UNIT_OF_AMPLITUDE[motion]
+    units["amplitude"] = unit_of("amplitude", motion)
     needed = {name: bool(unit) for name, unit in units.items()}
     table = table_of("measured", source, needed, decimal=decimal, encoding=encoding)
     columns, labels, left_out = _numbers(table, source, units)
