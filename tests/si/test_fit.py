@@ -10,7 +10,7 @@ from scipy.stats import binom
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.fitting import fit as fitting
 from microslip.si.fitting.friction_models import SolvedFriction
 from microslip.si.fitting.measured import Measured
@@ -112,9 +112,8 @@ def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
     body = Material(2.0 * 80e9 * 1.3, 0.3)
     for k in range(3):
         contact = TwoBodies(body, body if alike else RIGID, 5e-3, load[k], 0.25)
-        expected = groups(
-            RealMotion(motion, MOTIONS[motion].unit, speed[k], size[k], frequency[k]), contact
-        )
+        real = RealMotion(motion, MOTIONS[motion].unit, speed[k], size[k], frequency[k])
+        expected = MovingContact(contact, real).groups
         assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
 
 

@@ -15,7 +15,7 @@ from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
 from microslip.si import drive_result, request
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
+from microslip.si.dimensionless import MovingContact, RealDrive, RealMotion
 from microslip.si.materials import RIGID, Material
 from microslip.si.regimes import SAME, natural_frequency, regime
 from microslip.theory import paper
@@ -44,10 +44,10 @@ def test_the_groups_of_a_drive_by_hand():
     motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
     stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
     drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
-    result = drive_groups(drive, motion, CONTACT)
-    assert result == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
-    assert drive_groups(RealDrive(force=1.5), motion, CONTACT) == pytest.approx({"force": 0.5})
-    assert drive_groups(RealDrive(), motion, CONTACT) == {}
+    moving = MovingContact(CONTACT, motion)
+    assert drive.groups(moving) == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
+    assert RealDrive(force=1.5).groups(moving, 2) == pytest.approx({"force": 0.25})
+    assert RealDrive().groups(moving) == {}
 
 
 @pytest.mark.parametrize(
@@ -60,8 +60,8 @@ def test_the_groups_of_a_drive_by_hand():
     ids=lambda motion: motion.name,
 )
 def test_the_unit_of_a_speed_undoes_its_group(motion):
-    velocity, _ = groups(motion, CONTACT)
-    assert velocity * speed_unit(motion, CONTACT) == pytest.approx(1e-3)
+    moving = MovingContact(CONTACT, motion)
+    assert moving.groups[0] * moving.speed_unit == pytest.approx(1e-3)
 
 
 LENGTH, TIME, MASS = 7.0, 0.3, 11.0

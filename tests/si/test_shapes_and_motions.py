@@ -16,7 +16,7 @@ from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.motions import by_name
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_motion
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.materials import RIGID, Material
 from microslip.si.shapes import ellipse_of_radii, elliptic, of_size
 
@@ -256,11 +256,11 @@ def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
     parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
     motion = RealMotion(label, None, 1e-3, along[0], 1e3, **parts)
-    name, _, text = solver_motion(motion, BALL).partition(":")
+    name, _, text = MovingContact(BALL, motion).solver_motion.partition(":")
     result = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
     assert name == label and result.pop("phase") == pytest.approx(90.0)
     assert result == pytest.approx(expected)
-    velocity, amplitude = groups(motion, BALL)
+    velocity, amplitude = MovingContact(BALL, motion).groups
     assert amplitude == pytest.approx(largest)
     assert velocity == pytest.approx(1e-3 / (2e3 * math.pi * BALL.u_lim))
 

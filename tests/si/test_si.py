@@ -11,7 +11,7 @@ from scipy.integrate import quad
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import MATERIALS, RIGID, Material
 from microslip.si.validity import broken_assumptions
@@ -75,11 +75,11 @@ def test_the_stiffer_the_counterbody_the_more_the_bodies_differ():
 def test_dimensionless_groups_by_hand():
     contact = TwoBodies(STEEL, RIGID, 0.005, 10.0, 0.3)
     motion = RealMotion("transverse", "m", 1e-3, 1e-6, 20e3)
-    velocity, amplitude = groups(motion, contact)
+    velocity, amplitude = MovingContact(contact, motion).groups
     assert velocity == pytest.approx(1e-3 / (2 * math.pi * 20e3 * contact.u_lim))
     assert amplitude == pytest.approx(1e-6 / contact.u_lim)
     turning = RealMotion("continuous-bore", None, 1e-3, rotation=2.0)
-    assert groups(turning, contact) == (1e-3 / (2.0 * contact.contact_radius), None)
+    assert MovingContact(contact, turning).groups == (1e-3 / (2.0 * contact.contact_radius), None)
 
 
 def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
@@ -88,7 +88,8 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
         contact = TwoBodies(STEEL, other, 0.005, 10.0, 0.3)
         a = contact.contact_radius
         angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_half()
-        velocity, amplitude = groups(RealMotion("bore", "rad", 1e-3, angle, 100.0), contact)
+        motion = RealMotion("bore", "rad", 1e-3, angle, 100.0)
+        velocity, amplitude = MovingContact(contact, motion).groups
         assert amplitude == pytest.approx(1.0)
         assert velocity == pytest.approx(1e-3 / (2 * math.pi * 100.0 * angle * a))
 
@@ -254,7 +255,9 @@ def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
         (1e6, 1e-2, 1.5, "JKR", 1e-3, "mN"),
     ):
         contact = TwoBodies(Material(young, 0.3), RIGID, radius, 1e-9, 0.3)
-        message = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
+        message = [
+            text for text in broken_assumptions(MovingContact(contact, motion)) if "adhere" in text
+        ]
         pull = share * math.pi * radius * 0.05 / unit
         assert len(message) == 1
         assert f"about {pull:.2g} {name}" in message[0] and f": {theory})" in message[0]

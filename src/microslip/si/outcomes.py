@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import parts
 from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import FIRST_ORDER, QUANTILES
 from microslip.si.request import Request
@@ -240,9 +239,7 @@ def _state(request: Request) -> _State:
     largest = still * largest_force(request)
     shape: tuple[object, ...] = (contact.pressure,)
     if amplitude and motion.several:
-        shape += tuple(
-            round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
-        )
+        shape += tuple(round(one / amplitude, SAME_SHARE) for one in request.parts.values())
     if motion.stroke is not None and not motion.stroke.columns.keys() <= {"forward", "lateral"}:
         shape += (contact.load, contact.contact_radius)
     force = request.drive.force

@@ -222,9 +222,9 @@ def answer_request(request: Request) -> Prediction:
     parts |= _common(request, answer, threshold) | {"velocity": velocity}
     if request.motion.spins and not request.motion.amplitude:
         parts["velocity"] = None
-    most = request.carriers.most_loaded(request.contact)
-    parts["warnings"] = tuple(broken_assumptions(most, request.motion))
-    parts["not_checked"] = tuple(unchecked(most))
+    most = request.at(contact=request.carriers.most_loaded(request.contact))
+    parts["warnings"] = tuple(broken_assumptions(most))
+    parts["not_checked"] = tuple(unchecked(most.contact))
     if answer.converged:
         parts |= energy_fields(request, answer)
     if request.motion.steady:

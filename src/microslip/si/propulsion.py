@@ -12,7 +12,7 @@ from microslip.adaptive.checks import checked_propulsion
 from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, PropulsionLine, propulsion
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import RealMotion
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.inputs import read_argument, read_bodies, read_contact
 from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.propulsion_text import propulsion_text
@@ -192,7 +192,7 @@ def predict_propulsion(
         **_in_si(line, newtons * speed, "W", "power_out", "power_in"),
         converged=line.converged,
         reason=reason,
-        warnings=tuple(broken_assumptions(contact, real)),
+        warnings=tuple(broken_assumptions(MovingContact(contact, real))),
         not_checked=tuple(unchecked(contact)),
     )
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.si.dimensionless import groups
 from microslip.si.request import Request
 
 LARGEST_AMPLITUDE = 1e4
@@ -184,7 +183,7 @@ def _loads(request: Request, share: float) -> _Line:
     contact, motion = request.contact, request.motion
 
     def size_at(load: float) -> float:
-        size = groups(motion, contact.with_load(load))[1]
+        size = request.at(contact=contact.with_load(load)).groups[1]
         assert size is not None  # the motion oscillates
         return size
 

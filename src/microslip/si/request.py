@@ -13,18 +13,8 @@ from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE
 from microslip.foundation.errors import InputError, shown
 from microslip.foundation.named_files import speaks_of_file
-from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
-from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import (
-    RealDrive,
-    RealMotion,
-    drive_groups,
-    full_friction,
-    groups,
-    solver_motion,
-    speed_unit,
-)
+from microslip.si.dimensionless import MovingContact, RealDrive
 from microslip.si.friction_map import REFUSED, FrictionMap
 from microslip.si.inputs import (
     DRIVE_FIELDS,
@@ -57,7 +47,7 @@ NOT_FINITE = "is beyond the range of floating-point numbers; allowed are sizes o
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class Request(MovingContact):
     """A contact with its motion and its drive, as requested from `predict`.
 
     Attributes
@@ -66,8 +56,8 @@ class Request:
         Arguments of `predict`, as the user wrote them.
     bodies : tuple of Body
         Bodies of the contact.
-    contact, motion, drive : TwoBodies, RealMotion, RealDrive
-        The contact, its motion and the drive of the body, in SI units.
+    drive : RealDrive
+        The drive of the body.
     carriers : several.Carriers
         All contacts of the body.  The load of `contact` is their mean load.
     sought, share : str or None, float or None
@@ -81,8 +71,6 @@ class Request:
 
     arguments: Arguments
     bodies: tuple[Body, Body]
-    contact: TwoBodies
-    motion: RealMotion
     drive: RealDrive
     carriers: Carriers
     sought: str | None
@@ -110,22 +98,12 @@ class Request:
     @cached_property
     def still(self) -> float:
         """Friction of all contacts without vibration, N: mu times the mean normal load."""
-        return full_friction(self.motion, self.contact) * self.carriers.count
-
-    @property
-    def speed_unit(self) -> float:
-        """Forward speed, m/s, at which the dimensionless velocity is 1."""
-        return speed_unit(self.motion, self.contact)
-
-    @cached_property
-    def groups(self) -> tuple[float | None, float | None]:
-        """Velocity and amplitude for microslip.solve.  A missing value is None."""
-        return groups(self.motion, self.contact)
+        return self.full_friction * self.carriers.count
 
     @cached_property
     def drive_groups(self) -> dict[str, float]:
         """Force, stiffness, mass and damping for microslip.solve, for one contact."""
-        return drive_groups(self.carriers.share_of(self.drive), self.motion, self.contact)
+        return self.drive.groups(self, self.carriers.count)
 
     @property
     def wear_coefficient(self) -> float | None:
@@ -157,11 +135,6 @@ class Request:
         """
         settings: dict[str, Any] = {"contacts": self.carriers.text} | self.settings
         return checked_driven_problem(self.solver_motion, 0.0, self.groups[1], **settings)
-
-    @property
-    def solver_motion(self) -> str | Motion:
-        """The motion for microslip.solve, as text or as an object."""
-        return solver_motion(self.motion, self.contact)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -282,8 +255,8 @@ def request_of(motion: str, arguments: Arguments) -> Request:
         reduction = read_argument("reduction", arguments["reduction"])
         share, understood["reduction"] = reduction.si, reduction.text
         understood.pop(sought, None)
-    parts = (contact, real, drive, carriers, sought, share, accepted.si, understood)
-    request = Request(arguments, bodies, *parts)
+    parts = (drive, carriers, sought, share, accepted.si, understood)
+    request = Request(contact, real, arguments, bodies, *parts)
     if sought is None:
         request.check_range()
     if carrier_texts:

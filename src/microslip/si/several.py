@@ -13,7 +13,6 @@ from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive
 from microslip.si.shapes import ShapedContact
 
 
@@ -36,11 +35,6 @@ class Carriers:
     count: int = 1
     heaviest: float = 1.0
     widest: float = 1.0
-
-    def share_of(self, drive: RealDrive) -> RealDrive:
-        """The drive of the body divided by the number of contacts."""
-        parts = {name: value for name, value in vars(drive).items() if value is not None}
-        return RealDrive(**{name: value / self.count for name, value in parts.items()})
 
     def most_loaded(self, contact: TwoBodies) -> TwoBodies:
         """Return the contact with the largest load.  contact: the contact with the mean load."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import RealMotion
+from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.fitting import estimate
 from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
@@ -185,4 +185,5 @@ def _warnings(
         columns = (rows.speed, rows.amplitude, rows.frequency)
         speed, amplitude, frequency = (float(column[widest]) for column in columns)
         real_motion = RealMotion(motion, MOTIONS[motion].unit, speed, amplitude, frequency)
-        yield from broken_assumptions(scale.contact(mu, math.exp(best.theta[1])), real_motion)
+        contact = scale.contact(mu, math.exp(best.theta[1]))
+        yield from broken_assumptions(MovingContact(contact, real_motion))
