@@ -46,8 +46,9 @@ def energy_fields(request: Request, answer: Result) -> dict[str, Any]:
         energy_per_cycle_J=energy.value,
         energy_per_cycle_error_J=energy.error,
     )
-    if request.wear_coefficient is not None:
-        fields["wear"] = _wear(request, request.wear_coefficient / request.contact.mu * energy)
+    wear = request.inputs.si("wear_coefficient")
+    if wear is not None:
+        fields["wear"] = _wear(request, wear / request.contact.mu * energy)
     return fields
 
 

@@ -82,8 +82,8 @@ def reduce_friction(request: Request) -> tuple[Request, float]:
     """
     from scipy.optimize import brentq
 
-    share, tolerance = request.share, request.tolerance
-    reduction = request.arguments["reduction"]
+    share, tolerance = request.inputs.si("reduction"), request.tolerance
+    reduction = request.inputs.arguments["reduction"]
     assert share is not None and request.sought is not None  # the request has a reduction
     _check_share(request, share)
     line = _LINES[request.sought](request, share)
@@ -138,7 +138,7 @@ def _check_share(request: Request, share: float) -> None:
         allowed = f"allowed is at most {100.0 * (1.0 - tolerance):g} %, 100 % minus the tolerance"
         allowed += ": at a speed some friction remains"
     if allowed:
-        raise InputError("reduction", request.arguments["reduction"], allowed)
+        raise request.inputs.error("reduction", allowed)
 
 
 def _amplitudes(request: Request, _share: float) -> _Line:

@@ -23,7 +23,7 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError, shown
 from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
-from microslip.si.inputs import read_bodies, read_contact
+from microslip.si.inputs import contact_of, read_inputs
 from microslip.si.quantities import read
 from microslip.si.strokes import UNITS, scales
 from microslip.si.tables import LABELS, table_of
@@ -143,7 +143,7 @@ def predict_response(
     InputError
         If an argument or a column is invalid.  The message names it.
     """
-    real = contact_of(contact)
+    real = only_contact(contact)
     columns = read_path(path, UNITS, decimal=decimal, encoding=encoding)
     answer = response_to(
         path,
@@ -177,18 +177,13 @@ def predict_response(
     )
 
 
-def contact_of(contact: Mapping[str, object]) -> TwoBodies:
+def only_contact(contact: Mapping[str, object]) -> TwoBodies:
     """The contact described by a mapping with keys from ARGUMENTS.  Raises InputError."""
     strange = sorted(contact.keys() - set(ARGUMENTS))
     if strange:
         allowed = f"allowed are {', '.join(ARGUMENTS)}"
         raise InputError(strange[0], contact[strange[0]], allowed)
-    arguments: dict[str, Any] = {**dict.fromkeys(ARGUMENTS), **contact}
-    for name in ("mu", "load"):
-        if arguments[name] is None:
-            raise InputError(name, None, "needed")
-    real, _ = read_contact(read_bodies(arguments), arguments, load=arguments["load"])
-    return real
+    return contact_of(read_inputs({**dict.fromkeys(ARGUMENTS), **contact}))
 
 
 def response_to(

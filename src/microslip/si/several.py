@@ -48,17 +48,17 @@ class Carriers:
         return replace(contact, load=load, size=contact.size * grown)
 
 
-def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
-    """The Carriers, and a dict with the text of the argument `contacts`.  Raises InputError.
+def read_carriers(contacts: Any, **alone: object) -> Carriers:
+    """The Carriers for the argument `contacts`.  Raises InputError.
 
     alone: values of arguments that are allowed only for a single contact.
     """
     if contacts is None:
-        return Carriers(), {}
+        return Carriers()
     carriers = contacts_of(contacts)
     for name, value in alone.items():
         if value:
             raise InputError(name, value, "allowed only without contacts")
     text = contacts_text(carriers)
     most = (max(one.load for one in carriers), max(one.amplitude for one in carriers))
-    return Carriers(text, len(carriers), *most), {"contacts": " ".join(contacts.split())}
+    return Carriers(text, len(carriers), *most)
