@@ -16,12 +16,9 @@ import numpy as np
 from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.si.fitting.scales import Points
+from microslip.si.fitting.scales import LEAST, MOST, Points
 from microslip.si.friction_map import FrictionMap
 
-LEAST, MOST = 0.03, 20.0
-"""Smallest and largest amplitude of the coarse map.  At smaller amplitudes, nearly the whole
-contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
 SLOWEST, FASTEST = 1e-3, 20.0
 """Smallest and largest ratio of velocity to amplitude in the coarse map.  For a bore, smallest and
 largest velocity."""

@@ -17,6 +17,10 @@ from microslip.si.fitting.measured import Measured
 from microslip.si.materials import RIGID, Material
 from microslip.theory import hertz
 
+LEAST, MOST = 0.03, 20.0
+"""Smallest and largest dimensionless amplitude that a fit resolves.  At smaller amplitudes, nearly
+the whole contact sticks.  At larger amplitudes, nearly the whole contact slides all the time."""
+
 
 class Points(NamedTuple):
     """Dimensionless points for microslip.solve: velocity and amplitude, shape (n,) each."""
@@ -54,8 +58,9 @@ class Scale:
         """u_lim at the mean load, m."""
         raise NotImplementedError
 
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of the second unknown, for amplitudes between `least` and `most`."""
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest value of the second unknown in the fit."""
         raise NotImplementedError
 
     def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
@@ -75,15 +80,16 @@ class Displacement(Scale):
         """u_lim at the mean load, m."""
         return scale
 
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Range of u_lim for amplitudes between `least` and `most`.
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest u_lim.
 
-        At one end of the range, no amplitude exceeds `least`.  At the other end, all positive
-        amplitudes are at least `most`.
+        For the largest u_lim, no amplitude exceeds LEAST.  For the smallest one, all positive
+        amplitudes are at least MOST.
         """
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
-        return float(sizes.min()) / most, float(sizes.max()) / least
+        return float(sizes.min()) / MOST, float(sizes.max()) / LEAST
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +131,9 @@ class Modulus(Scale):
         size = arc / (contact.u_lim * share ** (2.0 / 3.0))
         return Points(velocity, np.asarray(hertz.bore_amplitude(size, self.poisson)))
 
-    def bounds(self, least: float, most: float) -> tuple[float, float]:
-        """Smallest and largest shear modulus of solids.  They do not depend on the amplitudes."""
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest shear modulus of solids."""
         return SOFTEST, HARDEST
 
     def u_lim(self, mu: float, scale: float) -> float:
