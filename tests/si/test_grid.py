@@ -97,15 +97,12 @@ def test_interpolation_errors_of_parabolas():
     assert errors == {"x": pytest.approx(1.0 * 2.0), "y": None, "z": pytest.approx(2.0 * 2.0)}
 
 
-@pytest.mark.parametrize("word", ["1", "0", "1e9", "1000000000", "-3", "lin"])
-def test_a_wrong_word_after_a_range_is_quoted_with_the_allowed_counts(word):
-    with pytest.raises(InputError, match=f"'{word}'.*from 2 to 100000"):
-        values_of("load", f"0..2 N, {word}")
-
-
-def test_three_dots_are_refused():
-    with pytest.raises(InputError, match="three dots"):
-        values_of("amplitude", "0...1 um, 3")
+@pytest.mark.parametrize(
+    "words", ["0..2 N, 1", "0..2 N, 1e9", "0..2 N, -3", "0..2 N, lin", "0..2 N, 3, 4", "0...1 N, 3"]
+)
+def test_a_wrong_range_is_refused_with_the_allowed_counts(words):
+    with pytest.raises(InputError, match="from 2 to 100000.*begins with a digit"):
+        values_of("load", words)
 
 
 @pytest.mark.parametrize("factor", ["0.5..1.5, 3", "50..150 %, 3"])
