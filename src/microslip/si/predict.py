@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from inspect import signature
 from typing import Any
 
@@ -222,7 +223,7 @@ def answer_request(request: Request) -> Prediction:
     parts |= _common(request, answer, threshold) | {"velocity": velocity}
     if request.motion.spins and not request.motion.amplitude:
         parts["velocity"] = None
-    most = request.at(contact=request.carriers.most_loaded(request.contact))
+    most = replace(request, contact=request.carriers.most_loaded(request.contact))
     parts["warnings"] = tuple(broken_assumptions(most))
     parts["not_checked"] = tuple(unchecked(most.contact))
     if answer.converged:

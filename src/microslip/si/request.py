@@ -72,8 +72,10 @@ class Request(MovingContact):
     understood: dict[str, str]
 
     def at(self, **changes: Any) -> Request:
-        """A copy with changed fields of the motion, or with another `contact`."""
-        contact = changes.pop("contact", self.contact)
+        """A copy with changed fields of the motion, or with another load, N."""
+        contact = self.contact
+        if "load" in changes:
+            contact = contact.with_load(changes.pop("load"))
         return replace(self, contact=contact, motion=replace(self.motion, **changes))
 
     def under(self, load: float) -> Request:

@@ -141,9 +141,8 @@ def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
     size = stretch * (0.75 * contact.load * long / contact.E_star) ** (1.0 / 3.0)
     across = int(radius_across > contact.radius)
     name = "hertz" if ratio == 1.0 else f"ellipse:ratio={ratio!r},across={across}"
-    radii = (*contact.radii, radius_across)
-    shared = (contact.first, contact.second, contact.radius, contact.load, contact.mu)
-    return ShapedContact(*shared, radii, pressure=name, size=size)
+    shape = {"radii": (*contact.radii, radius_across), "pressure": name, "size": size}
+    return ShapedContact(**vars(contact) | shape)
 
 
 def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
@@ -152,6 +151,5 @@ def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
     The field `radius` is the radius of a sphere with the same contact radius under the same load.
     """
     radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
-    shared = (contact.first, contact.second, radius, contact.load, contact.mu)
-    name = pressure_named(pressure).name
-    return ShapedContact(*shared, pressure=name, size=size)
+    shape = {"radius": radius, "radii": (), "pressure": pressure_named(pressure).name}
+    return ShapedContact(**vars(contact) | shape, size=size)
