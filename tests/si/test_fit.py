@@ -14,7 +14,7 @@ from microslip.si.dimensionless import MovingContact, RealMotion
 from microslip.si.fitting import fit as fitting
 from microslip.si.fitting.friction_models import SolvedFriction
 from microslip.si.fitting.measured import Measured
-from microslip.si.fitting.scales import Displacement, Modulus, Points
+from microslip.si.fitting.scales import Modulus, Points
 from microslip.si.materials import RIGID, Material
 from microslip.si.motions import MOTIONS
 from microslip.theory import paper
@@ -115,16 +115,6 @@ def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
         real = RealMotion(motion, MOTIONS[motion].unit, speed[k], size[k], frequency[k])
         expected = MovingContact(contact, real).groups
         assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
-
-
-def test_under_the_mean_load_u_lim_is_itself_and_goes_like_hertz():
-    load = np.array([2.0, 10.0, 18.0])
-    rows = Measured(load, np.ones(3), np.ones(3), load, load, load, "friction", {})
-    points = Displacement(rows, 0.0).points(0.3, 0.5)
-    assert points.amplitude[1] == pytest.approx(2.0, rel=1e-12)
-    assert points.amplitude[2] / points.amplitude[0] == pytest.approx(9.0 ** (-2 / 3), rel=1e-12)
-    contact = [TwoBodies(Material(1e9, 0.3), RIGID, 1.0, one, 0.3).u_lim for one in load]
-    assert points.amplitude[0] / points.amplitude[1] == pytest.approx(contact[1] / contact[0])
 
 
 # Data without and with noise

@@ -50,20 +50,6 @@ def test_the_groups_of_a_drive_by_hand():
     assert RealDrive().groups(moving) == {}
 
 
-@pytest.mark.parametrize(
-    "motion",
-    [
-        RealMotion("transverse", "m", 1e-3, 1e-6, 20e3),
-        RealMotion("bore", "rad", 1e-3, 0.01, 50.0),
-        RealMotion("continuous-bore", None, 1e-3, rotation=3.0),
-    ],
-    ids=lambda motion: motion.name,
-)
-def test_the_unit_of_a_speed_undoes_its_group(motion):
-    moving = MovingContact(CONTACT, motion)
-    assert moving.groups[0] * moving.speed_unit == pytest.approx(1e-3)
-
-
 LENGTH, TIME, MASS = 7.0, 0.3, 11.0
 """Ratios of the units of two equivalent problems."""
 DIMENSIONS = {
