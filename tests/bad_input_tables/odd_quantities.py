@@ -65,7 +65,7 @@ LENGTHS = [
     ("5 mm mm", "read 'mm' and stopped at 'mm'"),
     ("5 mm*rad", "the unit is millimeter*radian"),
     ("5 mm^0", "stopped at '^0'"),
-    ("5 mm*", "at the end of 'mm*'"),
+    ("5 mm*", "read 'mm' and stopped at '*'"),
     ("5 N", "units of m"),
     ("5 mil", "thou"),
     ("5 c*s", "'c' is none of the units"),
@@ -138,7 +138,7 @@ OTHERS = [
     ("10 N/um", "N/m", 1e7),
     ("20 g", "kg", 0.02),
     ("5 N*s/m", "N*s/m", 5.0),
-    ("5 N/(m/s)", "N*s/m", "stopped at '(m/s)'"),
+    ("5 N/(m/s)", "N*s/m", "stopped at '/(m/s)'"),
 ]
 OTHERS += [
     ("5 \N{MICRO SIGN}", "m", 5e-6),  # an old symbol of the micron
