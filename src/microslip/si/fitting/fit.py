@@ -13,7 +13,7 @@ from microslip.si.fitting.conclusions import concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel, MapFriction, SolvedFriction
 from microslip.si.fitting.measured import Measured, named, read_measured
-from microslip.si.fitting.scales import Displacement, Modulus, Scale
+from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.motions import SINGLE
 from microslip.si.quantities import read
 
@@ -145,7 +145,7 @@ def _scale(
             raise InputError("radius", None, "bore needs it: its amplitude is an angle")
         if counterbody is not None:
             raise InputError("counterbody", counterbody, "allowed with a radius")
-        return Displacement(rows, 0.0 if ratio is None else ratio.si), texts
+        return Scale(rows, 0.0 if ratio is None else ratio.si), texts
     if ratio is None:
         raise InputError("nu", None, "needed with a radius")
     if counterbody not in (None, "rigid", "same"):

@@ -33,30 +33,7 @@ MOST_SOLVED = 200
 """Largest number of rows for a fit without a map."""
 
 
-class FrictionModel:
-    """A model of mu_macro and its error estimate in each row, both of shape (n,)."""
-
-    def at(self, points: Points) -> np.ndarray:
-        """mu_macro of all rows for each guess.
-
-        Errors far from the best guess affect the iterations but not the result.
-        """
-        raise NotImplementedError
-
-    def rough(self, points: Points) -> np.ndarray:
-        """mu_macro at any points, without the corrections."""
-        return self.at(points)
-
-    def anchor(self, points: Points) -> None:
-        """Compute corrections at the points of the best guess so far."""
-
-    def errors(self, points: Points) -> np.ndarray:
-        """Error estimates of the friction that `at` returns, near the points of the last
-        correction."""
-        raise NotImplementedError
-
-
-class MapFriction(FrictionModel):
+class MapFriction:
     """Friction interpolated in the dataset of a sweep; see datasets.query.
 
     Parameters
@@ -79,12 +56,19 @@ class MapFriction(FrictionModel):
         self._proved = motion in PROVED and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, shape (n,)."""
         if not self._proved:  # guesses may lie outside the map
             parts = zip(points, self._ends, strict=True)
             points = Points(*(np.clip(part, *ends) for part, ends in parts))
         return self._answer(points)[0]
 
+    rough = at
+
+    def anchor(self, points: Points) -> None:
+        """Do nothing: a map needs no corrections."""
+
     def errors(self, points: Points) -> np.ndarray:
+        """Error estimates of the friction at the points, shape (n,)."""
         try:
             return self._answer(points)[1]
         except ValueError as error:
@@ -98,7 +82,7 @@ class MapFriction(FrictionModel):
         return self._map.at(velocity, amplitude, self._poisson)
 
 
-class SolvedFriction(FrictionModel):
+class SolvedFriction:
     """Friction from the solver and a coarse map.  The axes of the map are the logarithms of
     amplitude and ratio.
 
@@ -139,18 +123,25 @@ class SolvedFriction(FrictionModel):
         self._errors = np.full(count, np.inf)
 
     def at(self, points: Points) -> np.ndarray:
+        """mu_macro of all rows for each guess, with the corrections of the last `anchor`.
+
+        Errors far from the best guess affect the iterations but not the result.
+        """
         off = np.resize(self._off, len(points.amplitude))  # for each row of every guess
         return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
 
     def anchor(self, points: Points) -> None:
+        """Compute the corrections at the points of the best guess so far."""
         answers = [self._solved(v, a) for v, a in zip(*points, strict=True)]
         values, self._errors = np.array(answers).T
         self._off = values - self._coarse(points)
 
     def errors(self, points: Points) -> np.ndarray:
+        """Error estimates of the friction at the points of the last correction, shape (n,)."""
         return self._errors
 
     def rough(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, without the corrections."""
         return np.where(points.amplitude > 0.0, self._coarse(points), 1.0)
 
     def _coordinates(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -206,3 +197,7 @@ def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
     return np.linspace(low, high, count)
+
+
+FrictionModel = MapFriction | SolvedFriction
+"""A model of mu_macro and its error estimate in each row."""

@@ -31,7 +31,7 @@ class Points(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """The second unknown of a fit.
+    """The second unknown of a fit: u_lim at the mean load, m, for motions along a line.
 
     Attributes
     ----------
@@ -46,8 +46,8 @@ class Scale:
 
     rows: Measured
     poisson: float
-    unit: ClassVar[str]
-    name: ClassVar[str]
+    unit: ClassVar[str] = "m"
+    name: ClassVar[str] = "u_lim"
 
     @property
     def mean_load(self) -> float:
@@ -56,33 +56,11 @@ class Scale:
 
     def u_lim(self, mu: float, scale: float) -> float:
         """u_lim at the mean load, m."""
-        raise NotImplementedError
-
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Smallest and largest value of the second unknown in the fit."""
-        raise NotImplementedError
-
-    def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
-        """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
-        rows = self.rows if rows is None else rows
-        u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
-        return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
-
-
-@dataclass(frozen=True, eq=False)
-class Displacement(Scale):
-    """Fit of u_lim at the mean load, m, for motions along a line."""
-
-    unit, name = "m", "u_lim"
-
-    def u_lim(self, mu: float, scale: float) -> float:
-        """u_lim at the mean load, m."""
         return scale
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Smallest and largest u_lim.
+        """Smallest and largest value of the second unknown.
 
         For the largest u_lim, no amplitude exceeds LEAST.  For the smallest one, all positive
         amplitudes are at least MOST.
@@ -90,6 +68,12 @@ class Displacement(Scale):
         sizes = self.points(1.0, 1.0).amplitude
         sizes = sizes[sizes > 0.0]
         return float(sizes.min()) / MOST, float(sizes.max()) / LEAST
+
+    def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
+        """Velocity and amplitude of each row.  By default, the rows are those of the fit."""
+        rows = self.rows if rows is None else rows
+        u_lim = self.u_lim(mu, scale) * (rows.load / self.mean_load) ** (2.0 / 3.0)
+        return Points(rows.speed / (rows.omega * u_lim), rows.amplitude / u_lim)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +95,8 @@ class Modulus(Scale):
     spin: bool
     alike: bool
     radius: float
-    unit, name = "Pa", "shear modulus"
+    unit = "Pa"
+    name = "shear modulus"
 
     def contact(self, mu: float, scale: float) -> TwoBodies:
         """The contact at the mean load."""
