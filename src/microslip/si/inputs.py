@@ -94,7 +94,14 @@ DRIVE_FIELDS = {
 }
 """Fields of RealDrive, keyed by the corresponding argument of `predict`.  The speed is not
 included."""
-OF_BODIES = ("young", "nu", "density", "counter_density", "wear_coefficient")
+OF_CONTACT = (
+    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
+    *("young", "nu", "material", "counterbody", "hardness", "density"),
+    *("counter_hardness", "counter_density"),
+)
+"""Arguments of `predict` that describe a contact."""
+HARDNESSES = ("hardness", "counter_hardness")
+OF_BODIES = ("young", "nu", "density", "counter_density", *HARDNESSES, "wear_coefficient")
 """Quantities that are not listed in Inputs.texts, because the texts of the bodies contain them."""
 
 
@@ -148,30 +155,29 @@ class Inputs:
 def read_inputs(arguments: Mapping[str, Any], motion: str | None = None) -> Inputs:
     """Read the quantities and the bodies.  Raises InputError.
 
-    arguments: may lack arguments that do not describe a contact.
+    motion: motion of the request, for its amplitude.
     """
-    values = ((name, arguments.get(name)) for name in QUANTITIES)
-    quantities = {n: read_argument(n, value, motion) for n, value in values if value is not None}
-    body = _with_properties(_body(arguments, quantities), "", arguments, quantities)
-    other = _counterbody(arguments["counterbody"])
-    other = _with_properties(other, "counter_", arguments, quantities)
-    return Inputs(arguments, quantities, (body, other))
+    arguments = {**dict.fromkeys(OF_CONTACT), **arguments}
+    values = {name: value for name, value in arguments.items() if value is not None}
+    quantities = {n: read_argument(n, values[n], motion) for n in QUANTITIES if n in values}
+    quantities |= {n: read_hardness(n, values[n]) for n in HARDNESSES if n in values}
+    body, other = _body(arguments, quantities), _counterbody(arguments["counterbody"])
+    bodies = _with_properties(body, "", quantities), _with_properties(other, "counter_", quantities)
+    return Inputs(arguments, quantities, bodies)
 
 
-def _with_properties(
-    body: Body, side: str, arguments: Mapping[str, Any], quantities: Mapping[str, Quantity]
-) -> Body:
+def _with_properties(body: Body, side: str, quantities: Mapping[str, Quantity]) -> Body:
     """The body with its hardness and density.  side: "counter_" for the counterbody, else
     empty."""
     for name in ("hardness", "density"):
-        argument, value = f"{side}{name}", arguments[f"{side}{name}"]
-        if value is None:
+        argument = f"{side}{name}"
+        if argument not in quantities:
             continue
+        number, text = quantities[argument].si, quantities[argument].text
         if body.material.rigid:
-            raise InputError(argument, value, "allowed for an elastic body, not a rigid one")
-        one = read_hardness(argument, value) if name == "hardness" else quantities[argument]
-        number: dict[str, Any] = {name: one.si}
-        body = Body(replace(body.material, **number), f"{body.text}, {name} {one.text}")
+            raise InputError(argument, text, "allowed for an elastic body, not a rigid one")
+        changes: dict[str, Any] = {name: number}
+        body = Body(replace(body.material, **changes), f"{body.text}, {name} {text}")
     return body
 
 

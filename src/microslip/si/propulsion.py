@@ -157,7 +157,7 @@ def predict_propulsion(
     for name in ("amplitude", "frequency"):
         if arguments[name] is None:
             raise InputError(name, None, "needed")
-    inputs = read_inputs(arguments | dict.fromkeys(("radius_across", "contact_radius", "pressure")))
+    inputs = read_inputs(arguments)
     size, rate = (inputs.quantities[name].si for name in ("amplitude", "frequency"))
     accepted = read("tolerance", tolerance, "", low_open=False)
     contact = contact_of(inputs)

@@ -23,17 +23,10 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError, shown
 from microslip.si.bodies import TwoBodies
 from microslip.si.fitting.measured import named
-from microslip.si.inputs import contact_of, read_inputs
+from microslip.si.inputs import OF_CONTACT, contact_of, read_inputs
 from microslip.si.quantities import read
 from microslip.si.strokes import UNITS, scales
 from microslip.si.tables import LABELS, table_of
-
-ARGUMENTS = (
-    *("mu", "load", "radius", "counter_radius", "radius_across", "contact_radius", "pressure"),
-    *("young", "nu", "material", "counterbody", "hardness", "density"),
-    *("counter_hardness", "counter_density"),
-)
-"""Arguments of `predict` that describe a contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,12 +171,12 @@ def predict_response(
 
 
 def only_contact(contact: Mapping[str, object]) -> TwoBodies:
-    """The contact described by a mapping with keys from ARGUMENTS.  Raises InputError."""
-    strange = sorted(contact.keys() - set(ARGUMENTS))
+    """The contact described by a mapping with keys from OF_CONTACT.  Raises InputError."""
+    strange = sorted(contact.keys() - set(OF_CONTACT))
     if strange:
-        allowed = f"allowed are {', '.join(ARGUMENTS)}"
+        allowed = f"allowed are {', '.join(OF_CONTACT)}"
         raise InputError(strange[0], contact[strange[0]], allowed)
-    return contact_of(read_inputs({**dict.fromkeys(ARGUMENTS), **contact}))
+    return contact_of(read_inputs(contact))
 
 
 def response_to(
