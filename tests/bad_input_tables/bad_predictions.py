@@ -159,7 +159,7 @@ PROPULSIONS = [
     (PROPELLED | {"amplitude": "1 deg"}, "--amplitude = '1 deg': the unit is degree"),
     (PROPELLED | {"amplitude": "1 m"}, "times u_lim; allowed is at most"),
     (PROPELLED | {"points": "1"}, "allowed is a whole number"),
-    (PROPELLED | {"load": "40 N +- 1 N"}, "allowed is a quantity without uncertainty"),
+    (PROPELLED | {"load": "40 N +- 1 N"}, "read 'N' and stopped at '+- 1 N'"),
     (
         PROPELLED | {"motion": "normal:forward=1,angle=1,phase=90"},
         "allowed is a motion without a rotation",

@@ -22,7 +22,6 @@ from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.quantities import read
 from microslip.si.table import MOST_CASES, as_dataset, predictions
 from microslip.si.tables import Table
-from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.units import UnitError, split_number
 
 if TYPE_CHECKING:
@@ -154,8 +153,6 @@ def grid_of(motion: str, arguments: Mapping[str, Any]) -> Grid:
         if isinstance(values, str) or np.ndim(values) != 1:
             continue
         unit = unit_of(name, motion)
-        for value in values:
-            refuse_uncertainty({name: value}, "a range")
         si = [read(name, value, unit, low=-math.inf).si for value in values]
         axes[_coordinate(name, unit)] = Axis(name, list(values), si, unit)
         del shared[name]

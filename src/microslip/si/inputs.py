@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 from microslip.foundation.errors import InputError
@@ -100,9 +102,34 @@ OF_CONTACT = (
     *("counter_hardness", "counter_density"),
 )
 """Arguments of `predict` that describe a contact."""
+SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
+"""Pattern of a quantity with its standard uncertainty."""
+EXACT = ("phase", "density", "counter_density", "reduction")
+"""Quantities that are always exact."""
 HARDNESSES = ("hardness", "counter_hardness")
 OF_BODIES = ("young", "nu", "density", "counter_density", *HARDNESSES, "wear_coefficient")
 """Quantities that are not listed in Inputs.texts, because the texts of the bodies contain them."""
+
+
+def read_uncertain(name: str, value: object, motion: str) -> Quantity:
+    """Read an argument such as "10 N", or one with a standard uncertainty such as "10 N +- 5 %".
+    Raises InputError."""
+    match = SPREAD.fullmatch(value) if isinstance(value, str) and name not in EXACT else None
+    if match is None:
+        return read_argument(name, value, motion)
+    text, spread = match.groups()
+    try:
+        centre = read_argument(name, text, motion).si
+        if spread.endswith("%") and not text.endswith("%"):
+            deviation = abs(centre) * read(name, spread, "", low_open=False).si
+        else:
+            deviation = read(name, spread, unit_of(name, motion), low_open=False).si
+    except InputError as error:
+        allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
+        raise InputError(name, value, allowed) from None
+    if not deviation < abs(centre):
+        raise InputError(name, value, "allowed is an uncertainty below the value")
+    return Quantity(centre, " ".join(match[0].split()), deviation)
 
 
 class Body(NamedTuple):
@@ -155,11 +182,13 @@ class Inputs:
 def read_inputs(arguments: Mapping[str, Any], motion: str | None = None) -> Inputs:
     """Read the quantities and the bodies.  Raises InputError.
 
-    motion: motion of the request, for its amplitude.
+    motion: motion of a request, whose quantities can be uncertain; None for a contact without a
+    motion, whose quantities are exact.
     """
     arguments = {**dict.fromkeys(OF_CONTACT), **arguments}
     values = {name: value for name, value in arguments.items() if value is not None}
-    quantities = {n: read_argument(n, values[n], motion) for n in QUANTITIES if n in values}
+    reader = read_argument if motion is None else partial(read_uncertain, motion=motion)
+    quantities = {n: reader(n, values[n]) for n in QUANTITIES if n in values}
     quantities |= {n: read_hardness(n, values[n]) for n in HARDNESSES if n in values}
     body, other = _body(arguments, quantities), _counterbody(arguments["counterbody"])
     bodies = _with_properties(body, "", quantities), _with_properties(other, "counter_", quantities)

@@ -55,14 +55,13 @@ class UncertainInput:
 
     Attributes
     ----------
-    name, text : str
-        Name of the argument, and its text as the user wrote it.
+    name : str
+        Name of the argument.
     low, high : float
         The value minus and plus one standard deviation, in SI units.
     """
 
     name: str
-    text: str
     low: float
     high: float
 

@@ -32,7 +32,7 @@ from microslip.si.reduction import reduce_friction
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.request import Request, request_of
 from microslip.si.static_limit import force_threshold, static_limit
-from microslip.si.uncertain import with_uncertainty, without_uncertainty
+from microslip.si.uncertain import with_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 MILLIMETRE = 1e-3
@@ -192,11 +192,10 @@ NOTHING: dict[str, Any] = {name: None for name in signature(predict).parameters 
 def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Prediction:
     """The Prediction for a mapping of `predict`'s arguments.  It includes the uncertainty if any
     input is uncertain."""
-    plain, uncertain = without_uncertainty(motion, {**NOTHING, **arguments})
-    prediction = answer_request(request_of(motion, plain))
-    if not uncertain:
-        return prediction
-    return with_uncertainty(prediction, motion, plain, uncertain, answer_request)
+    arguments = {**NOTHING, **arguments}
+    request = request_of(motion, arguments)
+    prediction, quantities = answer_request(request), request.inputs.quantities
+    return with_uncertainty(prediction, motion, arguments, quantities, answer_request)
 
 
 def answer_request(request: Request) -> Prediction:

@@ -17,7 +17,6 @@ from microslip.si.inputs import contact_of, read_inputs
 from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.propulsion_text import propulsion_text
 from microslip.si.quantities import read
-from microslip.si.uncertain import refuse_uncertainty
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE = 1e-2
@@ -153,7 +152,6 @@ def predict_propulsion(
         If an argument is missing, out of range or not allowed.
     """
     arguments = dict(locals())
-    refuse_uncertainty(arguments, "propulsion")
     for name in ("amplitude", "frequency"):
         if arguments[name] is None:
             raise InputError(name, None, "needed")

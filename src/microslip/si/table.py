@@ -15,7 +15,6 @@ from microslip.si.prediction import COLUMNS, NoPrediction, Prediction, column_un
 from microslip.si.reduction import NotAttainedError
 from microslip.si.request import Request, request_of
 from microslip.si.tables import ALLOWED, LABELS, Table, table_of
-from microslip.si.uncertain import without_uncertainty
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,8 +120,7 @@ def _request(motion: str, arguments: Mapping[str, object]) -> Request:
     for name, value in arguments.items():
         if name not in NOTHING:
             raise InputError(name, value, f"allowed are {', '.join(['motion', *NOTHING])}")
-    plain, _ = without_uncertainty(motion, arguments)
-    return request_of(motion, NOTHING | plain)
+    return request_of(motion, NOTHING | dict(arguments))
 
 
 def _count(columns: Mapping[str, Any], shared: Mapping[str, object]) -> int:
