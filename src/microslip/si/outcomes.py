@@ -117,14 +117,17 @@ class _Draws(NamedTuple):
     one_shape: bool
 
 
-def uncertainty_of_outcomes(
-    prediction: Prediction, inputs: list[UncertainInput], request_at: RequestAt, ends: Ends
+def outcome_columns(
+    prediction: Prediction,
+    request: Request,
+    inputs: list[UncertainInput],
+    request_at: RequestAt,
+    ends: Ends,
 ) -> dict[str, Any]:
     """Columns for the uncertainty of the static limit and for the probabilities of the outcomes.
 
-    prediction: the Prediction for the central values.
+    prediction, request: the Prediction and the Request for the central values.
     """
-    request = request_at({})
     if request.sought is not None:
         return _normal_intervals(prediction, ends.values())
     share = equals_static_limit(request)

@@ -194,8 +194,11 @@ def predict_arguments(motion: str, arguments: Mapping[str, object]) -> Predictio
     input is uncertain."""
     arguments = {**NOTHING, **arguments}
     request = request_of(motion, arguments)
-    prediction, quantities = answer_request(request), request.inputs.quantities
-    return with_uncertainty(prediction, motion, arguments, quantities, answer_request)
+
+    def request_at(changes: Mapping[str, float]) -> Request:
+        return request_of(motion, {**arguments, **changes})
+
+    return with_uncertainty(answer_request(request), request, request_at, answer_request)
 
 
 def answer_request(request: Request) -> Prediction:
