@@ -112,7 +112,7 @@ def prediction_text(record: Any) -> str:
     lines += _spread(record, show)
     lines += show("torque", "{torque_N_m}")
     lines += show("power", "{vibration_power_W} for the {added}")
-    lines += show("", "{drag_power_W} for the drag", record.power is not None)
+    lines += show("", "{drag_power_W} for the drag", record.dissipated_power_W is not None)
     lines += show("energy", "{energy_per_cycle_J} of heat a cycle")
     lines += show("wear", "{wear_depth_per_cycle_m} a cycle, mean depth over the contact")
     lines += not_converged(record)
@@ -210,7 +210,7 @@ def _spread(record: Any, show: Show) -> list[str]:
     text = "standard uncertainties from the uncertain inputs"
     if record.sought is not None:
         parts.insert(0, "{sought_spread_text} of the {sought}")
-    if record.power is not None:
+    if record.dissipated_power_W is not None:
         text += "; not computed for torque, power and energy"
     return show("spread", f"{', '.join(parts)}: {text}")
 
