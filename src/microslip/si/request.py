@@ -223,7 +223,9 @@ def request_of(motion: str, arguments: Mapping[str, Any]) -> Request:
         tolerance = TOLERANCE if arguments["force"] is None else TOLERANCE_OF_SPEED
     limits: dict[str, Any] = {"low": SMALLEST_TOLERANCE, "high": LARGEST_TOLERANCE}
     accepted = read("tolerance", tolerance, "", low_open=False, **limits).si
-    carriers = read_carriers(arguments["contacts"], reduction=arguments["reduction"])
+    carriers = read_carriers(arguments["contacts"])
+    if sought is not None and carriers.text is not None:
+        raise inputs.error("reduction", "allowed only without contacts")
     contact = contact_of(inputs, ANY_LOAD if sought == "load" else None, carriers.count)
     real, drive = motion_of(motion, inputs), drive_of(motion, inputs)
     if sought is not None and drive != RealDrive():

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
@@ -48,17 +47,11 @@ class Carriers:
         return replace(contact, load=load, size=contact.size * grown)
 
 
-def read_carriers(contacts: Any, **alone: object) -> Carriers:
-    """The Carriers for the argument `contacts`.  Raises InputError.
-
-    alone: values of arguments that are allowed only for a single contact.
-    """
+def read_carriers(contacts: Any) -> Carriers:
+    """The Carriers for the argument `contacts`.  Raises InputError."""
     if contacts is None:
         return Carriers()
     carriers = contacts_of(contacts)
-    for name, value in alone.items():
-        if value:
-            raise InputError(name, value, "allowed only without contacts")
     text = contacts_text(carriers)
     most = (max(one.load for one in carriers), max(one.amplitude for one in carriers))
     return Carriers(text, len(carriers), *most)

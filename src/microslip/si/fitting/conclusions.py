@@ -62,7 +62,8 @@ def concluded(
     if not high < WIDEST_MU * low:
         fit = f"mu from {low:.3g} to {high:.3g} fits as well with another u_lim"
         hint = "add rows without vibration, or rows where vibration reduces friction more"
-        raise InputError("measured", None, f"the rows determine neither number: {fit}; {hint}")
+        message = f"the rows determine neither number: {fit}; {hint}"
+        raise InputError("measured", rows.name, message)
     fitted = mu * rows.weight * model.at(points)
     free = len(fitted) - 2
     noise = problem.error if rows.has_errors else problem.error * math.sqrt(best.squares / free)

@@ -12,7 +12,7 @@ from microslip.si.fitting import estimate
 from microslip.si.fitting.conclusions import concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel, MapFriction, SolvedFriction
-from microslip.si.fitting.measured import Measured, named, read_measured
+from microslip.si.fitting.measured import Measured, read_measured
 from microslip.si.fitting.scales import Modulus, Scale
 from microslip.si.motions import SINGLE
 from microslip.si.quantities import read
@@ -96,7 +96,7 @@ def fit(
         raise InputError("motion", motion, f"allowed is one of {', '.join(SINGLE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
     rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
-    _refuse_too_few(rows, measured)
+    _refuse_too_few(rows)
     scale, texts = _scale(motion, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
     if accepted >= 1.0:
@@ -112,24 +112,18 @@ def fit(
         model = SolvedFriction(motion, scale.poisson, allowed_error, extremes)
     problem = estimate.LeastSquares(scale, model)
     texts |= rows.texts
-    try:
-        return concluded(problem, _fits(problem), motion=motion, confidence=accepted, texts=texts)
-    except InputError as error:
-        if error.argument != "measured":
-            raise
-        raise error.renamed("measured", named(measured)) from None
+    return concluded(problem, _fits(problem), motion=motion, confidence=accepted, texts=texts)
 
 
-def _refuse_too_few(rows: Measured, table: object) -> None:
-    least = 2 if rows.has_errors else 3
-    name, count = named(table), len(rows.value)
+def _refuse_too_few(rows: Measured) -> None:
+    least, count = 2 if rows.has_errors else 3, len(rows.value)
     if count < least:
         more = "" if rows.has_errors else ", or two with errors of their own"
         allowed = f"{count} row{'s' if count > 1 else ''}; two numbers take at least {least}{more}"
-        raise InputError("measured", name, allowed)
+        raise InputError("measured", rows.name, allowed)
     if rows.distinct < 2:
         allowed = "all rows are of one condition; allowed: two or more conditions"
-        raise InputError("measured", name, allowed)
+        raise InputError("measured", rows.name, allowed)
 
 
 def _scale(
