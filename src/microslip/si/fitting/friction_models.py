@@ -9,6 +9,7 @@ end, the remaining error of the coarse map is of second order.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -110,15 +111,12 @@ class SolvedFriction:
         if count > MOST_SOLVED:
             allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
             raise InputError("measured", count, allowed)
-        self._motion, self._settings = motion, {"poisson": poisson, "tolerance": tolerance}
-        self._known: dict[tuple[float, float], tuple[float, float]] = {}
-        coordinates = [self._coordinates(points) for points in ends]
-        axes = [np.concatenate([each[k] for each in coordinates]) for k in (0, 1)]
-        self._axes = [
-            _axis(values, NODES_A_DECADE[name])
-            for values, name in zip(axes, ("amplitude", "ratio"), strict=True)
-        ]
-        self._map: Callable | None = None
+        self._motion = motion
+        # each point is solved once
+        self._solved = cache(partial(_solution, motion, poisson=poisson, tolerance=tolerance))
+        axes = np.concatenate([self._coordinates(points) for points in ends], axis=1)
+        nodes = NODES_A_DECADE["amplitude"], NODES_A_DECADE["ratio"]
+        self._axes = [_axis(*pair) for pair in zip(axes, nodes, strict=True)]
         self._off: np.ndarray | float = 0.0
         self._errors = np.full(count, np.inf)
 
@@ -154,31 +152,24 @@ class SolvedFriction:
         return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
 
     def _coarse(self, points: Points) -> np.ndarray:
-        if self._map is None:
-            self._map = self._coarse_map()
         return self._map(*self._coordinates(points), grid=False)
 
-    def _coarse_map(self) -> Callable:
+    @cached_property
+    def _map(self) -> Callable:
+        """The coarse map."""
         from scipy.interpolate import RectBivariateSpline
 
         sizes, ratios = (np.exp(axis) for axis in self._axes)
         over = np.ones_like(sizes) if self._motion == "bore" else sizes
         values = [
-            [_solution(self._motion, ratio * unit, size, COARSE)[0] for ratio in ratios]
+            [_solution(self._motion, ratio * unit, size, **COARSE)[0] for ratio in ratios]
             for size, unit in zip(sizes, over, strict=True)
         ]
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 
-    def _solved(self, velocity: float, amplitude: float) -> tuple[float, float]:
-        """mu_macro and its error estimate from the solver.  Each point is solved once."""
-        point = float(velocity), float(amplitude)
-        if point not in self._known:
-            self._known[point] = _solution(self._motion, *point, self._settings)
-        return self._known[point]
-
 
 def _solution(
-    motion: str, velocity: float, amplitude: float, settings: dict[str, Any]
+    motion: str, velocity: float, amplitude: float, **settings: Any
 ) -> tuple[float, float]:
     """mu_macro and its error estimate from the solver."""
     if amplitude == 0.0:
