@@ -81,9 +81,10 @@ def read_argument(
 
     motion: motion of the request, for its amplitude; title: name of the argument in messages.
     """
-    unit, *limits = QUANTITIES[name]
-    ranges: dict[str, Any] = dict(zip(Range._fields[1:], limits, strict=True))
-    return read(title or name, value, unit if motion is None else unit_of(name, motion), **ranges)
+    allowed = QUANTITIES[name]
+    if motion is not None:
+        allowed = allowed._replace(unit=unit_of(name, motion))
+    return read(title or name, value, **allowed._asdict())
 
 
 MOTION_ARGUMENTS = ("rotation", *PARTS, "phase", "frequency")

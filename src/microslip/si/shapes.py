@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.number_text import number_text
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
 from microslip.pressures.pressure import Pressure
 from microslip.si.bodies import TwoBodies
-from microslip.si.printed_lines import prefixed
+from microslip.si.printed_lines import prefixed_text
 
 ROUND = 1e-6
 """Largest relative difference between two radii that count as equal."""
@@ -85,14 +84,9 @@ class ShapedContact(TwoBodies):
         for what, value, name, unit in inputs:
             sizes = [getattr(one, name, None) or value for one in readings]
             if not (1.0 - AGREES) * min(sizes) <= value <= (1.0 + AGREES) * max(sizes):
-                text = {"value": _printed(value, unit), "measured": _printed(sizes[0], unit)}
-                texts.append(DISAGREES.format(what=what, **text))
+                pair = [prefixed_text(one, unit) for one in (value, sizes[0])]
+                texts.append(DISAGREES.format(what=what, value=pair[0], measured=pair[1]))
         return texts
-
-
-def _printed(value: float, unit: str) -> str:
-    name, size = prefixed(value, unit)
-    return number_text(value / size, unit=name)
 
 
 def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:

@@ -11,10 +11,9 @@ import re
 import sys
 from typing import NamedTuple
 
-from microslip.foundation.number_text import number_text
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import MovingContact
-from microslip.si.printed_lines import prefixed
+from microslip.si.printed_lines import prefixed_text
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure divided by hardness at the onset of plastic flow below the surface.  At
@@ -198,8 +197,7 @@ def _text(template: str, values: dict[str, float | None]) -> str:
         value, digits, unit = float(values[match[1]] or 0.0), int(match[2]), match[3]
         if unit is None:
             return f"{value:.{digits}g}"
-        name, size = prefixed(value, unit)
-        return number_text(value / size, unit=name, digits=digits)
+        return prefixed_text(value, unit, digits)
 
     return MEASURE.sub(number, template)
 

@@ -14,6 +14,7 @@ from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel, MapFriction, SolvedFriction
 from microslip.si.fitting.measured import Measured, read_measured
 from microslip.si.fitting.scales import Modulus, Scale
+from microslip.si.inputs import read_argument
 from microslip.si.motions import SINGLE
 from microslip.si.quantities import read
 
@@ -131,7 +132,7 @@ def _scale(
 ) -> tuple[Scale, dict[str, str]]:
     """The second unknown, and its inputs as text."""
     texts = {"motion": motion}
-    ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
+    ratio = None if nu is None else read_argument("nu", nu)
     if ratio is not None:
         texts["nu"] = ratio.text
     if radius is None:
@@ -145,7 +146,7 @@ def _scale(
     if counterbody not in (None, "rigid", "same"):
         raise InputError("counterbody", counterbody, "allowed is rigid or same")
     texts["counterbody"] = "rigid (default)" if counterbody is None else counterbody
-    size = read("radius", radius, "m")
+    size = read_argument("radius", radius)
     texts["radius"] = size.text
     return Modulus(rows, ratio.si, motion == "bore", counterbody == "same", size.si), texts
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.inputs import QUANTITIES, Range, unit_of
+from microslip.si.inputs import QUANTITIES, Range, read_argument, unit_of
 from microslip.si.quantities import read
 from microslip.si.tables import LABELS, Table, table_of
 
@@ -120,8 +120,7 @@ def read_measured(
         if name in columns:
             conditions[name] = columns[name]
         else:
-            low_open = name in ("amplitude", "frequency", "load")
-            one = read(name, shared[name], units[name], low_open=low_open)
+            one = read_argument(name, shared[name], motion)
             conditions[name], texts[name] = np.full(count, one.si), one.text
     if not (conditions["amplitude"] > 0.0).any():
         allowed = "no row with an amplitude above 0, so that nothing vibrates"
@@ -185,8 +184,7 @@ def _number(name: str, value: object, units: Mapping[str, str]) -> float:
     if value is None:
         allowed = "empty; allowed: a number in every row; leave out the row, or fill the cell"
         raise InputError(name, None, allowed)
-    column = COLUMNS[name]
-    return read(name, value, units[name], low=column.low, low_open=column.low_open).si
+    return read(name, value, **COLUMNS[name]._replace(unit=units[name])._asdict()).si
 
 
 def _quantity(table: Mapping[str, np.ndarray], title: str | list) -> str:
