@@ -247,15 +247,6 @@ def test_poissons_ratio_goes_by_two_names_and_is_what_was_written(name, settings
     assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
 
 
-def test_an_error_without_an_option_is_one_line(monkeypatch, capsys):
-    def failing(**_):
-        raise ValueError("pressure: the file\nis odd")
-
-    monkeypatch.setattr(microslip, "solve", failing, raising=False)
-    assert cli.main([*TRANSVERSE]) == 2
-    assert capsys.readouterr().err == "microslip point transverse: pressure: the file is odd\n"
-
-
 def test_public_names_are_listed_before_they_are_used():
     """Each public name is an attribute after its first use, so a new process is needed."""
     code = (

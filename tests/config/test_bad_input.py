@@ -62,7 +62,7 @@ def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, c
 
 def test_every_option_is_given_a_bad_value():
     """Every option occurs in COMMAND_LINES."""
-    motion = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
+    motion = cli.build_parser(["point"])._subparsers._group_actions[0].choices["point"]
     motion = motion._subparsers._group_actions[0].choices["transverse"]
     options = {name for name in motion._option_string_actions if name.startswith("--")}
     tested = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
@@ -73,7 +73,7 @@ def test_every_option_is_given_a_bad_value():
 def test_the_same_lines_come_from_a_process(there):
     for arguments, *parts in (NUMBERS[0], RESULTS[3]):
         process = subprocess.run(
-            [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
+            [sys.executable, "-m", "microslip", *shlex.split(arguments), "--json"],
             env={**os.environ, "PYTHONPATH": SOURCE},
             capture_output=True,
             text=True,

@@ -8,17 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from microslip.app import modelica_text
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.predict_command import GROUPS
 from microslip.app.predicted_table import problem_text
 from microslip.app.progress import elapsed_time
 from microslip.app.question import (
     Answer,
-    add_json,
+    add_answer,
     add_options,
     heading,
     opened_map,
     refuse_output,
-    respond,
     short_csv,
     typed_options,
     write_output,
@@ -76,28 +76,20 @@ def fill(parser: argparse.ArgumentParser) -> None:
     bodies = iwan.add_argument_group("bodies")
     add_options(bodies, GROUPS["bodies"] | LOAD)
     add_options(iwan, IWAN_OPTIONS)
-    add_json(iwan)
+    add_answer(iwan, _iwan)
     table = models.add_parser(
         "table",
         help="a table of friction over speed, amplitude, load or other quantities",
         description="Friction over the ranges of one or more quantities, such as --speed '0.1..10 "
         "mm/s, 21, log': 21 values in equal ratios.  '0..2 um' has 11 values in equal steps.",
     )
-    table.add_argument("motion", metavar="MOTION", help="motion, as for `microslip predict`")
+    text = "motion, as for `microslip predict`"
+    table.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
     for title in ("bodies", "load", "motion", "drive"):
         options = {name: one for name, one in GROUPS[title].items() if name not in NO_FRICTION}
         add_options(table.add_argument_group(title), options)
     add_options(table, TABLE_OPTIONS)
-    add_json(table)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the model.  Returns the exit code: 0, 1 if a point of a table is not converged, 2 for
-    bad input."""
-    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
-    answer = {"iwan": _iwan, "table": _table}[options.export]
-    command = f"microslip export {options.export}"
-    return respond(command, options, answer, {"motion": "MOTION"}, names)
+    add_answer(table, _table)
 
 
 def _iwan(options: argparse.Namespace) -> Answer:
@@ -107,10 +99,8 @@ def _iwan(options: argparse.Namespace) -> Answer:
     from microslip.si.iwan import predict_iwan
 
     refuse_output(options.output, endings=(".csv",))
-    arguments = typed_options(options)
+    arguments = typed_options(options, ("tolerance",), ("elements",))
     arguments.pop("output", None)
-    for name in arguments.keys() & {"elements", "tolerance"}:
-        arguments[name] = spec.read(name, arguments[name], whole=name == "elements")
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip export iwan"):
         if real:

@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from microslip.app.option_parser import format_as_options
+from microslip.app.option_parser import StoreSpelling, format_as_options
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
     opened_map,
     refuse_figure,
     refuse_output,
-    respond,
     typed_options,
     write_output,
 )
@@ -57,17 +56,11 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "out; 2 bad input, or neither number determined."
     )
     motions = ", ".join(UNIT_OF_AMPLITUDE)
-    parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
-    parser.add_argument("measured", metavar="CSV", help="the table")
+    text = f"the motion: {motions}"
+    parser.add_argument("motion", action=StoreSpelling, metavar="MOTION", help=text)
+    parser.add_argument("measured", action=StoreSpelling, metavar="CSV", help="the table")
     add_options(parser, OPTIONS)
-    add_json(parser)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Run the command.  Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad
-    input."""
-    titles = {"motion": "MOTION", "measured": "CSV"}
-    return respond("microslip fit", options, _answer, titles)
+    add_answer(parser, _answer)
 
 
 def _answer(options: argparse.Namespace) -> Answer:

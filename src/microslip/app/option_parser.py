@@ -117,7 +117,10 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 
 
 class StoreSpelling(argparse.Action):
-    """Action that stores a value and the option as spelled on the command line."""
+    """Action that stores a value, and the option as spelled on the command line.
+
+    The spelling of a positional argument is its metavar.
+    """
 
     def __call__(
         self,
@@ -127,7 +130,8 @@ class StoreSpelling(argparse.Action):
         option_string: str | None = None,
     ) -> None:
         setattr(namespace, self.dest, value)
-        namespace.spellings = getattr(namespace, "spellings", {}) | {self.dest: option_string}
+        spelling = option_string or self.metavar
+        namespace.spellings = getattr(namespace, "spellings", {}) | {self.dest: spelling}
 
 
 def joined(arguments: list[str]) -> list[str]:

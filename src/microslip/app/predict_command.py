@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 
 from microslip.app import predicted_propulsion, predicted_table
+from microslip.app.option_parser import StoreSpelling
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    add_json,
+    add_answer,
     add_options,
     opened_map,
-    respond,
     typed_options,
 )
 from microslip.app.terminal import complain
@@ -122,6 +122,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(
         "motion",
+        action=StoreSpelling,
         metavar="MOTION",
         help=f"motion of the sphere. {motions}; file:FILE: it follows one period of samples with "
         "units; or another motion of `microslip point`",
@@ -150,14 +151,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--figure", metavar="FILE", help="with one or two ranges: draw friction, .png or .pdf"
     )
-    add_json(group)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Print the answer.  Returns the exit code: 0 if converged, 1 if not converged, 2 for bad
-    input."""
-    names = [name.replace("-", "_") for group in GROUPS.values() for name in group]
-    return respond("microslip predict", options, _answer, {"motion": "MOTION"}, names)
+    add_answer(parser, _answer, group)
 
 
 def _answer(options: argparse.Namespace) -> Answer:
@@ -166,7 +160,7 @@ def _answer(options: argparse.Namespace) -> Answer:
 
     if speaks_of_file(options.motion) and (hint := read_stroke(options.motion).hint):
         complain(f"microslip predict: MOTION = {options.motion!r}: {hint}")
-    arguments = typed_options(options)
+    arguments = typed_options(options, wholes=("points",))
     if options.map is not None:
         arguments["map"] = opened_map(options.map)
     ranges = {name: value for name, value in arguments.items() if is_range(name, value)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from microslip.foundation.errors import InputError
-from microslip.foundation.spec import read
 
 if TYPE_CHECKING:
     from microslip.si.propulsion import RealPropulsionLine
@@ -34,7 +33,5 @@ def line_of(motion: str, options: dict) -> RealPropulsionLine:
     for name, reason in REFUSED.items():
         if name in options:
             raise InputError(name, options[name], f"not allowed with --propulsion: {reason}")
-    if "points" in options:
-        options = options | {"points": read("points", options["points"], whole=True)}
     missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
     return predict_propulsion(motion, **missing | options)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from microslip.app.option_parser import StoreSpelling, format_as_options, option
 from microslip.app.terminal import complain
-from microslip.foundation import extras
+from microslip.foundation import extras, spec
 from microslip.foundation.errors import CacheError, InputError, shown
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ FILE_FORMAT = {
 """Options that describe the format of a CSV file."""
 OTHER_NAMES = {"nu": ("--poisson",), "poisson": ("--nu",)}
 """Alternative names of options."""
+SPIN = "Bore means spin: rotation about the contact normal."
+"""Remark in help texts."""
 
 
 class Answer(NamedTuple):
@@ -69,62 +71,61 @@ def add_options(
         )
 
 
-def add_json(parser: Any) -> None:
-    """Add the option `--json`."""
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object and nothing else"
-    )
-
-
-def typed_options(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the values of the options on the command line, by argument name."""
-    return {name: getattr(options, name) for name in getattr(options, "spellings", {})}
-
-
-def respond(
-    command: str,
-    options: argparse.Namespace,
+def add_answer(
+    parser: argparse.ArgumentParser,
     answer: Callable[[argparse.Namespace], Answer],
-    titles: Mapping[str, str],
-    arguments: Iterable[str] = (),
-) -> int:
-    """Print the answer to a command line, or an error message.
+    group: Any = None,
+) -> None:
+    """Add the option `--json` to a parser or its group, and store what `respond` needs.
 
-    Parameters
-    ----------
-    command : str
-        Name of the command, for messages.
-    options : argparse.Namespace
-        The command line.
-    answer : callable
-        answer(options) -> Answer.
-    titles : mapping of str
-        Names of positional arguments in messages.
-    arguments : iterable of str
-        Python arguments that messages show as options.
-
-    Returns
-    -------
-    int
-        Exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    answer: function that computes the answer from the parsed command line.
     """
-    from microslip.sweeps.evaluate import plain
+    text = "print one JSON object and nothing else"
+    (group or parser).add_argument("--json", action="store_true", help=text)
+    parser.set_defaults(answer=answer, command=parser.prog, spellings={})
 
+
+def typed_options(
+    options: argparse.Namespace, reals: Iterable[str] = (), wholes: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Return the values of the options on the command line, by argument name.
+
+    The options in `reals` and `wholes` are converted to numbers.  Raises InputError for a text that
+    is not a number.
+    """
+    names = [name for name, word in options.spellings.items() if word.startswith("--")]
+    typed = {name: getattr(options, name) for name in names}
+    for name in names:
+        if name in reals or name in wholes:
+            typed[name] = spec.read(name, typed[name], whole=name in wholes)
+    return typed
+
+
+def respond(options: argparse.Namespace) -> int:
+    """Print the answer to a parsed command line, or an error message.
+
+    Returns the exit code: 0 if the answer is complete, 1 if not, 2 for bad input.
+    """
     try:
-        result = answer(options)
+        result = options.answer(options)
     except InputError as error:
-        spellings, value = getattr(options, "spellings", {}), error.value
-        if error.argument in spellings or error.argument in titles:
-            value = getattr(options, error.argument)
-        name = titles.get(error.argument) or spellings.get(error.argument) or option(error.argument)
-        text = "" if error.value is None or error.value is True else f" = {shown(value)}"
-        allowed = format_as_options(error.allowed, [] if error.argument == "table" else arguments)
-        complain(" ".join(f"{command}: {name}{text}: {allowed}".split()))
+        name, value = option(error.argument), error.value
+        if error.argument in options.spellings:
+            name, value = options.spellings[error.argument], getattr(options, error.argument)
+        text = "" if value is None or value is True else f" = {shown(value)}"
+        allowed = format_as_options(
+            error.allowed, () if error.argument == "table" else vars(options)
+        )
+        complain(f"{options.command}: {name}{text}: {allowed}")
         return 2
     except CacheError as error:
-        complain(f"{command}: {error}")
+        complain(f"{options.command}: {error}")
         return 2
-    text = json.dumps(plain(result.plain)) if options.json else result.text
+    text = result.text
+    if options.json:
+        from microslip.sweeps.evaluate import plain
+
+        text = json.dumps(plain(result.plain))
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     # The encoding may lack characters that units use.
     if text:
