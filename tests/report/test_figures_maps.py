@@ -262,8 +262,8 @@ def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
 # Groups of maps
 
 
-def test_a_group_is_drawn_from_its_own_datasets_with_one_scale_and_shared_labels():
-    data = {"s": stub.static("still"), "b": stub.spanning("second"), "a": stub.spanning("first")}
+def test_a_group_is_drawn_with_one_scale_and_shared_labels():
+    data = {"b": stub.spanning("second"), "a": stub.spanning("first")}
     figure = drawing.draw("extended_motions", data)
     titles = [axes.get_title(loc="left") for axes in maps_in(figure)]
     assert [title.split()[-1] for title in titles] == ["second", "first"]

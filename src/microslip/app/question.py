@@ -23,7 +23,6 @@ ENDINGS = (".csv", ".nc")
 """File extensions of output files."""
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
-WRITABLE = "a file in a folder that can be written to"
 FILE_FORMAT = {
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
@@ -134,7 +133,10 @@ def respond(options: argparse.Namespace) -> int:
 
 
 def refuse_output(
-    path: str | None, table: str | None = None, endings: tuple[str, ...] = ENDINGS
+    path: str | None,
+    table: str | None = None,
+    endings: tuple[str, ...] = ENDINGS,
+    argument: str = "output",
 ) -> None:
     """Raise InputError if the output file cannot be written, or if it is the input table."""
     if path is None:
@@ -142,28 +144,18 @@ def refuse_output(
     file, allowed = Path(path), ""
     if file.suffix.lower() not in endings:
         allowed = f"a name that ends in {' or '.join(endings)}"
-    elif not _is_writable(file):
-        allowed = WRITABLE
+    elif file.is_dir() or not (file.parent.is_dir() and os.access(file.parent, os.W_OK)):
+        allowed = "a file in a folder that can be written to"
     elif table is not None and file.resolve() == Path(table).resolve():
         allowed = "another file than the table that is read"
     if allowed:
-        raise InputError("output", path, f"allowed is {allowed}")
-
-
-def _is_writable(file: Path) -> bool:
-    """True for a file in an existing folder that can be written to."""
-    return not file.is_dir() and file.parent.is_dir() and os.access(file.parent, os.W_OK)
+        raise InputError(argument, path, f"allowed is {allowed}")
 
 
 def refuse_figure(path: str | None) -> None:
     """Raise InputError if the figure cannot be written, or if matplotlib is missing."""
-    if path is None:
-        return
-    if Path(path).suffix.lower() not in FIGURES:
-        raise InputError("figure", path, f"allowed is a name that ends in {' or '.join(FIGURES)}")
-    if not _is_writable(Path(path)):
-        raise InputError("figure", path, f"allowed is {WRITABLE}")
-    if hint := extras.missing("matplotlib"):
+    refuse_output(path, endings=FIGURES, argument="figure")
+    if path is not None and (hint := extras.missing("matplotlib")):
         raise InputError("figure", path, hint)
 
 

@@ -17,7 +17,7 @@ from microslip.datasets.catalogue import FORMS, ClosedForm
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.canonical import number
 from microslip.report.figures import style
-from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
+from microslip.report.figures.data import at_each_poisson, curve, limit, spans_a_map
 from microslip.report.figures.formulas import html
 from microslip.report.figures.maps import CURVES
 from microslip.sweeps.evaluate import plain
@@ -39,23 +39,16 @@ NAMES = {
 
 def is_map(dataset: xr.Dataset) -> bool:
     """Return whether a dataset is shown as maps instead of lines."""
-    if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
-        return False
-    return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
+    return DRIVE not in dataset.attrs and spans_a_map(dataset)
 
 
 def maps(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the maps at all Poisson's ratios as JSON values.
-
-    Raises ValueError if a variable is missing.
-    """
-    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS])
+    """Pack the maps at all Poisson's ratios as JSON values."""
     return [_map(name, part) for part in at_each_poisson(dataset)]
 
 
 def _map(name: str, dataset: xr.Dataset) -> dict:
-    shown, poisson = sweep(dataset, ("amplitude", "velocity"))
-    shown = shown.transpose("amplitude", "velocity", ...)
+    shown, poisson = dataset.transpose("amplitude", "velocity", ...), float(dataset["poisson"])
     return about(name, dataset, poisson) | {
         "labels": [axis_label(shown, dim) for dim in ("velocity", "amplitude")],
         "velocity": plain(shown["velocity"].values),
@@ -67,17 +60,13 @@ def _map(name: str, dataset: xr.Dataset) -> dict:
 
 
 def lines(name: str, dataset: xr.Dataset) -> list[dict]:
-    """Pack the lines at all Poisson's ratios as JSON values.
-
-    Raises ValueError if a variable is missing.
-    """
+    """Pack the lines at all Poisson's ratios as JSON values."""
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
 def _lines(name: str, dataset: xr.Dataset) -> dict:
     has_force = "force" in dataset.attrs.get(DRIVE, "").split(", ")
     value = "velocity" if has_force else "mu_macro"
-    require("explorer", name, dataset, [value, f"{value}_error", "converged"])
     dims = [dim for dim in AXES if dim in dataset[value].dims]
     poisson = float(dataset["poisson"])
     along = max(dims, key=lambda dim: (dataset.sizes[dim], dims.index(dim)))

@@ -28,8 +28,6 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
 
     A profile is the fraction of points that a competitor solves within a cost.
     """
-    if not dataset["point"].size or not dataset["competitor"].size:
-        raise ValueError(f"figure {name}: the dataset holds no points or no trials")
     dataset = dataset.isel(map_tolerance=int(np.argmin(dataset["map_tolerance"].values)))
     of_contest = dataset["competitor_contest"].values.astype(str)
     contests = list(dict.fromkeys(of_contest))

@@ -15,7 +15,7 @@ from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.datasets.catalogue import STATIC
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import columns, curve, limit, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit
 from microslip.report.figures.map_panel import bands
 
 DECADES = np.linspace(-3.0, 1.0, 17)
@@ -72,8 +72,8 @@ def velocity_bar(filled: ContourSet, grid: Axes | list[Axes]) -> None:
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
     """Draw one map. Returns the bands, and True if the map has unconverged points."""
     motion = dataset.attrs["motion"]
-    part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
-    part = part.transpose("amplitude", "force", ...)
+    part = at_one_poisson(dataset).transpose("amplitude", "force", ...)
+    poisson = float(part["poisson"])
     force, amplitude, velocity, rigid = columns(part, "force", "amplitude", "velocity", RIGID)
     filled, shown = velocity_bands(axes, force, amplitude, velocity)
     levels = np.log10(LINES)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns, require
+from microslip.report.figures.data import at_one_poisson, columns
 from microslip.theory.drift import antiphase_drift
 
 SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
@@ -30,7 +30,6 @@ def drives(
     name: str, transverse: xr.Dataset, force: xr.Dataset, spring: xr.Dataset, body: xr.Dataset
 ) -> Figure:
     """Draw friction against the mean velocity, and against the mass at one velocity."""
-    require(name, "drive_body", body, ("mass", "stiffness"))
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2)
     _over_velocity(left, transverse, force, spring)
@@ -84,7 +83,8 @@ def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
     """Draw friction as a function of the mass on a spring, and friction at a constant velocity."""
     bodies = _one(body)
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
-    mu = float(_at(_constant_velocity(transverse, amplitude), "velocity", velocity)["mu_macro"])
+    at = _constant_velocity(transverse, amplitude).sel(velocity=velocity, method="nearest")
+    mu = float(at["mu_macro"])
     axes.axhspan(mu * (1 - GOOD), mu * (1 + GOOD), color=look.PALE, label="within 1 %")
     axes.axhline(mu, color=look.BLACK, lw=1.3, label="constant velocity", gid="velocity")
     _springs(axes, bodies, "mass", name="")
@@ -122,17 +122,9 @@ def _logarithmic(axes: Axes, low: float, high: float) -> None:
 
 def _one(dataset: xr.Dataset) -> xr.Dataset:
     """Select one Poisson's ratio and drop axes with one entry."""
-    return at_one_poisson(dataset)[0].squeeze()
+    return at_one_poisson(dataset).squeeze()
 
 
 def _constant_velocity(transverse: xr.Dataset, amplitude: float) -> xr.Dataset:
-    """Select an amplitude of the sweep `transverse`."""
-    return _at(at_one_poisson(transverse)[0], "amplitude", amplitude)
-
-
-def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
-    """Select a value of a dimension, up to rounding. Raises ValueError if it is missing."""
-    same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
-    if not same.size:
-        raise ValueError(f"the sweep transverse has no {dim} {value:g}; the drives need it")
-    return dataset.isel({dim: same[0]})
+    """Select an amplitude of the sweep `transverse`, up to rounding."""
+    return at_one_poisson(transverse).sel(amplitude=amplitude, method="nearest")

@@ -19,13 +19,11 @@ from microslip.report.figures.data import (
     columns,
     finite_or_nan,
     limit,
-    require,
-    sweep,
+    spans_a_map,
 )
 from microslip.report.figures.formulas import axis_label, mathtext
 from microslip.report.figures.map_panel import fill
 
-NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Number of columns for 1, 2 and 4 maps. Any other number of maps is drawn in 3 columns."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
@@ -47,25 +45,17 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     It shows lines if no dataset has that many. If there is enough space, `poisson.draw` draws the
     effect of Poisson's ratio instead.
     """
-    if all(map(_spans_a_map, datasets)) and poisson.has_room(datasets):
+    if all(map(spans_a_map, datasets)) and poisson.has_room(datasets):
         return poisson.draw(name, *datasets)
     shown, titles = [], []
     for dataset in datasets:
         title = dataset.attrs.get("title", "")
-        require(name, title or name, dataset, NEEDED)
-        dims = tuple(dim for dim in ("amplitude", "velocity") if dim in dataset["mu_macro"].dims)
-        parts = [sweep(part, dims) for part in at_each_poisson(dataset)]
-        for part, ratio in parts:
+        parts = at_each_poisson(dataset)
+        for part in parts:
             shown.append(part)
-            at = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
-            titles.append(look.literal(title) + at)
-    return (_maps if _spans_a_map(shown[0]) else _lines)(shown, titles)
-
-
-def _spans_a_map(dataset: xr.Dataset) -> bool:
-    """Return whether a dataset has at least two amplitudes and two velocities above 0."""
-    positive = int((dataset["velocity"] > 0).sum())
-    return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
+            ratio = rf", $\nu = {look.number(float(part['poisson']))}$"
+            titles.append(look.literal(title) + ratio * (len(parts) > 1))
+    return (_maps if spans_a_map(shown[0]) else _lines)(shown, titles)
 
 
 def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:

@@ -15,7 +15,7 @@ from microslip.report.figures.data import at_one_poisson, columns
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the forward force with its mean over the last period, and the lateral force."""
-    dataset, _ = at_one_poisson(dataset)
+    dataset = at_one_poisson(dataset)
     periods = dataset["history_phase"].values / (2.0 * np.pi)
     forward, lateral = columns(dataset, "history_force_forward", "history_force_lateral")
     figure = look.new_figure(look.SINGLE, 3.2)

@@ -110,8 +110,6 @@ def fill(
         The bands, for a colour bar; the legend entries; the number of hatched cells.
     """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
-    if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
-        raise ValueError("a map needs at least two amplitudes and two positive velocities")
     shown = shown.transpose("amplitude", "velocity", ...)
     velocity, amplitude, mu = columns(shown, "velocity", "amplitude", "mu_macro")
     surface = Surface(velocity, amplitude, mu)

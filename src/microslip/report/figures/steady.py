@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import panels
 from microslip.report.figures import style as look
-from microslip.report.figures.data import at_one_poisson, columns, curve, limit, require, sweep
+from microslip.report.figures.data import at_one_poisson, columns, curve, limit
 
 QUANTITIES = (
     ("force", "Eq 21", "forward", "mu_macro", "transient_force_forward", look.BLUE, look.SOLID),
@@ -29,8 +29,7 @@ STARTS = {
 
 def curves(name: str, dataset: xr.Dataset) -> Figure:
     """Draw Eqs 21 and 22, and the computed steady values."""
-    require(name, "continuous_bore", dataset, ("velocity",))
-    dataset, _ = sweep(dataset, ("velocity",))
+    dataset = at_one_poisson(dataset)
     velocity = dataset["velocity"].values
     figure = look.new_figure(look.SINGLE, 2.7)
     axes = figure.add_subplot()
@@ -54,7 +53,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
 
 def transients(name: str, dataset: xr.Dataset) -> Figure:
     """Draw force and torque against the forward travel, with a panel for each initial state."""
-    dataset, _ = at_one_poisson(dataset)
+    dataset = at_one_poisson(dataset)
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
     grid = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False)[0]
