@@ -125,10 +125,10 @@ def failing_at(monkeypatch, error, amplitude=2.0):
     Solver(monkeypatch)
     solve = microslip.solve
 
-    def fail(motion, velocity, place, **settings):
-        if place == amplitude:
+    def fail(**arguments):
+        if arguments["amplitude"] == amplitude:
             raise error
-        return solve(motion, velocity, place, **settings)
+        return solve(**arguments)
 
     monkeypatch.setattr("microslip.solve", fail)
 
@@ -251,7 +251,7 @@ def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, store):
 
 @pytest.mark.parametrize("kind", sorted(sweep.FOLDERS))
 def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
-    def fail(request):
+    def fail(**_):
         raise SolverError("a root finder\nfound none")
 
     monkeypatch.setitem(evaluate._KINDS, kind, fail)

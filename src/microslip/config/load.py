@@ -62,7 +62,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
     try:
         content = named_files.content_of(path, MOST_BYTES)
     except OSError as error:
-        raise ConfigError(_one_line(f"{path}: cannot be read: {error.strerror}")) from None
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise ConfigError(f"{path}: {error}") from None
     try:
@@ -77,7 +77,7 @@ def read_yaml(path: str | os.PathLike) -> dict:
         ) from None
     except yaml.YAMLError as error:
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
-        raise ConfigError(f"{path}: not valid YAML: {_one_line(error)}{hint}") from None
+        raise ConfigError(f"{path}: not valid YAML: {error}{hint}") from None
     if mapping is None:
         raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
@@ -161,7 +161,7 @@ def _settings(mapping: dict, source: str) -> Root:
         return Root.model_validate(mapping)
     except ValidationError as error:
         line = schema.error_line(error.errors(include_url=False))
-        raise ConfigError(f"{source}: {_one_line(line)}") from None
+        raise ConfigError(f"{source}: {line}") from None
 
 
 def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
@@ -185,20 +185,19 @@ def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
 
 @contextmanager
 def _errors_at(where: str) -> Iterator[None]:
-    """Context manager that converts errors to ConfigError.  The message is one line and begins with
-    `where`."""
+    """Context manager that converts errors to ConfigError.  The message begins with `where`."""
     try:
         yield
     except ConfigError:
         raise
     except Refusal as error:
         key = f".{error.key}" if error.key else ""
-        raise ConfigError(_one_line(f"{where}{key}: {error}")) from None
+        raise ConfigError(f"{where}{key}: {error}") from None
     except InputError as error:  # solver arguments and keys have the same names
         line = f"{where}.{error.argument}: {error.value!r}: {error.allowed}"
-        raise ConfigError(_one_line(line)) from None
+        raise ConfigError(line) from None
     except ValueError as error:  # from readers of files
-        raise ConfigError(_one_line(f"{where}: {error}")) from None
+        raise ConfigError(f"{where}: {error}") from None
 
 
 def from_mapping(
@@ -351,7 +350,3 @@ def _refuse_mixtures(sweeps: list[Sweep]) -> None:
                 f"{group} has {drawn} sweeps{ratios}; allowed: up to {most}, or another group",
                 f"{last.name}.group",
             )
-
-
-def _one_line(text: object) -> str:
-    return " ".join(str(text).split())

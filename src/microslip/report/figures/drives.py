@@ -54,7 +54,7 @@ def pairs(name: str, *datasets: xr.Dataset) -> Figure:
     panels.letter(left, "a", f"one contact, {amplitude}")
     panels.letter(right, "b", "two in antiphase")
     for axes in (left, right):
-        _logarithmic(axes, velocity[0] / MARGIN, velocity[-1] * MARGIN)
+        panels.logarithmic(axes, (velocity[0] / MARGIN, velocity[-1] * MARGIN))
         axes.set_xlabel(look.axis(VELOCITY["transverse"]))
     panels.unit_range(left)
     left.set_ylabel(look.FRICTION_IN_TWO_LINES)
@@ -73,7 +73,7 @@ def _over_velocity(
     axes.plot(velocity, mu, label="constant velocity", **ink)
     _springs(axes, springs, "velocity", mfc="white")
     _force(axes, _one(force))
-    _logarithmic(axes, velocity[velocity > 0.0][0], velocity[-1])
+    panels.logarithmic(axes, (velocity[velocity > 0.0][0], velocity[-1]))
     axes.set(xlabel=look.axis(VELOCITY["transverse"]), ylabel=look.FRICTION_IN_TWO_LINES)
     panels.unit_range(axes)
     panels.legend_above(axes, "a", f"amplitude {amplitude:g}, lateral oscillation")
@@ -89,7 +89,7 @@ def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
     axes.axhline(mu, color=look.BLACK, lw=1.3, label="constant velocity", gid="velocity")
     _springs(axes, bodies, "mass", name="")
     mass = bodies["mass"].values
-    _logarithmic(axes, mass[0], mass[-1])
+    panels.logarithmic(axes, mass[[0, -1]])
     axes.set(xlabel=look.axis(DRIVES["mass"]), ylabel=look.FRICTION_IN_TWO_LINES)
     at = look.conditions([(VELOCITY["transverse"].latex, velocity)])
     panels.legend_above(axes, "b", f"a mass on a spring, {at}", ncols=3)
@@ -113,11 +113,6 @@ def _force(axes: Axes, dataset: xr.Dataset) -> None:
     velocity, force, converged = columns(moving, "velocity", "force", "converged")
     label, exact = "constant force", np.zeros(force.size)
     panels.computed(axes, velocity, force, exact, converged, label=label, color=look.VERMILLION)
-
-
-def _logarithmic(axes: Axes, low: float, high: float) -> None:
-    axes.set(xscale="log", xlim=(low, high))
-    panels.logarithmic(axes.xaxis)
 
 
 def _one(dataset: xr.Dataset) -> xr.Dataset:

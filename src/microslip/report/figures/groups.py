@@ -66,22 +66,19 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     width = look.DOUBLE if columns_ > 1 else 0.65 * look.DOUBLE
     figure = look.new_figure(width, rows * HEIGHT[columns_] + AROUND)
     fills, contours = levels_of(datasets)
-    grid = figure.subplots(rows, columns_, squeeze=False).ravel()
+    grid = panels.grid(figure, count, columns_)
     entries: dict[str, Artist] = {}
-    for axes, letter, dataset, title in zip(
-        grid, look.letters(count), datasets, titles, strict=False
-    ):
+    shown = zip(grid, look.letters(count), datasets, titles, strict=True)
+    for axes, letter, dataset, title in shown:
         filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
         entries |= {str(handle.get_label()): handle for handle in handles}
         axes.set_gid("map")
         panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
-    for axes in grid[count:]:
-        axes.remove()
     for dim in ("velocity", "amplitude"):
-        _label_maps(figure, list(grid[:count]), dim, datasets)
+        _label_maps(figure, grid, dim, datasets)
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES
-    shown = fills[np.isclose(np.round(5 * fills), 5 * fills)]
-    panels.colour_bar(filled, list(grid[:count]), label, aspect=20 * rows, ticks=shown)
+    ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
+    panels.colour_bar(filled, grid, label, aspect=20 * rows, ticks=ticks)
     panels.legend_of_figure(figure, list(entries.values()), "lower right")
     return figure
 
@@ -141,8 +138,7 @@ def _lines(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     panels.unit_range(axes, low=np.floor(5 * low) / 5 if low < -BEYOND else 0.0)
     axes.set(ylabel=look.FRICTION, xlabel=_axis_label(dim, datasets))
     if dim == "velocity":
-        axes.set_xscale("log")
-        panels.logarithmic(axes.xaxis)
+        panels.logarithmic(axes)
     axes.margins(x=0.02)
     figure.legend(handles=handles, loc="outside right upper", handlelength=3.0)
     if dim == "amplitude" and velocities:

@@ -129,8 +129,8 @@ def fill(
     )
     contours.set_gid("contours")
     number_contours(axes, contours, size, filled)
-    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
-    panels.logarithmic(axes.xaxis)
+    axes.set_ylim(*amplitude[[0, -1]])
+    panels.logarithmic(axes, velocity[[0, -1]])
     panels.ticks_outside(axes)
     handles: list[Artist] = []
     few = min(len(velocity), len(amplitude)) < FEW

@@ -101,10 +101,7 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     heights = rows * ROW[across], 2.7
     figure = look.new_figure(look.DOUBLE, sum(heights))
     upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
-    maps = list(upper.subplots(rows, across, squeeze=False).flat)
-    for axes in maps[count:]:
-        axes.remove()
-    return figure, maps[:count], *lower.subplots(1, 2)
+    return figure, panels.grid(upper, count, across), *lower.subplots(1, 2)
 
 
 def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str, letter: str) -> None:
@@ -136,9 +133,8 @@ def _large_cut(axes: Axes, parts: list[xr.Dataset], motion: str, letter: str) ->
     at = look.conditions([(AMPLITUDE[motion].latex, amplitude)])
     panels.legend_above(axes, letter, f"top edge, {at}")
     velocity = parts[0]["velocity"].values
-    axes.set(xscale="log", xlim=(velocity[velocity > 0][0], velocity[-1]))
     axes.set_xlabel(look.axis(VELOCITY[motion]))
-    panels.logarithmic(axes.xaxis)
+    panels.logarithmic(axes, (velocity[velocity > 0][0], velocity[-1]))
 
 
 def _curve(axes: Axes, parts: list[xr.Dataset], motion: str, name: str, **at: float) -> None:

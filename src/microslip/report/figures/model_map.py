@@ -70,7 +70,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
             axes.text(*centre, look.model(name)[2], gid="region", **text)
     axes.set(xlim=x[[0, -1]], ylim=y[[0, -1]])
     for axis in (axes.xaxis, axes.yaxis) if logarithmic else (axes.xaxis,):
-        panels.logarithmic(axis)
+        panels.logarithmic_ticks(axis)
     panels.ticks_outside(axes)
 
 

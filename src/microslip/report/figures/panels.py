@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from microslip.report.figures import style as look
@@ -21,6 +21,15 @@ WIDE = 10.0
 """An axis is logarithmic if the ratio of its largest to its smallest value exceeds this number."""
 VISIBLE_ERROR = 0.01
 """Smallest error estimate that is drawn. The markers hide smaller error estimates."""
+
+
+def grid(figure: Figure | SubFigure, count: int, across: int, **shared: bool) -> list[Axes]:
+    """Return `count` new panels in rows of `across` panels. shared: arguments of `subplots`."""
+    rows = -(-count // across)
+    axes = list(figure.subplots(rows, across, squeeze=False, **shared).flat)
+    for empty in axes[count:]:
+        empty.remove()
+    return axes[:count]
 
 
 def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
@@ -76,11 +85,18 @@ def ticks_outside(axes: Axes) -> None:
 def logarithmic_if_wide(axes: Axes, values: np.ndarray) -> None:
     """Make the abscissa logarithmic if all values are positive and their ratio exceeds WIDE."""
     if values.min() > 0.0 and values.max() > WIDE * values.min():
-        axes.set_xscale("log")
-        logarithmic(axes.xaxis)
+        logarithmic(axes)
 
 
-def logarithmic(axis: Axis) -> None:
+def logarithmic(axes: Axes, limits: Sequence[float] | np.ndarray | None = None) -> None:
+    """Make the abscissa of a panel logarithmic. limits: its first and last value."""
+    axes.set(xscale="log")
+    if limits is not None:
+        axes.set_xlim(*limits)
+    logarithmic_ticks(axes.xaxis)
+
+
+def logarithmic_ticks(axis: Axis) -> None:
     """Label an axis at powers of ten, or at round numbers if it contains fewer than two powers."""
     low, high = np.sort(axis.get_view_interval())
     powers = np.floor(np.log10(high) + 1e-9) - np.ceil(np.log10(low) - 1e-9) + 1

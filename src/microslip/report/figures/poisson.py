@@ -100,7 +100,7 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 
 def _axes(axes: Axes, shown: xr.Dataset) -> None:
     velocity, amplitude = columns(shown, "velocity", "amplitude")
-    axes.set(xscale="log", xlim=velocity[[0, -1]], ylim=amplitude[[0, -1]])
     axes.set(xlabel=axis_label(shown, "velocity"), ylabel=axis_label(shown, "amplitude"))
-    panels.logarithmic(axes.xaxis)
+    axes.set_ylim(*amplitude[[0, -1]])
+    panels.logarithmic(axes, velocity[[0, -1]])
     panels.ticks_outside(axes)

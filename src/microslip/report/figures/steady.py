@@ -43,8 +43,7 @@ def curves(name: str, dataset: xr.Dataset) -> Figure:
         panels.computed(axes, *points, label=f"{what}, computed", color=color, marker=marker)
     axes.set_xlim(velocity[0], velocity[-1])
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
-        axes.set_xscale("log")
-        panels.logarithmic(axes.xaxis)
+        panels.logarithmic(axes)
     axes.set(xlabel=look.axis(VELOCITY["continuous-bore"]), ylabel=LABEL)
     panels.unit_range(axes)
     panels.legend_of_figure(figure, axes.get_legend_handles_labels()[0], ncols=2)

@@ -112,11 +112,11 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     heights = ROW * rows + 0.35, LINE * (max(len(models), 7) + 2.0)
     figure = look.new_figure(look.DOUBLE, sum(heights))
     page, foot = figure.subfigures(2, 1, height_ratios=heights, squeeze=False).flat
-    grid = page.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False).ravel()
+    grid = panels.grid(page, len(points), COLUMNS, sharex=True, sharey=True)
     costs, errors = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
     of_point = dataset["trial_point"].values.astype(str)
     letters = look.letters(len(points))
-    for index, (axes, letter, point) in enumerate(zip(grid, letters, points, strict=False)):
+    for index, (axes, letter, point) in enumerate(zip(grid, letters, points, strict=True)):
         axes.set(xscale="log", yscale="log")
         costs.on(axes, axes.xaxis)
         errors.on(axes, axes.yaxis)
@@ -129,8 +129,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             axes.set_xlabel(label)
         if index % COLUMNS == 0:
             axes.set_ylabel(f"error of {MU_MACRO.math}\n(dimensionless)")
-    for axes in grid[len(points) :]:
-        axes.remove()
     _legends(foot, models, others)
     return figure
 
