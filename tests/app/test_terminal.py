@@ -152,33 +152,6 @@ def test_an_interrupt_leaves_no_file_half_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-SWALLOWING = """
-import time
-from microslip.app import terminal
-
-class Deaf:
-    def __del__(self):
-        open({ready!r}, "w").close()
-        time.sleep(1000)
-
-def command():
-    try:
-        Deaf()
-        time.sleep(1000)
-    except BaseException:
-        raise RuntimeError("something else")
-
-terminal.run(command)
-"""
-
-
-def test_an_interrupt_that_a_library_swallows_is_one(tmp_path):
-    """A KeyboardInterrupt during the shutdown of Python would print three lines."""
-    ready = tmp_path / "ready"
-    command = [sys.executable, "-c", SWALLOWING.format(ready=str(ready))]
-    assert stopped(command, lambda _: ready.exists()) == INTERRUPTED
-
-
 # Pipes, devices and streams
 
 FULL = "microslip: cannot write to standard output: No space left on device\n"
