@@ -17,7 +17,6 @@ from microslip.app.question import (
     add_answer,
     add_options,
     heading,
-    opened_map,
     refuse_output,
     short_csv,
     typed_options,
@@ -100,7 +99,6 @@ def _iwan(options: argparse.Namespace) -> Answer:
 
     refuse_output(options.output, endings=(".csv",))
     arguments = typed_options(options, ("tolerance",), ("elements",))
-    arguments.pop("output", None)
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip export iwan"):
         if real:
@@ -132,15 +130,11 @@ def _table(options: argparse.Namespace) -> Answer:
     from microslip.si.table import predictions
 
     refuse_output(options.output, endings=(".csv", ".txt"))
-    arguments = typed_options(options)
-    arguments.pop("output", None)
     if options.speed is None:
         raise InputError("speed", None, "needed")
     if options.mass is not None and options.drive_stiffness is None:
         raise InputError("mass", options.mass, "allowed only with a drive_stiffness")
-    if options.map is not None:
-        arguments["map"] = opened_map(options.map)
-    grid = grid_of(options.motion, arguments)
+    grid = grid_of(options.motion, typed_options(options))
     lazy = predictions(options.motion, grid.table, grid.shared, need_all=True)
     points = grid.combinations
     answers = list(tqdm(lazy, "points", len(points), leave=False, disable=None))

@@ -11,7 +11,6 @@ from microslip.app.question import (
     Answer,
     add_answer,
     add_options,
-    opened_map,
     typed_options,
 )
 from microslip.app.terminal import complain
@@ -161,8 +160,6 @@ def _answer(options: argparse.Namespace) -> Answer:
     if speaks_of_file(options.motion) and (hint := read_stroke(options.motion).hint):
         complain(f"microslip predict: MOTION = {options.motion!r}: {hint}")
     arguments = typed_options(options, wholes=("points",))
-    if options.map is not None:
-        arguments["map"] = opened_map(options.map)
     ranges = {name: value for name, value in arguments.items() if is_range(name, value)}
     many = ranges if options.table is None else {"table": options.table}
     for name, value in many.items():

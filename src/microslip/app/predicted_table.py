@@ -13,10 +13,9 @@ from microslip.app.option_parser import format_as_options, option
 from microslip.app.question import (
     FILE_FORMAT,
     Answer,
-    dataset_writers,
     refuse_figure,
     refuse_output,
-    write_output,
+    write_files,
 )
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
@@ -59,7 +58,7 @@ class _Cases(NamedTuple):
         Name of each contact in messages.
     cells : dict of list of str
         First columns of the printed table, by heading.
-    values : dict of list
+    starts : list of dict
         First values of each contact in JSON, by name.
     """
 
@@ -68,7 +67,7 @@ class _Cases(NamedTuple):
     dataset: Callable[[Sequence[Prediction | NoPrediction]], xr.Dataset]
     names: list[str]
     cells: dict[str, list[str]]
-    values: dict[str, list[Any]]
+    starts: list[dict[str, Any]]
 
 
 def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
@@ -105,12 +104,18 @@ def answer(options: argparse.Namespace, arguments: Mapping[str, Any]) -> Answer:
         problem = problem_text(error, cases.table.columns)
         raise InputError("table", options.table, problem) from None
     answers = list(tqdm(lazy, "contacts", len(cases.names), leave=False, disable=None))
-    rows = _rows(cases, answers, cases.table.columns if options.table else (), options.map)
+    headings = cases.table.columns if options.table else ()  # not shown as options
+    rows = [
+        start | {"error": problem_text(one.error, headings, options.map)}
+        if isinstance(one, NoPrediction)
+        else start | {"error": None} | one.to_dict()
+        for start, one in zip(cases.starts, answers, strict=True)
+    ]
     if options.output is not None or options.figure is not None:
         dataset = cases.dataset(answers)
         errors = np.reshape([row["error"] or "" for row in rows], dataset["error"].shape)
         dataset["error"] = dataset["error"].copy(data=errors)
-        _write(options, dataset)
+        write_files(options, "curve", dataset)
     missing = [
         f"{name}: {row['error']}" if isinstance(one.error, InputError) else row["error"]
         for name, row, one in zip(cases.names, rows, answers, strict=True)
@@ -137,9 +142,10 @@ def _lines_of_file(options: argparse.Namespace, arguments: Mapping[str, Any]) ->
 
     labels = {name: [text or "" for text in texts] for name, texts in table.labels.items()}
     cells = {"line": list(map(str, table.lines))} | labels
-    values = {"line": table.lines} | table.labels
+    columns = {"line": table.lines} | table.labels
+    starts = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     names = [f"line {line}" for line in table.lines]
-    return _Cases(table, shared, dataset, names, cells, values)
+    return _Cases(table, shared, dataset, names, cells, starts)
 
 
 def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases:
@@ -151,40 +157,19 @@ def _points(options: argparse.Namespace, arguments: Mapping[str, Any]) -> _Cases
     if options.figure is not None and (len(sizes) > 2 or sizes[:-1] > [MOST_LINES]):
         allowed = f"allowed with one range, or with a second one of at most {MOST_LINES} values"
         raise InputError("figure", options.figure, allowed)
-    columns = map(list, zip(*grid.combinations, strict=True))
-    values = dict(zip(grid.axes, columns, strict=True))
+    starts = [dict(zip(grid.axes, case, strict=True)) for case in grid.combinations]
     texts = {name: list(map(_short, one)) for name, one in grid.table.columns.items()}
     names = [
         ", ".join(f"{name} {text}" for name, text in zip(texts, case, strict=True))
         for case in zip(*texts.values(), strict=True)
     ]
-    return _Cases(grid.table, grid.shared, grid.dataset, names, texts, values)
+    return _Cases(grid.table, grid.shared, grid.dataset, names, texts, starts)
 
 
 def _short(text: str) -> str:
     """Format a quantity with at most four digits."""
     number, _, unit = text.partition(" ")
     return f"{float(number):.4g} {unit}".strip()
-
-
-def _rows(
-    cases: _Cases,
-    answers: Sequence[Prediction | NoPrediction],
-    headings: Collection[str],
-    map_: str | None,
-) -> list[dict[str, Any]]:
-    """Return a dict for each contact: its first values, its error message or None, and its columns.
-
-    headings: arguments that messages show by name, not as options; map_: value of --map.
-    """
-    rows = []
-    for values, one in zip(zip(*cases.values.values(), strict=True), answers, strict=True):
-        row = dict(zip(cases.values, values, strict=True))
-        if isinstance(one, NoPrediction):
-            rows.append(row | {"error": problem_text(one.error, headings, map_)})
-        else:
-            rows.append(row | {"error": None} | one.to_dict())
-    return rows
 
 
 def problem_text(
@@ -204,16 +189,6 @@ def problem_text(
     value = "" if wrong is None else f" = {shown(wrong)}"
     allowed = format_as_options(error.allowed, others)
     return " ".join(f"{name}{value}: {allowed}".split())
-
-
-def _write(options: argparse.Namespace, dataset: xr.Dataset) -> None:
-    """Write the --output and --figure files.  Raises InputError."""
-    if options.output is not None:
-        write_output(options.output, dataset_writers(dataset, dataset.to_dataframe()))
-    if options.figure is not None:
-        from microslip.report.figures.drawing import draw, save
-
-        save(draw("curve", {"curve": dataset}), options.figure)
 
 
 Column = tuple[str, Callable[[Mapping[str, Any]], str]]

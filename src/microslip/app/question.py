@@ -23,6 +23,8 @@ ENDINGS = (".csv", ".nc")
 """File extensions of output files."""
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
+OUTPUTS = ("output", "figure")
+"""Options for output files."""
 FILE_FORMAT = {
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
@@ -89,14 +91,17 @@ def typed_options(
 ) -> dict[str, Any]:
     """Return the values of the options on the command line, by argument name.
 
-    The options in `reals` and `wholes` are converted to numbers.  Raises InputError for a text that
-    is not a number.
+    The options in `reals` and `wholes` are converted to numbers, and the dataset of --map is
+    opened.  Options for output files are left out.  Raises InputError for a text that is not a
+    number, and InputError and CacheError for a map that cannot be opened.
     """
-    names = [name for name, word in options.spellings.items() if word.startswith("--")]
-    typed = {name: getattr(options, name) for name in names}
-    for name in names:
+    words = {name: word for name, word in options.spellings.items() if name not in OUTPUTS}
+    typed = {name: getattr(options, name) for name, word in words.items() if word.startswith("--")}
+    for name, text in typed.items():
         if name in reals or name in wholes:
-            typed[name] = spec.read(name, typed[name], whole=name in wholes)
+            typed[name] = spec.read(name, text, whole=name in wholes)
+        elif name == "map":
+            typed[name] = _opened_map(text)
     return typed
 
 
@@ -159,7 +164,7 @@ def refuse_figure(path: str | None) -> None:
         raise InputError("figure", path, hint)
 
 
-def opened_map(path: str) -> xr.Dataset:
+def _opened_map(path: str) -> xr.Dataset:
     """Open the dataset of the option --map, which is a .nc file or the name of a sweep.
 
     Raises InputError and CacheError.
@@ -198,9 +203,25 @@ def short_csv(frame: pd.DataFrame) -> str:
     return frame.to_csv(index=False, float_format="%.6g", lineterminator="\n").rstrip("\n")
 
 
-def dataset_writers(dataset: xr.Dataset, frame: pd.DataFrame, **to_csv: Any) -> dict[str, Any]:
-    """Return writers for a dataset: a .csv writer for its table, and a .nc writer."""
+def dataset_writers(
+    dataset: xr.Dataset, frame: Callable[[], pd.DataFrame], **to_csv: Any
+) -> dict[str, Callable[[Path], object]]:
+    """Return writers for a dataset: a .csv writer for the table that `frame` returns, and a .nc
+    writer."""
     return {
-        ".csv": lambda file: frame.to_csv(file, **to_csv),
+        ".csv": lambda file: frame().to_csv(file, **to_csv),
         ".nc": lambda file: dataset.to_netcdf(file, engine="netcdf4"),
     }
+
+
+def write_files(options: argparse.Namespace, figure: str, dataset: xr.Dataset) -> None:
+    """Write the --output and --figure files of a dataset.
+
+    figure: name of the figure in report.figures.drawing.  Raises InputError.
+    """
+    if options.output is not None:
+        write_output(options.output, dataset_writers(dataset, dataset.to_dataframe))
+    if options.figure is not None:
+        from microslip.report.figures.drawing import draw, save
+
+        save(draw(figure, {figure: dataset}), options.figure)

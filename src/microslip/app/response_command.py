@@ -77,15 +77,14 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def _answer(options: argparse.Namespace) -> Answer:
     arguments = typed_options(options, reals=("tolerance",))
-    output = arguments.pop("output", None)
-    refuse_output(output, options.path)
+    refuse_output(options.output, options.path)
     real = arguments.keys() - WITHOUT_CONTACT
     with elapsed_time("microslip response"):
         answer = (_real if real else _dimensionless)(options.path, arguments)
     dataset = answer.to_xarray()
     texts = [] if answer.converged else [f"# NOT CONVERGED: {answer.reason}"]
-    if output is not None:
-        write_output(output, dataset_writers(dataset, _frame(dataset), index=False))
+    if options.output is not None:
+        write_output(options.output, dataset_writers(dataset, lambda: _frame(dataset), index=False))
     else:
         texts.append(short_csv(_frame(_without_rounding(dataset))))
     plain = {name: values.tolist() for name, (_, values) in answer.columns.items()}
