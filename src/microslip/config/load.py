@@ -31,6 +31,7 @@ from microslip.config.strict_yaml import StrictLoader
 from microslip.foundation import named_files
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
+from microslip.foundation.named_files import NamedFile
 
 MOST_BYTES = 1_000_000
 """Largest size of a configuration in bytes.  PyYAML reads about 100 kB per second."""
@@ -128,7 +129,8 @@ def with_defaults_and_paths(
         for name, entry in entries.items():
             with _errors_at(f"{source}: {key}.{name}"):
                 for role in filter(entry.__contains__, ROLES):
-                    entry[role] = _with_path(entry[role], role, folders, strict)
+                    if file := _file_in(entry[role], role, folders, strict):
+                        entry[role] = file.placed
     return filled
 
 
@@ -164,23 +166,24 @@ def _settings(mapping: dict, source: str) -> Root:
         raise ConfigError(f"{source}: {line}") from None
 
 
-def _with_path(name: str, role: str, folders: Iterable, strict: bool) -> str:
-    """Add the path and the digest of the file to the name of a motion or a pressure.
+def _file_in(name: str, role: str, folders: Iterable, strict: bool) -> NamedFile | None:
+    """Return the file in the name of a motion or a pressure, with its path and digest.
 
-    A name without a file is returned unchanged.  For a missing file, raises InputError if `strict`
-    is True, and otherwise returns the name unchanged.
+    Returns None for a name without a file.  For a missing file, raises InputError if `strict` is
+    True, and otherwise returns None.
     """
     if not named_files.speaks_of_file(name):
-        return name
+        return None
     try:
         file = named_files.parse(name, role)
         if not (file.digest and file.path):
-            return named_files.read(name, role, folders)[0].placed
+            return named_files.read(name, role, folders)[0]
         named_files.remember([name])  # an earlier call found the file
+        return file
     except InputError:
         if strict:
             raise
-    return name
+        return None
 
 
 @contextmanager
@@ -323,11 +326,8 @@ def _refuse_taken(name: str, others: Iterable[str]) -> None:
 def _by_content(name: str, role: str, folders: Iterable, strict: bool) -> str:
     """Name of a motion or a pressure.  The path of a file in the name is replaced by the file's
     digest."""
-    placed = _with_path(name, role, folders, strict)
-    if not named_files.speaks_of_file(placed):
-        return placed
-    file = named_files.parse(placed, role)
-    return file.name if file.digest else placed
+    file = _file_in(name, role, folders, strict)
+    return name if file is None else file.name
 
 
 def _refuse_mixtures(sweeps: list[Sweep]) -> None:

@@ -34,10 +34,9 @@ def profile(name: str, dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 3.1 * -(-len(contests) // 2))
     grid = panels.grid(figure, len(contests), 2)
     tolerance = look.power_of_ten(float(dataset["map_tolerance"]))
-    letters = look.letters(len(contests))
-    for axes, letter, contest in zip(grid, letters, contests, strict=True):
+    for axes, contest in zip(grid, contests, strict=True):
         _profile(axes, dataset.isel(competitor=of_contest == contest), contest == contests[0])
-        panels.legend_above(axes, letter, rf"{contest}, error within ${tolerance}$")
+        panels.legend_above(axes, rf"{contest}, error within ${tolerance}$")
     return figure
 
 
@@ -73,10 +72,10 @@ def scaling(name: str, dataset: xr.Dataset) -> Figure:
     """Draw a panel for each quantity, with a curve for each model and its fitted exponent."""
     figure = look.new_figure(look.DOUBLE, 3.1)
     grid = figure.subplots(1, len(GROWTH), sharex=True)
-    for letter, axes, (quantity, label) in zip("abc", grid, GROWTH.items(), strict=True):
+    for axes, (quantity, label) in zip(grid, GROWTH.items(), strict=True):
         _growth(axes, dataset, quantity)
         axes.set(xlabel="unknowns  $N$  (dimensionless)", ylabel=label)
-        panels.legend_above(axes, letter, "fitted growth", ncols=1)
+        panels.legend_above(axes, "fitted growth", ncols=1)
     return figure
 
 

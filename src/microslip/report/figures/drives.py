@@ -51,8 +51,8 @@ def pairs(name: str, *datasets: xr.Dataset) -> Figure:
     right.plot(form, forces, label="its closed form", **ink)
     velocity = pair["velocity"].values
     amplitude = f"amplitude {float(pair['amplitude']):g}, along the motion"
-    panels.letter(left, "a", f"one contact, {amplitude}")
-    panels.letter(right, "b", "two in antiphase")
+    panels.heading(left, f"one contact, {amplitude}")
+    panels.heading(right, "two in antiphase")
     for axes in (left, right):
         panels.logarithmic(axes, (velocity[0] / MARGIN, velocity[-1] * MARGIN))
         axes.set_xlabel(look.axis(VELOCITY["transverse"]))
@@ -76,7 +76,7 @@ def _over_velocity(
     panels.logarithmic(axes, (velocity[velocity > 0.0][0], velocity[-1]))
     axes.set(xlabel=look.axis(VELOCITY["transverse"]), ylabel=look.FRICTION_IN_TWO_LINES)
     panels.unit_range(axes)
-    panels.legend_above(axes, "a", f"amplitude {amplitude:g}, lateral oscillation")
+    panels.legend_above(axes, f"amplitude {amplitude:g}, lateral oscillation")
 
 
 def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
@@ -92,7 +92,7 @@ def _over_mass(axes: Axes, transverse: xr.Dataset, body: xr.Dataset) -> None:
     panels.logarithmic(axes, mass[[0, -1]])
     axes.set(xlabel=look.axis(DRIVES["mass"]), ylabel=look.FRICTION_IN_TWO_LINES)
     at = look.conditions([(VELOCITY["transverse"].latex, velocity)])
-    panels.legend_above(axes, "b", f"a mass on a spring, {at}", ncols=3)
+    panels.legend_above(axes, f"a mass on a spring, {at}", ncols=3)
 
 
 def _springs(axes: Axes, dataset: xr.Dataset, dim: str, name: str = "spring, ", **ink: Any) -> None:

@@ -68,12 +68,11 @@ def _maps(datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     fills, contours = levels_of(datasets)
     grid = panels.grid(figure, count, columns_)
     entries: dict[str, Artist] = {}
-    shown = zip(grid, look.letters(count), datasets, titles, strict=True)
-    for axes, letter, dataset, title in shown:
+    for axes, dataset, title in zip(grid, datasets, titles, strict=True):
         filled, handles, _ = fill(axes, dataset, fills, contours, look.SMALLEST)
         entries |= {str(handle.get_label()): handle for handle in handles}
         axes.set_gid("map")
-        panels.letter(axes, letter, title, 0.8 * width / columns_ - 0.1)
+        panels.heading(axes, title, 0.8 * width / columns_ - 0.1)
     for dim in ("velocity", "amplitude"):
         _label_maps(figure, grid, dim, datasets)
     label = look.FRICTION if rows > 1 or columns_ < 3 else look.FRICTION_IN_TWO_LINES

@@ -38,6 +38,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         axes.set_axisbelow(True)
     symbols = VELOCITY["transverse"].latex, AMPLITUDE["transverse"].latex
     values = (float(dataset[f"history_{n}"]) for n in ("velocity", "amplitude"))
-    panels.legend_above(upper, "a", look.conditions(zip(symbols, values, strict=True)))
-    panels.letter(lower, "b")
+    panels.legend_above(upper, look.conditions(zip(symbols, values, strict=True)))
+    panels.heading(lower)
     return figure

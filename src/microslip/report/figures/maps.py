@@ -66,14 +66,14 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     if len(parts) < len(every):
         some = f"{len(parts)} of the {len(every)} Poisson's ratios in the dataset"
         figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
-    letters, alone = look.letters(len(parts) + 2), len(parts) == 1
+    alone = len(parts) == 1
     quantities = VELOCITY[motion], AMPLITUDE[motion]
     labels = [look.axis(one if alone else replace(one, unit="")) for one in quantities]
     for index, (axes, part) in enumerate(zip(maps, parts, strict=True)):
         poisson = float(part["poisson"])
         filled, handles, unconverged = fill(axes, part)
         ratio = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
-        panels.letter(axes, letters[index], ratio)
+        panels.heading(axes, ratio)
         axes.set_xlabel(labels[0])
         if handles:
             if unconverged:
@@ -85,8 +85,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             axes.set_ylabel(labels[1])
     friction = look.FRICTION if alone else look.FRICTION_IN_TWO_LINES
     panels.colour_bar(filled, maps, friction, aspect=32, ticks=np.linspace(0, 1, 6))
-    _static_cut(static_cut, parts, motion, letters[-2])
-    _large_cut(large_cut, parts, motion, letters[-1])
+    _static_cut(static_cut, parts, motion)
+    _large_cut(large_cut, parts, motion)
     return figure
 
 
@@ -104,7 +104,7 @@ def _page(count: int) -> tuple[Figure, list[Axes], Axes, Axes]:
     return figure, panels.grid(upper, count, across), *lower.subplots(1, 2)
 
 
-def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str, letter: str) -> None:
+def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
     """Draw mu_macro against the amplitude at the smallest velocity, with the static limits."""
     velocity = float(parts[0]["velocity"][0])
     for name in CURVES[motion]:
@@ -113,7 +113,7 @@ def _static_cut(axes: Axes, parts: list[xr.Dataset], motion: str, letter: str) -
     _points(axes, [part.sel(velocity=velocity) for part in parts], "amplitude")
     where = "left edge" if velocity > 0 else "static limit"
     at = look.conditions([(VELOCITY[motion].latex, velocity)])
-    panels.legend_above(axes, letter, f"{where}, {at}")
+    panels.legend_above(axes, f"{where}, {at}")
     axes.set(xlabel=look.axis(AMPLITUDE[motion]), xlim=_where_not_zero(axes))
 
 
@@ -125,13 +125,13 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
     return x.min(), min(max(1.5 * last, following), x.max())
 
 
-def _large_cut(axes: Axes, parts: list[xr.Dataset], motion: str, letter: str) -> None:
+def _large_cut(axes: Axes, parts: list[xr.Dataset], motion: str) -> None:
     """Draw mu_macro against the velocity at the largest amplitude, with the limit from theory."""
     amplitude = float(parts[0]["amplitude"][-1])
     _curve(axes, parts, motion, LARGE, amplitude=amplitude)
     _points(axes, [part.sel(amplitude=amplitude) for part in parts], "velocity")
     at = look.conditions([(AMPLITUDE[motion].latex, amplitude)])
-    panels.legend_above(axes, letter, f"top edge, {at}")
+    panels.legend_above(axes, f"top edge, {at}")
     velocity = parts[0]["velocity"].values
     axes.set_xlabel(look.axis(VELOCITY[motion]))
     panels.logarithmic(axes, (velocity[velocity > 0][0], velocity[-1]))

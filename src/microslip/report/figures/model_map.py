@@ -27,12 +27,11 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     models = look.in_order(names - {""})
     figure = look.new_figure(look.DOUBLE, 5.9)
     grid = figure.subplots(len(MOTIONS), tolerances.size, squeeze=False, sharex="row", sharey="row")
-    letters = iter(look.letters(grid.size))
     for row, motion in zip(grid, MOTIONS, strict=True):
         for index, axes in enumerate(row):
             _panel(axes, dataset.isel(map_tolerance=index), motion, models)
             tolerance = look.power_of_ten(float(tolerances[index]))
-            panels.letter(axes, next(letters), rf"{motion}, error within ${tolerance}$")
+            panels.heading(axes, rf"{motion}, error within ${tolerance}$")
             axes.set_xlabel(look.axis(VELOCITY[motion]))
         row[0].set_ylabel(look.axis(AMPLITUDE[motion]))
     handles = [

@@ -32,16 +32,25 @@ def grid(figure: Figure | SubFigure, count: int, across: int, **shared: bool) ->
     return axes[:count]
 
 
-def letter(axes: Axes, which: str, note: str = "", room: float = np.inf) -> None:
+def lettered(axes: Axes, note: str = "") -> str:
+    """Return the heading of a panel: the next letter of its figure, bold and in brackets, and an
+    optional note."""
+    figure: Any = axes.get_figure(root=True)
+    figure.letters = [*getattr(figure, "letters", ()), axes]
+    letter = look.letters(len(figure.letters))[-1]
+    return rf"$\bf{{({letter})}}$" + (rf"$\;$ {note}" if note else "")
+
+
+def heading(axes: Axes, note: str = "", room: float = np.inf) -> None:
     """Write a letter and a note above a panel, in lines at most `room` inches wide."""
-    text = look.wrapped(look.heading(which, note), room, look.HEADING)
+    text = look.wrapped(lettered(axes, note), room, look.HEADING)
     axes.set_title(text, loc="left", pad=5, fontsize=look.HEADING)
 
 
-def legend_above(axes: Axes, which: str, note: str = "", ncols: int = 2) -> None:
+def legend_above(axes: Axes, note: str = "", ncols: int = 2) -> None:
     """Write a letter, a note and a legend above a panel."""
     legend = axes.legend(
-        title=look.heading(which, note),
+        title=lettered(axes, note),
         title_fontsize=look.HEADING,
         alignment="left",
         loc="lower left",

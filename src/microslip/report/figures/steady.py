@@ -70,7 +70,7 @@ def transients(name: str, dataset: xr.Dataset) -> Figure:
             ink: look.Ink = {"color": color, "ls": look.DASHED, "lw": 1.0, "zorder": 1.5}
             ink |= {"gid": theory}
             axes.axhline(float(at[theory]), label=f"{what}, {equation}", **ink)
-        panels.letter(axes, look.letters(index + 1)[-1], STARTS.get(start, look.literal(start)))
+        panels.heading(axes, STARTS.get(start, look.literal(start)))
     grid[0].set(ylabel=LABEL, xlim=(0.0, float(dataset["transient_displacement"].max())))
     grid[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     panels.unit_range(grid[0])
