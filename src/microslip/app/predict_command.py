@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
-from microslip.app import predicted_propulsion, predicted_table
+from microslip.app import predicted_table
 from microslip.app.option_parser import StoreSpelling
 from microslip.app.question import (
     FILE_FORMAT,
@@ -99,6 +100,18 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 """Options by heading in the help text.  Each option has a metavar and a help text."""
 WITH = {"output": "--table or a range", "figure": "a range"} | dict.fromkeys(FILE_FORMAT, "--table")
 """Options that require another option."""
+REFUSED = dict.fromkeys(
+    ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
+    "the motion propels the body by itself",
+)
+REFUSED["rotation"] = "a self-propelled motion has no steady spin"
+REFUSED |= dict.fromkeys(("radius_across", "contact_radius", "pressure"), "the body is a sphere")
+REFUSED["map"] = "a map contains the friction at a speed"
+REFUSED |= dict.fromkeys(
+    ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
+    "numbers after the name of the motion set the components and their phases",
+)
+"""Options of predict that --propulsion does not accept, and the reasons."""
 ABOUT_GROUPS = {
     "drive": "For an oscillating normal load there are two reference loads.  Stiffness, mass and "
     "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
@@ -175,9 +188,20 @@ def _answer(options: argparse.Namespace) -> Answer:
         return predicted_table.answer(options, arguments)
     with elapsed_time("microslip predict"):
         if options.propulsion:
-            line = predicted_propulsion.line_of(options.motion, arguments)
-            return Answer(line.to_dict(), str(line), line.converged)
+            return _propulsion(options.motion, arguments)
         if "points" in arguments:
             raise InputError("points", arguments["points"], "allowed only with --propulsion")
         prediction = predict(options.motion, **{"mu": None} | arguments)
     return Answer(prediction.to_dict(), str(prediction), prediction.converged)
+
+
+def _propulsion(motion: str, arguments: dict[str, Any]) -> Answer:
+    """Compute the force-speed line of a self-propelled motion."""
+    from microslip.si.propulsion import predict_propulsion
+
+    for name, reason in REFUSED.items():
+        if name in arguments:
+            raise InputError(name, arguments[name], f"not allowed with --propulsion: {reason}")
+    missing: dict[str, Any] = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
+    line = predict_propulsion(motion, **missing | arguments)
+    return Answer(line.to_dict(), str(line), line.converged)
