@@ -301,10 +301,10 @@ FAILING = """
 from microslip.foundation.errors import SolverError
 _good = solve
 
-def solve(motion, velocity, *arguments, **settings):
-    if velocity == 2 and not (_folder / "mended").exists():
+def solve(**arguments):
+    if arguments["velocity"] == 2 and not (_folder / "mended").exists():
         raise {error}("no luck")
-    return _good(motion, velocity, *arguments, **settings)
+    return _good(**arguments)
 """
 
 
