@@ -5,13 +5,12 @@ import logging
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from stubs.in_process import ENVIRONMENT
 
-import microslip
 from microslip.app import cli, job_log
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError
@@ -19,7 +18,6 @@ from microslip.report.figures.data import loaded
 from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
-SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
 REQUEST = {
     "kind": "point",
@@ -206,7 +204,7 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     before = dataset.read_bytes()
     process = subprocess.run(
         [sys.executable, "-c", FULL_DISK, dataset],
-        env={**os.environ, "PYTHONPATH": SOURCE},
+        env=ENVIRONMENT,
         capture_output=True,
         text=True,
         timeout=60,

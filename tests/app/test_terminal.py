@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 from stubs import in_process
+from stubs.in_process import ENVIRONMENT
 
 import microslip
 from microslip.foundation.compiled import OPTIONS
 
 PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
 

@@ -107,7 +107,7 @@ def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
 
 
 def with_defaults_and_paths(
-    mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
+    mapping: dict, source: str = "configuration", folders: Iterable = ()
 ) -> dict:
     """Fill in the defaults and the file paths of a parsed configuration.
 
@@ -117,8 +117,6 @@ def with_defaults_and_paths(
     ----------
     mapping, source, folders
         As for `from_mapping`.
-    strict : bool
-        True to refuse a missing file.
 
     Raises
     ------
@@ -129,7 +127,7 @@ def with_defaults_and_paths(
         for name, entry in entries.items():
             with _errors_at(f"{source}: {key}.{name}"):
                 for role in filter(entry.__contains__, ROLES):
-                    if file := _file_in(entry[role], role, folders, strict):
+                    if file := _file_in(entry[role], role, folders, strict=True):
                         entry[role] = file.placed
     return filled
 
