@@ -51,12 +51,12 @@ NO_FRICTION = ("force", "reduction")
 WITHOUT_CONTACT = {"nu", "pressure", *IWAN_OPTIONS}
 """Options that are also allowed without a contact in SI units."""
 COLUMNS = {
-    "mu_apparent": ("1", "coefficient of friction with vibration"),
-    "mu_apparent_error": ("1", "error estimate of mu_apparent"),
-    "friction_force": ("N", "mean friction force"),
-    "friction_force_error": ("N", "error estimate of the friction force"),
+    "mu_apparent": "coefficient of friction with vibration",
+    "mu_apparent_error": "error estimate of mu_apparent",
+    "friction_force_N": "mean friction force",
+    "friction_force_error_N": "error estimate of the friction force",
 }
-"""Unit and long name of each column in a friction table."""
+"""Long name of each column in a friction table."""
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -176,13 +176,11 @@ def _interpolation_text(errors: Mapping[str, float | None]) -> str:
 
 def _friction_table(dataset: xr.Dataset) -> xr.Dataset:
     """Return the columns of a friction table.  Each axis is named after its argument."""
-    variables = {
-        name: (tuple(dataset.dims), dataset[column].values, {"units": unit, "long_name": text})
-        for name, (unit, text) in COLUMNS.items()
-        for column in [name if unit == "1" else f"{name}_{unit}"]
-    }
-    axes = {axis: dataset[axis].attrs["long_name"].replace(" ", "_") for axis in dataset.dims}
-    return dataset.drop_vars(list(dataset.data_vars)).assign(variables).rename(axes)
+    table = dataset[list(COLUMNS)]
+    for name, text in COLUMNS.items():
+        table[name].attrs["long_name"] = text
+    names = {axis: dataset[axis].attrs["long_name"].replace(" ", "_") for axis in dataset.dims}
+    return table.rename({name: name.removesuffix("_N") for name in COLUMNS} | names)
 
 
 def _answer(
