@@ -9,6 +9,7 @@ import io
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any, NoReturn
@@ -24,6 +25,9 @@ OF_SIGNAL = 128
 """Offset of the exit code: a program that is ended by signal n returns this number plus n."""
 
 STOPPED_BY = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "terminal closed"}
+STACK = 2**24
+"""Size of a thread's stack in bytes, 16 MB.  Some systems give a thread less than the compiler of
+the kernels needs."""
 WAIT = 0.1
 """Longest wait in seconds before pending signals are handled.  Windows handles none during a
 wait."""
@@ -131,6 +135,7 @@ def _code_in_thread(command: Callable[[], int]) -> int:
     Python handles signals in the main thread, between two bytecode instructions.  A compiled kernel
     is one instruction, which may take a minute, but does not block other threads.
     """
+    threading.stack_size(STACK)
     code = ThreadPoolExecutor(1).submit(_code_of, command)
     while not code.done():
         wait([code], WAIT)
