@@ -5,22 +5,19 @@ import logging
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from stubs.in_process import ENVIRONMENT
 
-import microslip
 from microslip.app import cli, job_log
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError
-from microslip.report.figures import drawing
 from microslip.report.figures.data import loaded
 from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
-SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
 REQUEST = {
     "kind": "point",
@@ -207,7 +204,7 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     before = dataset.read_bytes()
     process = subprocess.run(
         [sys.executable, "-c", FULL_DISK, dataset],
-        env={**os.environ, "PYTHONPATH": SOURCE},
+        env=ENVIRONMENT,
         capture_output=True,
         text=True,
         timeout=60,
@@ -216,37 +213,3 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     assert f"cannot write {dataset}: " in process.stdout and "make room" in process.stdout
     assert dataset.read_bytes() == before
     assert {p.name for p in dataset.parent.iterdir()} == {"bore.nc"}
-
-
-# Unsuitable datasets for figures
-
-
-@pytest.mark.parametrize(
-    ("figure", "datasets", "parts"),
-    [
-        ("fig7", {}, ["unknown figure 'fig7'", "fig1_force_history, "]),
-        ("fig6_bore_map", {}, ["needs the dataset 'bore'", "datasets: none"]),
-        ("fig6_bore_map", {"bores": data()}, ["needs the dataset 'bore'", "datasets: 'bores'"]),
-        ("fig6_bore_map", {"bore": data()}, ["dataset 'bore' has no variable", "'amplitude'"]),
-        ("fig2_transverse_map", {"transverse": data()}, ["is of 'bore'", "allowed: 'transverse'"]),
-        (
-            "fig4_continuous_bore",
-            {"continuous_bore": data().assign_attrs(motion="spin")},
-            ["dataset 'continuous_bore' is of 'spin'", "allowed: 'continuous-bore'"],
-        ),
-        ("stability_atlas", {"stability": data()}, ["dataset 'stability' has no variable"]),
-    ],
-)
-def test_a_figure_of_other_data_is_one_line(figure, datasets, parts):
-    with pytest.raises(ValueError) as caught:
-        drawing.draw(figure, datasets)
-    message = one_line(caught)
-    assert figure in message and [part for part in parts if part not in message] == []
-
-
-@pytest.mark.parametrize("name", ["figure", "figure.jpg", "figure.svg"])
-def test_a_figure_of_another_format_is_one_line(name, tmp_path):
-    with pytest.raises(ValueError, match=r"must end in .png or .pdf$") as caught:
-        drawing.save(None, tmp_path / name)
-    assert repr(name) in one_line(caught)
-    assert not list(tmp_path.iterdir())

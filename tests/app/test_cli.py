@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from stubs.in_process import run
+from stubs.in_process import run, run_apart
 from stubs.point_contract import CONTRACT
 
 import microslip
@@ -16,17 +16,6 @@ from microslip.motions.by_name import MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"
-
-
-def run_process(*arguments):
-    """Run the command in a process of its own, as users do."""
-    return subprocess.run(
-        [sys.executable, "-m", "microslip", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
 
 
 @pytest.mark.parametrize(
@@ -64,7 +53,7 @@ def test_json_is_the_answer_of_solve_and_nothing_else(motion, arguments):
     [("continuous-bore", "--velocity", 0.5), ("bore", "--velocity=-1", "--amplitude", 1)],
 )
 def test_a_process_says_what_the_command_says(arguments):
-    alone, here = run_process("point", *arguments), run("point", *arguments)
+    alone, here = run_apart("point", *arguments), run("point", *arguments)
     assert (alone.returncode, alone.stderr) == (here.returncode, here.stderr)
     assert without_time(alone.stdout) == without_time(here.stdout)
 
@@ -164,7 +153,7 @@ def test_help_explains_the_terms(arguments, words):
 
 
 def test_version_is_that_of_the_package():
-    process = run_process("--version")
+    process = run_apart("--version")
     assert (process.returncode, process.stdout) == (0, f"microslip {microslip.__version__}\n")
 
 
@@ -245,15 +234,6 @@ def test_poissons_ratio_goes_by_two_names_and_is_what_was_written(name, settings
     ]
     assert cli.main(command) == 0
     assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
-
-
-def test_an_error_without_an_option_is_one_line(monkeypatch, capsys):
-    def failing(**_):
-        raise ValueError("pressure: the file\nis odd")
-
-    monkeypatch.setattr(microslip, "solve", failing, raising=False)
-    assert cli.main([*TRANSVERSE]) == 2
-    assert capsys.readouterr().err == "microslip point transverse: pressure: the file is odd\n"
 
 
 def test_public_names_are_listed_before_they_are_used():

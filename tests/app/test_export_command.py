@@ -10,7 +10,7 @@ import pytest
 from stubs import certified_stub
 
 import microslip
-from microslip.app import cli, export_command
+from microslip.app import cli
 
 BODY = "--young '210 GPa' --nu 0 --mu 0.3 --radius '5 mm'"
 SAME = {"young": "210 GPa", "nu": 0, "mu": 0.3, "radius": "5 mm"}
@@ -176,7 +176,7 @@ def test_bad_input_is_one_line_with_code_2(capsys, command, parts):
 
 
 def test_a_table_with_a_point_outside_a_map_is_not_written(tmp_path, capsys, monkeypatch):
-    certified_stub.open_without_points(monkeypatch, export_command)
+    certified_stub.open_without_points(monkeypatch)
     file = tmp_path / "a.csv"
     axis = "--load '10 N' --speed '10 mm/s' --amplitude '0.1..0.2 um, 2' --map certified.nc"
     code, out, error = run(capsys, f"table transverse {VIBRATED} {axis} --output {file}")

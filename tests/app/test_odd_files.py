@@ -1,17 +1,14 @@
 """Unusual files and damaged files: the right result, or one line with the reason."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
+from stubs.in_process import run_apart
 from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
 
-import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.config.records import ConfigError
@@ -19,8 +16,6 @@ from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
 from microslip.pressures.by_name import pressure_named
-
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 def one_line(caught, words):
@@ -182,14 +177,8 @@ def sweep(folder, *arguments, **environment):
     (folder / "tiny.yaml").write_text(
         "sweeps: {bore: {velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}}\n"
     )
-    return subprocess.run(
-        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": SOURCE} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    words = ("sweep", "-n", "--configfile", *arguments)
+    return run_apart(*words, folder=folder, **environment)
 
 
 @pytest.mark.long

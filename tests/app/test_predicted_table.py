@@ -9,7 +9,7 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.app import cli, predict_command
+from microslip.app import cli
 from microslip.datasets import certified_map
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
@@ -237,7 +237,7 @@ def test_bad_ranges_and_files_are_refused_before_any_work(words, said, folder, c
 
 
 def test_a_point_outside_a_map_is_reported_with_the_path_of_the_map(folder, capsys, monkeypatch):
-    certified_stub.open_without_points(monkeypatch, predict_command)
+    certified_stub.open_without_points(monkeypatch)
     assert cli.main([*RANGED, "--map", "certified.nc"]) == 1
     assert "--map = 'certified.nc': at velocity" in capsys.readouterr().err
 

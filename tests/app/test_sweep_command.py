@@ -11,16 +11,14 @@ from pathlib import Path
 import pytest
 from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
+from stubs.in_process import ENVIRONMENT
 
-import microslip
 from microslip.app import sweep_command
 from microslip.config import load
 
 ROOT = Path(__file__).parents[2]
-SOURCE = str(Path(microslip.__file__).parent.parent)
 SWEEP = [sys.executable, "-m", "microslip", "sweep"]
 SNAKEMAKE = [str(Path(sys.executable).with_name("snakemake")), "-s", str(ROOT / "Snakefile")]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": SOURCE}
 
 
 def run(command, folder):

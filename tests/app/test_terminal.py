@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 from stubs import in_process
+from stubs.in_process import ENVIRONMENT
 
 import microslip
 from microslip.foundation.compiled import OPTIONS
 
 PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
 INTERRUPTED = (130, "", "microslip: interrupted\n")
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
 
@@ -150,33 +150,6 @@ def test_an_interrupt_leaves_no_file_half_written(tmp_path):
     command = [sys.executable, "-c", WRITING, str(tmp_path / "point.json")]
     assert stopped(command, lambda _: list(tmp_path.iterdir())) == INTERRUPTED
     assert list(tmp_path.iterdir()) == []
-
-
-SWALLOWING = """
-import time
-from microslip.app import terminal
-
-class Deaf:
-    def __del__(self):
-        open({ready!r}, "w").close()
-        time.sleep(1000)
-
-def command():
-    try:
-        Deaf()
-        time.sleep(1000)
-    except BaseException:
-        raise RuntimeError("something else")
-
-terminal.run(command)
-"""
-
-
-def test_an_interrupt_that_a_library_swallows_is_one(tmp_path):
-    """A KeyboardInterrupt during the shutdown of Python would print three lines."""
-    ready = tmp_path / "ready"
-    command = [sys.executable, "-c", SWALLOWING.format(ready=str(ready))]
-    assert stopped(command, lambda _: ready.exists()) == INTERRUPTED
 
 
 # Pipes, devices and streams

@@ -60,7 +60,7 @@ BAD = [
     (SPRINGS | {"mass": "heavy"}, "mass: "),
     (SPRINGS | {"model": "rigid"}, "model: 'rigid': supports no stiffness"),
     (SPRINGS | {"group": "g"}, "group"),
-    ({"motion": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: allowed is"),
+    ({"motion": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: needed;"),
     (
         SPRINGS | {"motion": "longitudinal", "velocity": [0, 1]},
         "velocity: 0.0: allowed is a number",

@@ -202,7 +202,7 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
     # A job runs in another folder and process.
     mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
     result = load.from_mapping(handed, ask_solver=False)
     assert sweep.points_of(result.extended["pad"]).requests == batches[0]
@@ -224,7 +224,7 @@ def test_a_file_of_a_motion_is_handed_on_like_that_of_a_pressure(tmp_path, monke
     assert {request["motion"] for request in requests} == {name}
     assert result.propulsion.motions["stroke"].motion == name
     handed = load.with_defaults_and_paths(mapping, folders=[tmp_path])
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     monkeypatch.chdir("/")
     load.remember_files(handed)
     assert motion_named(name).name == name
@@ -251,7 +251,7 @@ def test_a_dataset_of_a_file_is_read_without_the_file(monkeypatch, tmp_path):
     motion = f"file:{tmp_path / 'stroke.csv'}"
     data = built(tmp_path, "stroke", motion=motion, amplitude=[0.5, 1])
     assert data.attrs["motion_file"] == "stroke.csv"
-    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.setattr("microslip.foundation.named_files.PLACES", {})
     place = {"velocity": 0.1, "amplitude": 0.5}
     answer = data.microslip.at(**place)
     assert float(answer.mu_macro) == pytest.approx(float(data.mu_macro.sel(**place)))

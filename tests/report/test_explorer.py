@@ -257,19 +257,6 @@ def test_text_in_a_dataset_cannot_end_the_script(made):
     assert page.page(content).count("</script>") == page.page(made[2]).count("</script>")
 
 
-def test_a_period_that_belongs_to_no_point_is_refused(made):
-    datasets, records, _ = made
-    stray = records["bore"][0] | {"request": records["bore"][0]["request"] | {"velocity": "7"}}
-    with pytest.raises(ValueError, match="a period at '7', which is not on the map"):
-        payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
-
-
-def test_a_dataset_with_a_missing_variable_is_refused(made):
-    datasets, records, _ = made
-    with pytest.raises(ValueError, match="explorer: dataset 'bore' has no variable 'mu_static'"):
-        payload.build({"bore": datasets["bore"].drop_vars("mu_static")}, records)
-
-
 def test_the_log_names_periods_that_did_not_converge(made):
     lines = list(explorer.report(made[1]))
     assert lines[0] == "explorer: transverse: 6 periods, 1 not converged"

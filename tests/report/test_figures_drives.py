@@ -70,10 +70,3 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert velocity == pytest.approx(2.0 / np.pi * bound ** (2 / 3))
     on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
-
-
-def test_a_sweep_without_the_amplitude_of_the_drives_is_refused():
-    datasets = pulled()
-    datasets["transverse"] = datasets["transverse"].assign_coords(amplitude=[1.1])
-    with pytest.raises(ValueError, match="amplitude 1"):
-        drawing.draw("drives", datasets)

@@ -105,8 +105,6 @@ def test_any_number_of_points_has_room_for_panels_and_legends(points, accuracy):
     assert len(panels) == points and len(legends) == 2
     for index, box in enumerate(legends):
         assert not any(box.overlaps(other) for other in [*panels, *legends[index + 1 :]])
-    with pytest.raises(ValueError, match="no points or no trials"):
-        drawing.draw("accuracy_vs_work", {"accuracy_cost": data.isel(trial=[])})
 
 
 def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(accuracy):

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from microslip.app import question
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.si.friction_map import FrictionMap
@@ -91,12 +92,12 @@ def solved(request):
     return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
 
-def open_without_points(monkeypatch, command):
-    """Let a command open a map of transverse that contains no point."""
+def open_without_points(monkeypatch):
+    """Let commands open a map of transverse that contains no point."""
 
     def outside(*_):
         raise ValueError("outside the map")
 
     monkeypatch.setattr(FrictionMap, "at", outside)
     dataset = xr.Dataset(attrs={"motion": "transverse"})
-    monkeypatch.setattr(command, "opened_map", lambda _: dataset)
+    monkeypatch.setattr(question, "_opened_map", lambda _: dataset)

@@ -88,7 +88,7 @@ def test_references_are_ordinary_points_and_tight():
 @pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     requests = [json.loads(text) for text in asked(study, configured())]
-    names = {batches.key_of(request, "d") for request in requests}
+    names = {batches.key_of(request) for request in requests}
     assert len(names) == len({canonical_json(request) for request in requests})
     for request in requests:
         assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())

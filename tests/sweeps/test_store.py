@@ -9,11 +9,10 @@ import signal
 import subprocess
 import sys
 import textwrap
-from pathlib import Path
 
 import pytest
+from stubs.in_process import ENVIRONMENT
 
-import microslip
 from microslip.foundation import files
 from microslip.foundation.files import CacheError
 from microslip.sweeps.store import Store
@@ -23,7 +22,6 @@ RECORD = {
     "request": {"velocity": "0.1"},
     "result": {"mu_macro": 0.1 + 0.2, "reason": "", "x": None},
 }
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 @pytest.fixture
@@ -119,9 +117,7 @@ def test_killed_before_the_rename_nothing_is_lost(store, moment):
         os.{moment} = lambda *args: os.kill(os.getpid(), signal.SIGKILL)
         Store({str(store.folder)!r}).write("a", {KEY!r}, {{"other": 1}})
     """
-    jobs = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(program)], env={"PYTHONPATH": SOURCE}
-    )
+    jobs = subprocess.run([sys.executable, "-c", textwrap.dedent(program)], env=ENVIRONMENT)
     assert jobs.returncode == -signal.SIGKILL
     assert path.exists()
     assert len(leftovers(store)) == 1

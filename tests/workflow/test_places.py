@@ -172,7 +172,7 @@ def installed(ordinary):
 
     def microslip(place, *arguments):
         return subprocess.run(
-            [sys.executable, "-m", "microslip.app.cli", *arguments],
+            [sys.executable, "-m", "microslip", *arguments],
             cwd=place.folder,
             env={**ENVIRONMENT, "PYTHONPATH": str(folder)},
             capture_output=True,

@@ -22,11 +22,11 @@ import time
 from pathlib import Path
 _solve, _folder = solve, Path(__file__).parents[3]
 
-def solve(*arguments, **settings):
+def solve(**arguments):
     with open(_folder / "solved", "a") as file:
-        file.write(f"{arguments}\\n" if arguments else "")  # none to compile
+        file.write(f"{arguments}\\n" if "cells" in arguments else "")  # not to compile
     time.sleep(0.3 * (_folder / "slow").exists())
-    return _solve(*arguments, **settings)
+    return _solve(**arguments)
 """
 
 
@@ -301,10 +301,10 @@ FAILING = """
 from microslip.foundation.errors import SolverError
 _good = solve
 
-def solve(motion, velocity, *arguments, **settings):
-    if velocity == 2 and not (_folder / "mended").exists():
+def solve(**arguments):
+    if arguments["velocity"] == 2 and not (_folder / "mended").exists():
         raise {error}("no luck")
-    return _good(motion, velocity, *arguments, **settings)
+    return _good(**arguments)
 """
 
 

@@ -18,7 +18,7 @@ import xarray as xr
 
 from microslip.app.plan import product_job
 from microslip.datasets import certified_map, sweep_dataset
-from microslip.report import dataset_page, study_page
+from microslip.report import claims_page, dataset_page
 from microslip.studies import registry
 from microslip.sweeps import batches
 
@@ -50,7 +50,8 @@ def write_study(study, records) -> list[str]:
     data = registry.build(study, configuration, batches.lookup(records))
     sweep_dataset.write(data, path, registry.groups(study))
     lines = list(registry.report(study, data))
-    study_page.write(study, snakemake.output.summary, data, lines)
+    page = claims_page if study == "claims" else dataset_page
+    page.write(snakemake.output.summary, data, lines)
     return lines
 
 

@@ -194,7 +194,7 @@ def checked_drive(
     Raises InputError, which names the argument.
     """
     if velocity is None and force is None:
-        raise InputError("velocity", None, "allowed is a number, or a force in its place")
+        raise InputError("velocity", None, "needed; allowed is a number, or a force in its place")
     if velocity is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a velocity, not both")
     body = {"stiffness": stiffness, "mass": mass, "damping": damping}

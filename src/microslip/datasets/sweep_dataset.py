@@ -185,15 +185,15 @@ def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Set the attributes of the axes.  The attribute `formula` defines the coordinate."""
     motion = motion_named(sweep.motion)
-    axes = [(VELOCITY, motion.velocity_label)] if sweep.velocity else []
+    axes = [("velocity", VELOCITY, motion.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
-        axes.append((AMPLITUDE, motion.amplitude_label))
-    for of_paper, formula in axes:
-        quantity = of_paper["transverse"]  # names and texts are the same for all motions
-        about = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
+        axes.append(("amplitude", AMPLITUDE, motion.amplitude_label))
+    for name, of_paper, formula in axes:
+        text = of_paper["transverse"].text  # the same for all motions
+        about = {"long_name": f"{text}, {formula}", "units": "1", "formula": formula}
         if motion.name in of_paper:
             about["description"] = of_paper[motion.name].description
-        dataset[quantity.name].attrs = about
+        dataset[name].attrs = about
     for name, _, _ in sweep.drives:
         quantity = DRIVES[name]
         about = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}

@@ -22,7 +22,7 @@ from microslip.config.records import Sweep
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import refuse_no_folder, refuse_unusable
 from microslip.motions.problem import Problem
-from microslip.sweeps import batches
+from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
 
@@ -121,9 +121,7 @@ def solve_stored(
             raise
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
-    values = {"pressure": pressure} | request | record["result"]
-    numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
-    values |= {k: float(values[k]) for k in numbers if values.get(k) is not None}
+    values = {"pressure": pressure} | evaluate.arguments(request) | record["result"]
     return Result.from_dict(values | {"solve_time_s": time.perf_counter() - started})
 
 
