@@ -79,17 +79,10 @@ def _encoding(name: Hashable, kind: str) -> dict:
         return {"_FillValue": None}
     if kind in "OUT":
         # Texts are arrays of characters.  HDF5 loses the type of variable-length strings if a file
-        # is opened again while it is open, and Python then crashes.
-        return {"dtype": "S1", "char_dim_name": characters_of(name)}
+        # is opened again while it is open, and Python then crashes.  Each text has its
+        # own dimension of characters, so that a selection can be saved.
+        return {"dtype": "S1", "char_dim_name": f"characters_of_{name}"}
     return {}
-
-
-def characters_of(name: Hashable) -> str:
-    """Return the name of the character dimension of a text variable.
-
-    Each variable has its own character dimension, so that a selection of a dataset can be saved.
-    """
-    return f"characters_of_{name}"
 
 
 def refuse_oversized(path: str | os.PathLike[str]) -> None:

@@ -9,7 +9,6 @@ depend on the time, the computer or the number of jobs.
 import os
 from collections.abc import Iterable, Iterator, Sequence
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -46,7 +45,7 @@ def write_sweep(
     sweep : records.Sweep
         The sweep.
     points : iterable of dict
-        Records of the points in the order of batches.points_of.  They are read in blocks.
+        Records of the points in the order of batches.points_of.
     histories : list of dict
         Records of single runs in the order of batches.history_requests.
     settings : dict
@@ -59,7 +58,6 @@ def write_sweep(
     CacheError
         If the file cannot be written.
     """
-    axes = _axes(sweep)
     motion, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
@@ -77,12 +75,11 @@ def write_sweep(
         about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
     if sweep.contacts is not None:
         about["contacts"] = sweep.contacts
-    versions = {canonical_json(record["versions"]) for record in histories}
+    of_points, versions = point_variables.variables(sweep, _axes(sweep), points)
+    versions |= {canonical_json(record["versions"]) for record in histories}
+    root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))
     with writing_beside(path) as beside:
-        netcdf.write(beside, _root(sweep), _parts(sweep, histories))
-        with netCDF4.Dataset(beside, "a") as file:
-            versions |= point_variables.append(file, sweep, axes, points)
-            file.setncatts(provenance(title, settings, versions, **about))
+        netcdf.write(beside, root, _parts(sweep, histories))
 
 
 GROUPS = {
@@ -95,15 +92,15 @@ GROUPS = {
 """Titles of the groups in a sweep's file.  Each motion has only some of the groups."""
 
 
-def _root(sweep: Sweep) -> xr.Dataset:
-    """Return a dataset with the axes and the limits from theory, without the points."""
+def _root(sweep: Sweep, of_points: dict) -> xr.Dataset:
+    """Return a dataset with the axes, the limits from theory and the variables of the points."""
     coords: dict[str, tuple] = {
         name: (name, np.array(values)) for name, values in _axes(sweep).items()
     }
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
     coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
-    dataset = xr.Dataset(theory_limits.variables(sweep), coords)
+    dataset = xr.Dataset(theory_limits.variables(sweep) | of_points, coords)
     describe_axes(dataset, sweep)
     return dataset
 
