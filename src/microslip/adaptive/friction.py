@@ -10,7 +10,7 @@ from typing import NamedTuple
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import TOLERANCE, Request, verdict, within_friction
+from microslip.adaptive.request import TOLERANCE, Request, of_runs
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import refine, run_tolerance
@@ -59,8 +59,7 @@ def plan_for(request: Request) -> Plan:
 
     def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
         how = settings()
-        if request.progress is not None:
-            request.progress(resolution)
+        request.show(resolution)
         if problem.velocity == 0.0 and motion.periodic:
             return simulate_static(problem, request.model, resolution, share, how)
 
@@ -81,14 +80,7 @@ def solve_friction(request: Request) -> Result:
     """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
     problem, (run, ladder, readings) = request.problem, plan_for(request)
     refined = refine(run, ladder, request.accuracy, readings, energy_unit=problem.largest_energy)
-    return Result(
-        **request.point,
-        model=request.model,
-        friction=within_friction(problem, refined.value),
-        torque=None if problem.motion.periodic else refined.torque,
-        dissipation=refined.energy if problem.motion.periodic else None,
-        **verdict(request, refined, request.tolerance),
-    )
+    return of_runs(request, refined, request.tolerance)
 
 
 def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:

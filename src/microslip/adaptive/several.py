@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from microslip.adaptive.closed_forms import CLOSED_FORM, exact_result
+from microslip.adaptive.closed_forms import exact_result
 from microslip.adaptive.request import Request
-from microslip.adaptive.result import Result
+from microslip.adaptive.result import CLOSED_FORM, Result
 from microslip.estimate.estimate import Estimate
 from microslip.solver.effort import Effort
 

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from operator import attrgetter
 from typing import Any
 
 from microslip.adaptive.checks import checked_problem
-from microslip.adaptive.driven_contact import STATIC_TOLERANCE, refuse_drive
-from microslip.adaptive.request import Request, request_for, verdict
+from microslip.adaptive.driven_contact import STATIC_TOLERANCE
+from microslip.adaptive.request import Request, of_runs, request_for
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -46,6 +46,9 @@ accumulate over all periods.  Near the static limit, a run takes several hundred
 (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
+
+OF_RUNS = ("converged", "reason", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
+"""Fields that a Shakedown has in common with a Result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,7 +171,6 @@ def shakedown(
     request = request_for(
         problem, model, tolerance, most_work=most_work, time_limit=time_limit, progress=progress
     )
-    refuse_drive(problem, request.model)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
         raise InputError("motion", problem.motion.name, allowed)
@@ -225,17 +227,15 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     runs: dict[Resolution, ShakedownRun] = {}
 
     def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
-        if request.progress is not None:
-            request.progress(resolution)
+        request.show(resolution)
         runs[resolution] = run_to_rest(
             request.problem, force, request.model, resolution, remaining, settings
         )
         return runs[resolution]
 
     refined = refine(run, ladder, request.accuracy, read=attrgetter("displacement"))
-    answer = verdict(request, refined, request.tolerance)
-    names = {field.name for field in fields(Shakedown)}
-    result = {name: value for name, value in answer.items() if name in names}
+    answer = of_runs(request, refined, request.tolerance)
+    result = {name: getattr(answer, name) for name in OF_RUNS}
     result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
     result |= {
         "work": refined.effort.work,
