@@ -140,9 +140,10 @@ def fast_sliding(problem: Problem, tolerance: float) -> Exact | None:
     if largest_drop is None or (motion.rotates and problem.pressure != HERTZ):
         return None
     drop = largest_drop(problem.velocity, problem.size)
-    error, excess = 0.5 * drop + ROUNDING, 0.5 * drop / (4.0 - 2.0 * drop)
+    error = 0.5 * drop + ROUNDING
     if error > tolerance:
         return None
+    excess = 0.5 * drop / (4.0 - 2.0 * drop)
     drag = _within(1.0 + excess, excess + ROUNDING)
     return _of_drag(problem, _within(1.0 - 0.5 * drop, error), drag)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 from operator import attrgetter
 
 from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form
@@ -25,7 +24,7 @@ from microslip.adaptive.under_force import (
 )
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance
+from microslip.estimate.refine import UNKNOWN, Levels, Refined, refine, run_tolerance
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
@@ -295,17 +294,17 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
         refuse_free(ladder, request.cells, request.steps)
     settings = Settings(request.how, budget=request.budget)
 
-    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         request.show(resolution)
         return simulate_driven(problem, request.model, resolution, share, settings, guess=guess)
 
-    readings = [partial(run, problem=other) for other in problem.readings]
+    levels = Levels(run, ladder, problem, *problem.readings)
     read = attrgetter("mu" if drive.force is None else "velocity")
     unit, work = problem.largest_energy, 0.0
     if drive.force is not None:  # a velocity error changes the drift and the forces
         work = 2.0 * math.pi * problem.mean_load * problem.unit_drift * abs(drive.force)
         unit = accuracy.slope * unit + work
-    refined = refine(run, ladder, tolerance, readings, read, energy_unit=unit, drive_work=work)
+    refined = refine(levels, tolerance, read, energy_unit=unit, drive_work=work)
     if unresolved and refined.converged:
         refined = replace(refined, converged=False, reason=unresolved)
     return refined

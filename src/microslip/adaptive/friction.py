@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, partial
-from typing import NamedTuple
+from functools import cache
 
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.request import TOLERANCE, Request, of_runs
 from microslip.adaptive.result import Result
-from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
-from microslip.estimate.refine import refine, run_tolerance
+from microslip.estimate.ladder import ladder_for, refuse_free
+from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
@@ -23,28 +21,10 @@ from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import edge_focus
 
 
-class Plan(NamedTuple):
-    """Runs of a contact at a prescribed velocity, as arguments of refine.refine.
+def levels_for(request: Request) -> Levels:
+    """Runs of a contact at a prescribed velocity of at least 0.
 
-    Attributes
-    ----------
-    run : callable
-        Function `run(resolution, guess)` that returns a run.Run.
-    ladder : ladder.Ladder
-        Ladder of resolutions.
-    readings : list of callable
-        Functions like `run` that use other interpolations of the same data, see Problem.readings.
-    """
-
-    run: Callable
-    ladder: Ladder
-    readings: list[Callable]
-
-
-def plan_for(request: Request) -> Plan:
-    """Make the Plan of a point whose velocity is at least 0.
-
-    The runs of the plan raise budget.Spent if the point's budget is exceeded.
+    The runs raise budget.Spent if the point's budget is exceeded.
     """
     problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
     ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
@@ -57,7 +37,7 @@ def plan_for(request: Request) -> Plan:
         focus = edge_focus(problem, request.model, request.budget, request.progress)
         return Settings(request.how, budget=request.budget, focus=focus)
 
-    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:
         how = settings()
         request.show(resolution)
         if problem.velocity == 0.0 and motion.periodic:
@@ -72,14 +52,13 @@ def plan_for(request: Request) -> Plan:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
-    readings: list[Callable] = [partial(run, problem=other) for other in problem.readings]
-    return Plan(run, ladder, readings)
+    return Levels(run, ladder, problem, *problem.readings)
 
 
 def solve_friction(request: Request) -> Result:
     """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
-    problem, (run, ladder, readings) = request.problem, plan_for(request)
-    refined = refine(run, ladder, request.accuracy, readings, energy_unit=problem.largest_energy)
+    unit = request.problem.largest_energy
+    refined = refine(levels_for(request), request.accuracy, energy_unit=unit)
     return of_runs(request, refined, request.tolerance)
 
 

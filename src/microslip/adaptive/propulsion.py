@@ -36,9 +36,9 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.checks import checked_propulsion
-from microslip.adaptive.friction import Plan, plan_for
+from microslip.adaptive.friction import levels_for
 from microslip.adaptive.request import TOLERANCE, Request, request_for
-from microslip.estimate.refine import refine
+from microslip.estimate.refine import Levels, refine
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
@@ -46,7 +46,6 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
@@ -234,7 +233,7 @@ class _Contact:
         self.request, self.sign = request, sign
         self.speed, self.drift = request.problem.mean_speed, request.problem.unit_drift
         self.first = self.speed / self.drift
-        self._plan = cache(self._plan_at)
+        self._levels = cache(self._levels_at)
         self.friction, self.power = cache(self._friction_at), cache(self._power_at)
 
     def reversed(self) -> _Contact:
@@ -257,8 +256,7 @@ class _Contact:
         return Answer(self.speed * force.value, self.speed * force.error, force.reason)
 
     def _refined(self, velocity: float, quantity: str, read: Callable[[Run], float]) -> Answer:
-        run, ladder, readings = self._plan(velocity)
-        refined = refine(run, ladder, self.request.accuracy, readings, read)
+        refined = refine(self._levels(velocity), self.request.accuracy, read)
         reason, estimate = refined.reason, refined.value
         if refined.converged and estimate.error > self.request.accuracy:
             reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
@@ -266,24 +264,10 @@ class _Contact:
             reason = f"velocity = {self.sign * velocity:g}: {reason}"
         return Answer(estimate.value, estimate.error, reason)
 
-    def _plan_at(self, velocity: float) -> Plan:
+    def _levels_at(self, velocity: float) -> Levels:
         problem = replace(self.request.problem, velocity=velocity)
         budget = self.request.budget.renewed()
-        plan = plan_for(replace(self.request, problem=problem, budget=budget))
-        readings = [_remembered(run) for run in plan.readings]
-        return plan._replace(run=_remembered(plan.run), readings=readings)
-
-
-def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
-    """Cache `run` by resolution, so that two quantities use the same runs."""
-    runs: dict[Resolution, Run] = {}
-
-    def again(resolution: Resolution, guess: Run | None) -> Run:
-        if resolution not in runs:
-            runs[resolution] = run(resolution, guess)
-        return runs[resolution]
-
-    return again
+        return levels_for(replace(self.request, problem=problem, budget=budget))
 
 
 def _line(contact: _Contact, points: int) -> PropulsionLine:

@@ -26,7 +26,7 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.ladder import ladder_for
-from microslip.estimate.refine import refine, run_tolerance
+from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -226,14 +226,15 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     settings = Settings(request.how, budget=request.budget)
     runs: dict[Resolution, ShakedownRun] = {}
 
-    def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
+    def run(problem: Problem, resolution: Resolution, guess: Run | None) -> ShakedownRun:
         request.show(resolution)
         runs[resolution] = run_to_rest(
-            request.problem, force, request.model, resolution, remaining, settings
+            problem, force, request.model, resolution, remaining, settings
         )
         return runs[resolution]
 
-    refined = refine(run, ladder, request.accuracy, read=attrgetter("displacement"))
+    levels = Levels(run, ladder, request.problem)
+    refined = refine(levels, request.accuracy, attrgetter("displacement"))
     answer = of_runs(request, refined, request.tolerance)
     result = {name: getattr(answer, name) for name in OF_RUNS}
     result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
