@@ -9,7 +9,6 @@ node errors and the interpolation error.  The interpolation error is estimated b
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -18,9 +17,6 @@ from microslip.datasets.query.answers import LOST, NEEDS
 from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
-
-if TYPE_CHECKING:
-    from microslip.datasets.query.cells import CellNodes
 
 SAME = 1e-12
 """Difference below which two Poisson's ratios, or two values of friction, count as equal."""
@@ -156,15 +152,15 @@ def _refuse_impossible(nodes: Nodes) -> None:
         raise InputError("mu_macro_error", least, "in the dataset; allowed is 0 or more")
 
 
-def refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
+def refuse_values(values: np.ndarray, errors: np.ndarray, least: float) -> None:
     """Raise InputError if mu_macro is outside the range `least` to 1 by more than its error.
 
     `least` is -1, or 0 for motions that cannot propel the contact.
     """
-    off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
+    off = np.fmax(values - 1.0, least - values) > errors + SAME
     if off.any():
         allowed = f"in the dataset; allowed is {least:g} to 1"
-        raise InputError("mu_macro", float(nodes.values[off][0]), allowed)
+        raise InputError("mu_macro", float(values[off][0]), allowed)
 
 
 def _converged(dataset: xr.Dataset) -> xr.DataArray:
