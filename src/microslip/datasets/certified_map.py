@@ -12,7 +12,6 @@ bytes.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
@@ -21,10 +20,9 @@ import xarray as xr
 from microslip.config.extended import solver_names
 from microslip.config.quantities import MU_MACRO
 from microslip.config.records import CertifiedMap
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import sweep_dataset
 from microslip.datasets.variables import variable
 from microslip.foundation.canonical import canonical_json
-from microslip.foundation.files import writing_beside
 from microslip.sweeps import map_refinement
 from microslip.sweeps.batches import lookup
 from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
@@ -105,13 +103,6 @@ def build(map_: CertifiedMap, records: Iterable[dict]) -> xr.Dataset:
     if map_.force is not None:
         about["drive"] = "force"
     return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
-
-
-def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
-    """Write the dataset to a netCDF-4 file atomically.  Raises CacheError if the file cannot be
-    written."""
-    with writing_beside(path) as beside:
-        netcdf.write(beside, dataset, {})
 
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:

@@ -21,7 +21,6 @@ from microslip.datasets.catalogue import FORMS
 from microslip.datasets.variables import variable
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
-from microslip.foundation.files import writing_beside
 from microslip.motions.by_name import motion_named
 
 CONVENTIONS = "CF-1.11"
@@ -78,8 +77,7 @@ def write_sweep(
     of_points, versions = point_variables.variables(sweep, _axes(sweep), points)
     versions |= {canonical_json(record["versions"]) for record in histories}
     root = _root(sweep, of_points).assign_attrs(provenance(title, settings, versions, **about))
-    with writing_beside(path) as beside:
-        netcdf.write(beside, root, _parts(sweep, histories))
+    netcdf.write(path, root, _parts(sweep, histories))
 
 
 GROUPS = {
@@ -141,16 +139,6 @@ def provenance(title: str, settings: dict, versions: set, **more: object) -> dic
         "configuration": canonical_json(settings),
         "library_versions": "; ".join(sorted(versions)),
     } | more
-
-
-def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
-    """Write a dataset to a netCDF-4 file, atomically.
-
-    groups: groups of the file, see `netcdf.divide`.  Equal datasets give equal bytes.  Raises
-    CacheError with a one-line message if the file cannot be written.
-    """
-    with writing_beside(path) as beside:
-        netcdf.write(beside, *netcdf.divide(dataset, groups or {}))
 
 
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
