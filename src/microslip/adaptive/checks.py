@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from microslip.foundation.arguments import (
     LARGEST,
@@ -51,7 +52,7 @@ def checked_problem(
         If an argument is out of range, if a Problem is combined with other arguments, or if the
         Problem has a drive or several contacts.  The message names the argument.
     """
-    problem = _problem(motion, (velocity, amplitude, poisson), pressure)
+    problem = _problem(motion, velocity, amplitude, poisson, pressure)
     if problem.drive is not None:
         allowed = "allowed is none here: the velocity is prescribed"
         raise InputError("drive", str(problem.drive), allowed)
@@ -86,17 +87,17 @@ def checked_driven_problem(
         If an argument is out of range, or if a Problem is combined with other arguments.  The
         message names the argument.
     """
-    place = (velocity, amplitude, poisson)
+    more: dict[str, Any] = {}
     if isinstance(motion, Problem):
         _refuse_beside_problem(contacts=contacts, **drive)
-        problem = _problem(motion, place, pressure, backward=True)
-        if problem.drive is not None:
-            _refuse_drive(problem)
+        if motion.drive is not None:
+            _refuse_drive(motion)
     else:
-        checked = checked_drive(velocity, **drive)
-        problem = _problem(motion, place, pressure, backward=True)
-        several = () if contacts is None else contacts_of(contacts)
-        problem = replace(problem, drive=checked, contacts=several)
+        more["drive"] = checked_drive(velocity, **drive)
+        more["contacts"] = () if contacts is None else contacts_of(contacts)
+    problem = replace(
+        _problem(motion, velocity, amplitude, poisson, pressure, backward=True), **more
+    )
     refusal = contacts_refusal(problem) if problem.contacts else ""
     if refusal:
         raise InputError("contacts", contacts or contacts_text(problem.contacts), refusal)
@@ -105,21 +106,33 @@ def checked_driven_problem(
 
 def _problem(
     motion: str | Motion | Problem,
-    place: tuple[float | None, float | None, float],
+    velocity: float | None,
+    amplitude: float | None,
+    poisson: float,
     pressure: str | Pressure,
     backward: bool = False,
 ) -> Problem:
-    """Build the Problem at `place` = (velocity, amplitude, poisson), or return a given Problem."""
+    """Build a Problem, or check and return a given Problem.
+
+    backward: whether the velocity of a self-propelled motion can be negative.
+    """
+    given = motion if isinstance(motion, Problem) else None
     if isinstance(motion, Problem):
-        velocity, amplitude, poisson = place
         changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
         _refuse_beside_problem(velocity=velocity, amplitude=amplitude, **changed)
-        place = (motion.velocity, motion.amplitude, motion.poisson)
-        _place(motion.motion, motion.pressure, place, backward)
-        return motion
+        velocity, amplitude, poisson = motion.velocity, motion.amplitude, motion.poisson
+        pressure, motion = motion.pressure, motion.motion
     motion = motion if isinstance(motion, Motion) else motion_named(motion)
     pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
-    return Problem(motion, *_place(motion, pressure, place, backward), pressure)
+    slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
+    velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
+    if velocity < 0.0 and not pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {pressure.name}"
+        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    if motion.periodic and amplitude is not None:
+        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
+    return given or Problem(motion, velocity, amplitude, poisson, pressure)
 
 
 def _refuse_drive(problem: Problem) -> None:
@@ -137,25 +150,6 @@ def _refuse_beside_problem(**arguments: object) -> None:
     for name, value in arguments.items():
         if value is not None:
             raise InputError(name, value, "allowed is none beside a Problem, which has its own")
-
-
-def _place(
-    motion: Motion,
-    pressure: Pressure,
-    place: tuple[float | None, float | None, float],
-    backward: bool,
-) -> tuple[float, float | None, float]:
-    """Check velocity, amplitude and Poisson's ratio; raises InputError if one is out of range."""
-    velocity, amplitude, poisson = place
-    slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
-    velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
-    if velocity < 0.0 and not pressure.mirrored:
-        allowed = f"allowed is a number of at least 0 under {pressure.name}"
-        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
-    poisson = real("poisson", poisson, 0.0, 0.5)
-    if motion.periodic and amplitude is not None:
-        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
-    return velocity, amplitude, poisson
 
 
 def checked_propulsion(
