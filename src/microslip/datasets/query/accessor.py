@@ -33,7 +33,7 @@ from microslip.datasets.query.answers import (
 from microslip.datasets.query.cells import Map
 from microslip.datasets.query.coordinates import coordinate_array, evaluate, grid_axes
 from microslip.datasets.query.drift import Drift
-from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_values
+from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_values, tables_at
 from microslip.datasets.query.solver import drive_of, solve_and_store
 from microslip.datasets.variables import variable
 from microslip.foundation.arguments import real
@@ -302,16 +302,15 @@ class Friction:
         if digest[0] is None or self._read is None or self._read[0] != digest:
             if cells.is_certified(self._dataset):
                 table = cells.cells_of(self._dataset)
-                quantity = self._dataset["mu_macro"].values, self._dataset["mu_macro_error"].values
-                refuse_values(*quantity, least)
+                refuse_values(self._dataset, least)
                 nu = poisson_within(table.ratios, poisson)
                 table = replace(table, poisson=nu)
                 maps = Maps(nu, None, table) if table.is_static else Maps(nu, table, None)
             else:
                 nodes = nodes_of(self._dataset, periodic=self._periodic, poisson=poisson)
-                refuse_values(nodes.values, nodes.errors, least)
-                nu = poisson_within(nodes.poisson, poisson)
-                maps = Maps(nu, nodes.table(nu), nodes.table(nu, still=True))
+                refuse_values(nodes, least)
+                nu = poisson_within(nodes["poisson"].values, poisson)
+                maps = Maps(nu, *tables_at(nodes, nu))
             self._read = digest, maps
         return self._read[1]
 
