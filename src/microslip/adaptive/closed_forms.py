@@ -26,14 +26,6 @@ ROUNDING = 1e-12
 """Error of closed forms that need no quadrature."""
 
 
-def exact_result(request: Request) -> Result | None:
-    """Result in closed form, or None if there is no closed form."""
-    exact = no_vibration(request.problem)
-    if exact is None and request.chosen and request.method == SHIPPED:
-        exact = unless_imposed(request.problem, request.tolerance, request.cells, request.steps)
-    return None if exact is None else of_closed_form(request, exact)
-
-
 class Exact(NamedTuple):
     """Quantities of a Result in closed form.
 
@@ -50,6 +42,17 @@ class Exact(NamedTuple):
     friction: Estimate
     torque: Estimate | None = None
     dissipation: Estimate | None = None
+
+
+def exact_for(request: Request) -> Exact | None:
+    """Closed form for a request; None if there is none or if an imposed resolution requires a
+    march."""
+    problem = request.problem
+    exact = no_vibration(problem)
+    needs_march = problem.velocity > 0.0 and not (request.cells is None and request.steps is None)
+    if exact is None and request.chosen and request.method == SHIPPED and not needs_march:
+        exact = closed_form(problem, request.tolerance or 0.0)
+    return exact
 
 
 def of_closed_form(request: Request, exact: Exact) -> Result:
@@ -81,15 +84,6 @@ def _of_drag(problem: Problem, friction: Estimate, drag: Estimate) -> Exact:
     """Closed form of a contact that dissipates the work of the force `drag` over its drift."""
     work = 2.0 * math.pi * problem.mean_load * problem.drift
     return Exact(friction, dissipation=work * drag)
-
-
-def unless_imposed(
-    problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
-) -> Exact | None:
-    """Result of `closed_form`, or None if an imposed resolution requires a march."""
-    if problem.velocity > 0.0 and not (cells is None and steps is None):
-        return None
-    return closed_form(problem, tolerance or 0.0)
 
 
 def closed_form(problem: Problem, tolerance: float) -> Exact | None:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from microslip.adaptive.choice import choose_model
-from microslip.adaptive.closed_forms import no_vibration, unless_imposed
+from microslip.adaptive.closed_forms import exact_for
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import TOLERANCE, Request, of_runs
+from microslip.adaptive.request import Request, of_runs
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import ladder_for, refuse_free
 from microslip.estimate.refine import Levels, refine, run_tolerance
@@ -62,11 +61,9 @@ def solve_friction(request: Request) -> Result:
     return of_runs(request, refined, request.tolerance)
 
 
-def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
+def refuse_choice(request: Request) -> None:
     """Raise InputError if a resolution would have to be chosen without a tolerance."""
-    exact = no_vibration(problem)
-    if exact is None and model == "auto":
-        exact = unless_imposed(problem, None, cells, steps)
-    if exact is None:
-        name = choose_model(problem, model)
-        refuse_free(ladder_for(problem, name, TOLERANCE, cells, steps), cells, steps)
+    if exact_for(request) is None:
+        place = request.problem, request.model, request.accuracy
+        imposed = request.cells, request.steps
+        refuse_free(ladder_for(*place, *imposed), *imposed)

@@ -79,12 +79,12 @@ def solve_stored(
         contacts=contacts,
         **drive,
     )
-    asked = request_for(problem, model, tolerance, cells=cells, steps=steps, time_limit=time_limit)
+    point = request_for(problem, model, tolerance, cells=cells, steps=steps, time_limit=time_limit)
     if tolerance is None:
         from microslip.adaptive.friction import refuse_choice  # here: it loads compiled code
 
         moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
-        refuse_choice(moving, model, asked.cells, asked.steps)
+        refuse_choice(replace(point, problem=moving))
     kind, pressure = problem.motion.name, problem.pressure.name
     grid = Sweep(
         name=kind,
@@ -94,9 +94,9 @@ def solve_stored(
         poisson=(problem.poisson,),
         poisson_is_axis=False,
         model=model,
-        tolerance=asked.tolerance,
-        cells=asked.cells,
-        steps=asked.steps,
+        tolerance=point.tolerance,
+        cells=point.cells,
+        steps=point.steps,
         pressure=pressure,
         contacts=contacts,
         drives=_drives(**drive),
