@@ -76,9 +76,9 @@ class Shakedown:
         Whether the contact certainly comes to rest and the error is within the tolerance.
     reason : str
         Reason why the result is not converged, otherwise empty.
-    error_resolution, error_periodicity, error_solver : float
+    error_resolution, error_periodicity, error_solver, error_model : float
         Parts of the error by source.  The part `error_periodicity` bounds the displacement after
-        the last period.
+        the last period.  The part `error_model` is that of a file.
     cells, angles, steps_per_period : int
         Numbers of cells, of angles and of steps per period in the finest run.
     periods : float
@@ -107,6 +107,7 @@ class Shakedown:
     error_resolution: float = 0.0
     error_periodicity: float = 0.0
     error_solver: float = 0.0
+    error_model: float = 0.0
     cells: int = 0
     angles: int = 0
     steps_per_period: int = 0
@@ -224,16 +225,12 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     ladder = replace(ladder, start=2 * ladder.start)
     remaining = RUN_SHARE * run_tolerance(request.accuracy)
     settings = Settings(request.how, budget=request.budget)
-    runs: dict[Resolution, ShakedownRun] = {}
 
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> ShakedownRun:
         request.show(resolution)
-        runs[resolution] = run_to_rest(
-            problem, force, request.model, resolution, remaining, settings
-        )
-        return runs[resolution]
+        return run_to_rest(problem, force, request.model, resolution, remaining, settings)
 
-    levels = Levels(run, ladder, request.problem)
+    levels = Levels(run, ladder, request.problem, *request.problem.readings)
     refined = refine(levels, request.accuracy, attrgetter("displacement"))
     answer = of_runs(request, refined, request.tolerance)
     result = {name: getattr(answer, name) for name in OF_RUNS}
@@ -243,7 +240,9 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
         "displacement": refined.value.value,
         "displacement_error": refined.value.error,
     }
-    if runs:
-        finest = runs[max(runs, key=lambda one: (one.cells, one.steps))]
+    solved = [level for number, level in levels.runs if number == 0]
+    if solved:
+        finest = levels.at(max(solved))
+        assert isinstance(finest, ShakedownRun)  # returned by run
         result |= {"pushed": finest.pushed, "most_after": finest.most_after}
     return result
