@@ -7,6 +7,7 @@ from dataclasses import replace
 from operator import attrgetter
 
 from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form
+from microslip.adaptive.friction import ladder_of
 from microslip.adaptive.request import Request, driven_by, of_runs
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
@@ -23,7 +24,7 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.estimate import Estimate
-from microslip.estimate.ladder import ladder_for, refuse_free, with_mass
+from microslip.estimate.ladder import with_mass
 from microslip.estimate.refine import UNKNOWN, Levels, Refined, refine, run_tolerance
 from microslip.motions.drive import Force
 from microslip.motions.problem import Problem
@@ -89,12 +90,10 @@ def _fast(request: Request) -> Exact | None:
     return fast_sliding(problem, request.tolerance)
 
 
-def _driven(request: Request, **drive: float) -> Request:
-    """Copy a request and replace fields of its drive."""
-    problem = request.problem
-    changed = problem.drive
-    assert isinstance(changed, Force)
-    return replace(request, problem=replace(problem, drive=replace(changed, **drive)))
+def _under(force: float, request: Request) -> Request:
+    """Copy a request and replace its force."""
+    drive = Force(force, drive_of(request.problem).mass)
+    return replace(request, problem=replace(request.problem, drive=drive))
 
 
 def _under_force(request: Request) -> Result:
@@ -104,7 +103,7 @@ def _under_force(request: Request) -> Result:
         request = replace(request, problem=without_forward_motion(request.problem))
     problem, force = request.problem, force_of(request.problem)
     if force < 0.0 and not problem.propels:  # solved as the mirror image of a forward force
-        ahead = _under_force(_driven(request, force=-force))
+        ahead = _under_force(_under(-force, request))
         return replace(
             ahead, force=force, friction=-ahead.friction, mean_velocity=-ahead.mean_velocity
         )
@@ -212,7 +211,7 @@ def _moving(request: Request, moving_force: float) -> Result:
     than the requested force, the velocity lies between 0 and the velocity in the runs.
     """
     force, original = force_of(request.problem), request
-    request = _driven(request, force=moving_force)
+    request = _under(moving_force, request)
     try:
         near = _near(request)
     except Spent as spent:
@@ -250,9 +249,7 @@ def _near(request: Request) -> Near:
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
     force = force_of(request.problem)
-    ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
-    if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
+    ladder = ladder_of(replace(request, problem=moving), COARSE_TOLERANCE)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
     settings = Settings(request.how, budget=request.budget)
     request.show(coarse)
@@ -286,12 +283,11 @@ def _refined(request: Request, accuracy: Accuracy) -> Refined:
     """Refine the runs of a driven contact to an accuracy."""
     problem, tolerance = request.problem, accuracy.tolerance
     drive = drive_of(problem)
-    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
     contact = contact_of(problem, request.model, COARSEST)
-    ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
+    ladder, unresolved = with_mass(
+        ladder_of(request, tolerance), problem, contact, drive.mass, tolerance
+    )
     share = accuracy._replace(tolerance=run_tolerance(tolerance))
-    if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
     settings = Settings(request.how, budget=request.budget)
 
     def run(problem: Problem, resolution: Resolution, guess: Run | None) -> Run:

@@ -9,7 +9,7 @@ from microslip.adaptive.closed_forms import exact_for
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.request import Request, of_runs
 from microslip.adaptive.result import Result
-from microslip.estimate.ladder import ladder_for, refuse_free
+from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
@@ -20,16 +20,25 @@ from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import edge_focus
 
 
+def ladder_of(request: Request, tolerance: float) -> Ladder:
+    """Ladder for the problem of a request.
+
+    Raises InputError if a resolution would have to be chosen without a tolerance of the request.
+    """
+    imposed = request.cells, request.steps
+    ladder = ladder_for(request.problem, request.model, tolerance, *imposed)
+    if request.tolerance is None:
+        refuse_free(ladder, *imposed)
+    return ladder
+
+
 def levels_for(request: Request) -> Levels:
     """Runs of a contact at a prescribed velocity of at least 0.
 
     The runs raise budget.Spent if the point's budget is exceeded.
     """
-    problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
-    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
-    if request.tolerance is None:
-        refuse_free(ladder, request.cells, request.steps)
-    share = run_tolerance(tolerance)
+    problem, motion = request.problem, request.problem.motion
+    share = run_tolerance(request.accuracy)
 
     @cache  # the search for the slip front is charged once
     def settings() -> Settings:
@@ -51,7 +60,7 @@ def levels_for(request: Request) -> Levels:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
-    return Levels(run, ladder, problem, *problem.readings)
+    return Levels(run, ladder_of(request, request.accuracy), problem, *problem.readings)
 
 
 def solve_friction(request: Request) -> Result:
@@ -64,6 +73,4 @@ def solve_friction(request: Request) -> Result:
 def refuse_choice(request: Request) -> None:
     """Raise InputError if a resolution would have to be chosen without a tolerance."""
     if exact_for(request) is None:
-        place = request.problem, request.model, request.accuracy
-        imposed = request.cells, request.steps
-        refuse_free(ladder_for(*place, *imposed), *imposed)
+        ladder_of(request, request.accuracy)

@@ -16,6 +16,7 @@ from typing import Any
 
 from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.driven_contact import STATIC_TOLERANCE
+from microslip.adaptive.friction import ladder_of
 from microslip.adaptive.request import Request, of_runs, request_for
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
@@ -25,7 +26,6 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
-from microslip.estimate.ladder import ladder_for
 from microslip.estimate.refine import Levels, refine, run_tolerance
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
@@ -220,7 +220,7 @@ def _threshold(request: Request) -> tuple[float, float, str]:
 def _certified(request: Request, force: float) -> dict[str, Any]:
     """Run the contact to rest and return the resulting fields of a Shakedown."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
-    ladder = ladder_for(planned, request.model, request.accuracy)
+    ladder = ladder_of(replace(request, problem=planned), request.accuracy)
     # the contact must come to rest in the coarsest run too
     ladder = replace(ladder, start=2 * ladder.start)
     remaining = RUN_SHARE * run_tolerance(request.accuracy)
