@@ -108,16 +108,11 @@ LIMITS = {
 }
 
 
-def is_known(motion: str, pressure: str) -> bool:
-    """Return True if limits are proved for a motion under a pressure."""
-    return pressure == "hertz" and (motion in LIMITS or motion == "continuous-bore")
-
-
 def has_limits(dataset: xr.Dataset) -> bool:
     """Return True if limits are proved for the motion, the pressure and the drive of a dataset."""
-    if not is_alone(dataset):
-        return False
-    return is_known(dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz"))
+    about, motion = dataset.attrs, dataset.attrs["motion"]
+    is_known = motion in LIMITS or motion == "continuous-bore"
+    return is_known and about.get("pressure", "hertz") == "hertz" and is_alone(dataset)
 
 
 def is_alone(dataset: xr.Dataset) -> bool:
