@@ -9,9 +9,6 @@ from microslip.foundation.arguments import (
     LARGEST,
     LARGEST_BODY,
     SMALLEST_STIFFNESS,
-    SMALLEST_TOLERANCE,
-    count,
-    is_real,
     real,
 )
 from microslip.foundation.errors import InputError
@@ -210,27 +207,3 @@ def checked_drive(
                 raise InputError(name, body[name], allowed)
         return None
     return Spring(stiff, body["mass"] or 0.0, body["damping"] or 0.0)
-
-
-def checked_request(
-    tolerance: float | None, cells: int | None, steps: int | None
-) -> tuple[float | None, int | None, int | None]:
-    """Check the tolerance and the imposed resolution.
-
-    Raises InputError, which names the argument.
-    """
-    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
-    if tolerance is not None:
-        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
-    return tolerance, cells, steps
-
-
-def refuse_bounds(**arguments: float | None) -> None:
-    """Raise InputError if an argument is neither None nor a number above 0."""
-    for name, value in arguments.items():
-        if value is not None and not (is_real(value) and value > 0.0):
-            raise InputError(name, value, "allowed is a number above 0")
-
-
-def _count(name: str, value: int | None, low: int) -> int | None:
-    return None if value is None else count(name, value, low, most=LARGEST[name], even=True)

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from microslip.adaptive.checks import checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.result import CLOSED_FORM, Result
 from microslip.adaptive.under_force import refuse_drive
 from microslip.estimate.estimate import Estimate
+from microslip.foundation.arguments import LARGEST, SMALLEST_TOLERANCE, count, is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.drive import Drive
@@ -141,8 +141,15 @@ def request_for(
         the argument.
     """
     started = time.perf_counter()
-    tolerance, cells, steps = checked_request(tolerance, cells, steps)
-    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    if cells is not None:
+        cells = count("cells", cells, 4, most=LARGEST["cells"], even=True)
+    if steps is not None:
+        steps = count("steps", steps, 8, most=LARGEST["steps"], even=True)
+    if tolerance is not None:
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    for argument, value in (("most_work", most_work), ("time_limit", time_limit)):
+        if value is not None and not (is_real(value) and value > 0.0):
+            raise InputError(argument, value, "allowed is a number above 0")
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
     name, how = choose_model(problem, model), method_names.method_named(method)
