@@ -152,11 +152,7 @@ def faster(
     """
     low = 1.0 - limits.drop(velocity, amplitude)
     low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)  # never falls with the velocity
-    share = (fastest / velocity) ** FAST_EXPONENT
-    gap = np.fmax(1.0 - edge.value - edge.error, 0.0)
-    high = np.maximum(1.0 - share**STEEPEST * gap, low)
-    far = 1.0 - (1.0 - edge.value) * share
-    return _within(low, high, np.where(np.isnan(far), low, far))
+    return _near_full_friction(edge, low, (fastest / velocity) ** FAST_EXPONENT)
 
 
 def wider(
@@ -218,10 +214,18 @@ def narrower(limits: Limits, edge: Estimate, amplitude: np.ndarray, narrowest: f
     shape (n,) each.
     """
     low = np.clip(edge.value - edge.error, 0.0, 1.0)
-    share = (amplitude / narrowest) ** NARROW_EXPONENT
-    gap = np.maximum(1.0 - edge.value - edge.error, 0.0)
+    return _near_full_friction(edge, low, (amplitude / narrowest) ** NARROW_EXPONENT)
+
+
+def _near_full_friction(edge: Estimate, low: np.ndarray, share: np.ndarray) -> tuple:
+    """Estimate friction between the edge of a map, where `share` is 1, and 1, where it is 0.
+
+    low: lower end of the bracket.  The value is `low` if friction at the edge is unknown.
+    """
+    gap = np.fmax(1.0 - edge.value - edge.error, 0.0)
     high = np.maximum(1.0 - share**STEEPEST * gap, low)
-    return _within(low, high, 1.0 - (1.0 - edge.value) * share)
+    guess = 1.0 - (1.0 - edge.value) * share
+    return _within(low, high, np.where(np.isnan(guess), low, guess))
 
 
 def within_the_balance(
