@@ -8,7 +8,7 @@ from operator import attrgetter
 
 from microslip.adaptive.closed_forms import Exact, fast_sliding, of_closed_form
 from microslip.adaptive.friction import ladder_of
-from microslip.adaptive.request import Request, driven_by, of_runs
+from microslip.adaptive.request import Request, driven_by, result_of_runs
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -71,7 +71,7 @@ def solve_driven(request: Request) -> Result:
     exact = _fast(request)
     if exact is not None:
         return of_closed_form(request, exact)
-    return of_runs(request, _refined(request, Accuracy(request.accuracy)), request.tolerance)
+    return result_of_runs(request, _refined(request, Accuracy(request.accuracy)), request.tolerance)
 
 
 def _fast(request: Request) -> Exact | None:
@@ -238,7 +238,7 @@ def _moving(request: Request, moving_force: float) -> Result:
     tolerance = request.tolerance
     largest = None if tolerance is None else tolerance * max(1.0, abs(estimate.value))
     more = {"mean_velocity": estimate, "friction": Estimate(force)}
-    return of_runs(original, refined, largest, **more)
+    return result_of_runs(original, refined, largest, **more)
 
 
 def _near(request: Request) -> Near:

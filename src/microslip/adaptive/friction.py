@@ -7,7 +7,7 @@ from functools import cache
 
 from microslip.adaptive.closed_forms import exact_for
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.request import Request, of_runs
+from microslip.adaptive.request import Request, result_of_runs
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import Levels, refine, run_tolerance
@@ -67,7 +67,7 @@ def solve_friction(request: Request) -> Result:
     """Compute the Result of a contact at a prescribed velocity, by runs of a model."""
     unit = request.problem.largest_energy
     refined = refine(levels_for(request), request.accuracy, energy_unit=unit)
-    return of_runs(request, refined, request.tolerance)
+    return result_of_runs(request, refined, request.tolerance)
 
 
 def refuse_choice(request: Request) -> None:

@@ -208,7 +208,9 @@ def driven_by(drive: Drive | None) -> dict:
     return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
-def of_runs(request: Request, refined: Refined, largest: float | None, **more: Estimate) -> Result:
+def result_of_runs(
+    request: Request, refined: Refined, largest: float | None, **more: Estimate
+) -> Result:
     """Build the Result of a refinement.
 
     Parameters

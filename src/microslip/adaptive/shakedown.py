@@ -17,7 +17,7 @@ from typing import Any
 from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.driven_contact import STATIC_TOLERANCE
 from microslip.adaptive.friction import ladder_of
-from microslip.adaptive.request import Request, of_runs, request_for
+from microslip.adaptive.request import Request, request_for, result_of_runs
 from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -47,7 +47,15 @@ accumulate over all periods.  Near the static limit, a run takes several hundred
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
 
-OF_RUNS = ("converged", "reason", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
+COMMON_FIELDS = (
+    "converged",
+    "reason",
+    "cells",
+    "angles",
+    "steps_per_period",
+    "periods",
+    "solve_time_s",
+)
 """Fields that a Shakedown has in common with a Result."""
 
 
@@ -232,8 +240,8 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
 
     levels = Levels(run, ladder, request.problem, *request.problem.readings)
     refined = refine(levels, request.accuracy, attrgetter("displacement"))
-    answer = of_runs(request, refined, request.tolerance)
-    result = {name: getattr(answer, name) for name in OF_RUNS}
+    answer = result_of_runs(request, refined, request.tolerance)
+    result = {name: getattr(answer, name) for name in COMMON_FIELDS}
     result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
     result |= {
         "work": refined.effort.work,
