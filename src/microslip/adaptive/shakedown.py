@@ -47,15 +47,7 @@ accumulate over all periods.  Near the static limit, a run takes several hundred
 PLANNED_VELOCITY = 0.1
 """Velocity for which the time steps are chosen; for velocity 0, the ladder has no time steps."""
 
-COMMON_FIELDS = (
-    "converged",
-    "reason",
-    "cells",
-    "angles",
-    "steps_per_period",
-    "periods",
-    "solve_time_s",
-)
+SHARED = ("converged", "reason", "cells", "angles", "steps_per_period", "periods", "solve_time_s")
 """Fields that a Shakedown has in common with a Result."""
 
 
@@ -241,7 +233,7 @@ def _certified(request: Request, force: float) -> dict[str, Any]:
     levels = Levels(run, ladder, request.problem, *request.problem.readings)
     refined = refine(levels, request.accuracy, attrgetter("displacement"))
     answer = result_of_runs(request, refined, request.tolerance)
-    result = {name: getattr(answer, name) for name in COMMON_FIELDS}
+    result = {name: getattr(answer, name) for name in SHARED}
     result |= {ERRORS[source]: error for source, error in refined.value.by_source.items()}
     result |= {
         "work": refined.effort.work,
