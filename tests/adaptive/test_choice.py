@@ -112,7 +112,7 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
 
 def test_pure_rotation_needs_no_run():
     exact = closed_form(Problem(ContinuousBore(), 0.0, None, 0.3), 1e-6)
-    assert (exact.mu, exact.torque) == (0.0, 1.0)
+    assert (exact.friction.value, exact.torque.value) == (0.0, 1.0)
     result = microslip.solve("continuous-bore", 0.0, model="polar", tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     assert result.mu_macro == pytest.approx(0.0, abs=1e-2)
@@ -135,7 +135,7 @@ def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
         assert closed_form(slower, tolerance) is None
         faster = Problem(motion, velocity * (1 + 1e-5), amplitude, poisson)
         exact = closed_form(faster, tolerance)
-        mu, error = exact.mu, exact.error
+        mu, error = exact.friction.value, exact.friction.error
         assert exact.torque is None and error == pytest.approx(tolerance, rel=1e-4)
         assert error <= tolerance
         # mu is the middle of the bracket; the upper end is full friction

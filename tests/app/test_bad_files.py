@@ -187,12 +187,12 @@ def test_a_dataset_that_cannot_be_read_is_one_line(spoil, dataset):
 FULL_DISK = """
 import resource, sys
 import numpy, xarray
-from microslip.datasets import sweep_dataset
+from microslip.datasets import netcdf
 from microslip.foundation.errors import CacheError
 data = xarray.Dataset({"a": ("x", numpy.random.default_rng(1).random(99999))})
 resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 try:
-    sweep_dataset.write(data, sys.argv[1])
+    netcdf.write(sys.argv[1], data)
 except CacheError as error:
     print(error)
 """

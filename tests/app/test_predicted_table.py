@@ -10,7 +10,7 @@ from stubs import certified_stub
 
 import microslip
 from microslip.app import cli
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -257,7 +257,7 @@ def test_a_map_is_found_by_its_name_and_by_its_path(folder, capsys):
     map_ = certified_stub.configured("transverse", **axes)
     dataset = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
     (folder / "results").mkdir()
-    certified_map.write(folder / "results" / "certified_transverse.nc", dataset)
+    netcdf.write(folder / "results" / "certified_transverse.nc", dataset)
     words = ["predict", "transverse", "--young", "210 GPa", "--nu", "0", "--radius", "5 mm"]
     words += ["--mu", "0.3", "--frequency", "20 kHz", "--load", "10 N", "--speed", "10 mm/s"]
     words += ["--amplitude", "0.2..0.4 um, 3", "--tolerance", "0.05", "--json"]

@@ -9,7 +9,7 @@ from stubs import certified_stub
 
 import microslip
 from microslip.config import load
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
@@ -40,7 +40,7 @@ def made():
 def dataset(made, tmp_path_factory):
     """The dataset of `made`, read from a file."""
     path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(made.map, made.records))
+    netcdf.write(path, certified_map.build(made.map, made.records))
     with microslip.open_map("certified_transverse", path.parent) as opened:
         return opened.load()
 
@@ -90,7 +90,7 @@ def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
 
 def test_equal_answers_give_equal_files(made, tmp_path):
     for name, records in (("a.nc", made.records), ("b.nc", made.records[::-1])):
-        certified_map.write(tmp_path / name, certified_map.build(made.map, records))
+        netcdf.write(tmp_path / name, certified_map.build(made.map, records))
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.foundation.errors import InputError
 from microslip.theory import paper
 
@@ -32,7 +32,7 @@ def dataset(tmp_path_factory):
     axes = {"velocity": [0.01, 10], "amplitude": [0, 3], "poisson": [0, 0.4]}
     map_ = certified_stub.configured("transverse", **axes, adaptive={"error": ERROR})
     path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(map_, certified_stub.played(map_, record)))
+    netcdf.write(path, certified_map.build(map_, certified_stub.played(map_, record)))
     with microslip.open_map("certified_transverse", path.parent) as opened:
         return opened.load()
 

@@ -8,7 +8,7 @@ from stubs import certified_stub
 import microslip
 from microslip.config import load
 from microslip.config.records import ConfigError
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.drift import STATES, Drift
 from microslip.foundation.errors import InputError
@@ -22,7 +22,7 @@ DRIFT = certified_stub.DRIFT | {"adaptive": {"error": ERROR}}
 def dataset(tmp_path_factory):
     """A map of an invented drift, read from a file."""
     path = tmp_path_factory.mktemp("drift") / "certified_weights.nc"
-    certified_map.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
+    netcdf.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
     with microslip.open_map("certified_weights", path.parent) as opened:
         return opened.load()
 

@@ -14,6 +14,7 @@ import xarray as xr
 from stubs.eq6_map import map_of
 
 import microslip
+from microslip.datasets import netcdf
 from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.interpolation import Axis, Table
 from microslip.datasets.query.open_map import open_map
@@ -443,11 +444,9 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
 
 @pytest.fixture
 def results(tmp_path):
-    from microslip.datasets import sweep_dataset as dataset
-
     made = made_up(error=1e-4)
     made["converged"] = made.converged.astype(np.int8)
-    dataset.write(made, tmp_path / "transverse.nc")
+    netcdf.write(tmp_path / "transverse.nc", made)
     return tmp_path
 
 

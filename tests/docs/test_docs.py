@@ -33,7 +33,7 @@ from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
-from microslip.datasets import certified_map, sweep_dataset
+from microslip.datasets import certified_map, netcdf, sweep_dataset
 from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
@@ -198,9 +198,9 @@ def computed(tmp_path_factory):
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
     records = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
-    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
+    netcdf.write(folder / f"{map_.name}.nc", certified_map.build(map_, records))
     # without computation
-    certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
+    netcdf.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder
 
 

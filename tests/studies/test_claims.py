@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from stubs.claims_stub import answered, configured, friction, result
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
 from microslip.studies import registry
 from microslip.studies.claims import claims as requests
 from microslip.studies.claims import verdicts
@@ -32,7 +32,7 @@ def words(data):
 def claims(tmp_path_factory):
     """Dataset of the claims with invented results, read from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    sweep_dataset.write(judged(), path, registry.groups("claims"))
+    netcdf.write(path, *netcdf.divide(judged(), registry.groups("claims")))
     return netcdf.whole(path)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from stubs import propulsion_stub, studies_stub
 
-from microslip.datasets import netcdf, sweep_dataset
+from microslip.datasets import netcdf
 from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.sweeps import batches
@@ -29,7 +29,7 @@ def test_every_line_is_asked_for_once():
 
 
 def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_path):
-    sweep_dataset.write(data, tmp_path / "propulsion.nc", registry.groups("propulsion"))
+    netcdf.write(tmp_path / "propulsion.nc", *netcdf.divide(data, registry.groups("propulsion")))
     stored = netcdf.whole(tmp_path / "propulsion.nc")
     assert stored["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
     middle = stored.sel(line="back").isel(point=1)  # middle of the line from (0, -0.2) to (-0.5, 0)
