@@ -16,7 +16,7 @@ RIGID = {"amplitude": "1 mm", "speed": "20 m/s", "load": "1 N", "frequency": "2 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("target", ["speed", "load"])
+@pytest.mark.parametrize("target", ["amplitude", "speed", "load"])
 @pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_whichever_is_left_out_is_found_again(motion, target):
     # For a bore two loads have the same reduction; the search returns the larger one.
