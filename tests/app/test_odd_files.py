@@ -9,7 +9,6 @@ import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
-from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
 
 import microslip
 from microslip.app import cli
@@ -142,40 +141,6 @@ def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
     out, line = capsys.readouterr()
     assert (code, out, line.count("\n")) == (2, "", 1)
     assert word in line
-
-
-@pytest.mark.long
-def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, capsys):  # noqa: F811
-    files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
-    apart = ["--configfile", files[0], "--configfile", files[1]]
-    before = len([name for name in names(results) if name.startswith("points/")])
-    assert cli.main(["gc", *apart, "--delete"]) == 0
-    assert len([name for name in names(results) if name.startswith("points/")]) == before
-
-
-@pytest.mark.long
-def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "link").symlink_to(results)
-    paths = [str(tmp_path / "first.yaml")]
-    for number, place in enumerate(("./results/", "x/../results", "link")):
-        (tmp_path / "x").mkdir(exist_ok=True)
-        path = configured(tmp_path, f"other{number}")
-        settings = yaml.safe_load(path.read_text()) | {"results": place}
-        path.write_text(yaml.safe_dump(settings))
-        paths.append(str(path))
-    assert cli.main(["gc", "--configfile", *paths]) == 0
-
-
-@pytest.mark.slow
-def test_gc_leaves_folders_and_links_alone(results, tmp_path):  # noqa: F811
-    odd_places = results / "points" / "00"
-    (odd_places / f"{'0' * 64}.json").mkdir(parents=True)
-    (odd_places / f"{'1' * 64}.json").symlink_to("nowhere")
-    (odd_places / f"{'2' * 64}.json").symlink_to(tmp_path / "first.yaml")
-    assert cli.main(["gc", "--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
-    assert len(list(odd_places.iterdir())) == 3
-    assert (tmp_path / "first.yaml").is_file()
 
 
 def sweep(folder, *arguments, **environment):
