@@ -84,12 +84,6 @@ def test_one_uncertain_input_decides_by_its_own_distribution():
     assert result.probability_runs_away == pytest.approx(0.8531, abs=1e-3)
 
 
-def test_equal_inputs_give_equal_bits():
-    settings = JOINT | {"mu": 0.15} | SHAKEN | {"force": "90 N +- 5 %"}
-    one, other = (microslip.predict("transverse", **settings).to_dict() for _ in range(2))
-    assert one == other
-
-
 def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
     """The interval of the static limit follows from the interval of the load."""
     settings = SPIN | {"mu": 0.3, "load": "10 N +- 10 %", "amplitude": "0.5 deg", "speed": "1 mm/s"}
@@ -122,9 +116,11 @@ def test_a_contact_that_may_run_away_has_no_spread_of_its_speed():
 @pytest.mark.filterwarnings("error")
 def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
     settings = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    result = microslip.predict("continuous-bore", **settings, rotation=10.0, force="1 N +- 0.9 N")
+    settings |= {"rotation": 10.0, "force": "1 N +- 0.9 N"}
+    result, again = (microslip.predict("continuous-bore", **settings) for _ in range(2))
     assert (result.probability_stays, result.safety_factor_high) == (0.0, 0.0)
     assert result.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
+    assert result.to_dict() == again.to_dict()  # equal inputs have equal draws
 
 
 @pytest.mark.slow
@@ -166,7 +162,7 @@ def test_an_uncertain_ratio_of_amplitudes_has_an_interval_to_first_order():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("deviation", [0.38, 0.395, 0.40, 0.42, 0.5])
+@pytest.mark.parametrize("deviation", [0.395, 0.42])
 def test_an_amplitude_that_may_be_almost_zero_has_an_exact_interval(deviation):
     """The threshold decreases with the amplitude, so their quantiles correspond.
 
