@@ -158,19 +158,21 @@ UNIFORM = "".join(f"{x},{y},5\n" for x in range(40) for y in range(20))
 """A pressure of 5 on 40 x 20 cells: half the longer side is 20, and the load is 4000."""
 
 
+MM, UM = ("forward [{0}],lateral [{0}],pressure [MPa]".format(unit) for unit in ("mm", "um"))
+NO_PRESSURE, NO_LENGTH = "forward [mm],lateral [mm],pressure", "forward,lateral,pressure [MPa]"
+
+
 @pytest.mark.parametrize(
     ("heading", "options", "size", "load", "differences"),
     [
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4e3, ()),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.03e3, ()),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 4.1e3, ("load",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 20e-3, 3e3, ("load",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 40e-3, 4e3, ("contact radius",)),
-        ("forward [mm],lateral [mm],pressure [MPa]", "", 2e-3, 4e6, ("contact radius", "load")),
-        ("forward [um],lateral [um],pressure [MPa]", "", 20e-6, 4e-3, ()),
-        ("forward [mm],lateral [mm],pressure", "", 20e-3, 3e3, ()),
-        ("forward [mm],lateral [mm],pressure", "", 40e-3, 3e3, ("contact radius",)),
-        ("forward,lateral,pressure [MPa]", "", 40e-3, 3e3, ()),
+        (MM, "", 20e-3, 4.03e3, ()),
+        (MM, "", 20e-3, 4.1e3, ("load",)),
+        (MM, "", 40e-3, 4e3, ("contact radius",)),
+        (MM, "", 2e-3, 4e6, ("contact radius", "load")),
+        (UM, "", 20e-6, 4e-3, ()),
+        (NO_PRESSURE, "", 20e-3, 3e3, ()),
+        (NO_PRESSURE, "", 40e-3, 3e3, ("contact radius",)),
+        (NO_LENGTH, "", 40e-3, 3e3, ()),
         ("", ",pitch=1 mm", 20e-3, 4e3, ()),
         ("", ",pitch=1 mm", 10e-3, 4e3, ("contact radius",)),
         ("", ",pitch=1", 10e-3, 4e3, ()),
@@ -184,17 +186,14 @@ def test_a_pressure_file_whose_units_contradict_the_inputs_is_reported(
     contact = of_size(replace(BALL, load=load), size, f"file:{tmp_path / 'pad.csv'}{options}")
     texts = contact.contradictions
     assert [text.split(" is ")[0].removeprefix("the ") for text in texts] == [*differences]
-    if "load" in differences and load == 3e3:
-        assert texts[-1].startswith("the load is 3 kN, but 4 kN in the pressure file")
 
 
 def test_a_prediction_warns_of_a_pressure_file_that_contradicts_the_load(tmp_path):
     (tmp_path / "pad.csv").write_text(f"forward [um],lateral [um],pressure [MPa]\n{UNIFORM}")
     pad = {"pressure": f"file:{tmp_path / 'pad.csv'}", "contact_radius": "20 um"}
     rigid = {"speed": "1 km/s", "tolerance": 0.1}
-    (text,) = [
-        t for t in microslip.predict("transverse", **ASKED | pad | rigid).warnings if "file" in t
-    ]
+    warnings = microslip.predict("transverse", **ASKED | pad | rigid).warnings
+    (text,) = [text for text in warnings if "file" in text]
     assert text.startswith("the load is 10 N, but 4 mN in the pressure file")
     right = ASKED | pad | rigid | {"load": "4 mN"}
     assert not any("file" in text for text in microslip.predict("transverse", **right).warnings)
@@ -208,7 +207,6 @@ def test_a_cone_yields_at_its_tip_and_says_so_once():
         assert "largest pressure  infinite, at the tip" in str(result)
         (about,) = [text for text in result.warnings if "pressure" in text and "tip" in text]
         mean = 10.0 / (math.pi * 1e-8)
-        assert f"the mean pressure is {float(f'{mean / 1e6:.2g}'):g} MPa" in about
         assert f"the mean pressure is {float(f'{mean / 1e6:.2g}'):g} MPa" in about
         texts = [*result.warnings, *result.not_checked]
         assert not any("inf" in text.replace("infinite", "") for text in texts)
@@ -226,16 +224,14 @@ def test_u_lim_of_a_cone_is_that_of_its_depth():
 
 @pytest.mark.slow
 def test_a_prediction_under_another_pressure_is_what_the_solver_says():
-    shape = {"contact_radius": "0.1 mm", "pressure": "power:exponent=4"}
+    pressure = "power:exponent=4"
+    shape = {"contact_radius": "0.1 mm", "pressure": pressure, "tolerance": 1e-2}
     result = microslip.predict("transverse", **ASKED | shape)
-    contact = of_size(
-        TwoBodies(Material(210e9, 0.3), RIGID, 1.0, 10.0, 0.3), 1e-4, shape["pressure"]
-    )
-    omega = 2.0 * math.pi * 20e3
-    point = 10e-3 / (omega * contact.u_lim), 0.3e-6 / contact.u_lim
-    settings = {"pressure": shape["pressure"], "poisson": 0.3}
+    u_lim = of_size(BALL, 1e-4, pressure).u_lim
+    point = 10e-3 / (2.0 * math.pi * 20e3 * u_lim), 0.3e-6 / u_lim
+    settings = {"pressure": pressure, "poisson": 0.3, "tolerance": 1e-2}
     assert result.mu_macro == microslip.solve("transverse", *point, **settings).mu_macro
-    assert result.pressure == shape["pressure"] and result.contact_radius_m == 1e-4
+    assert result.pressure == pressure and result.contact_radius_m == 1e-4
 
 
 # Motions in several ways
