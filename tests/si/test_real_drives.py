@@ -182,7 +182,7 @@ def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(m
     assert force < result.force_threshold_N - result.force_threshold_error_N
 
 
-@pytest.mark.parametrize("force", [3.0, 50.0, 1e12])
+@pytest.mark.parametrize("force", [3.0, 1e12])
 def test_all_of_friction_and_more_runs_away(force):
     result = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
     assert result.outcome == "runs away" and not result.converged
@@ -190,14 +190,13 @@ def test_all_of_friction_and_more_runs_away(force):
     assert result.reason.startswith("runs away")
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 2e-2])
-@pytest.mark.parametrize("side", [-0.5, 0.0, 0.5])
-def test_a_force_within_the_error_of_its_threshold_is_not_converged(tolerance, side):
+@pytest.mark.parametrize("side", [-0.5, 0.5])
+def test_a_force_within_the_error_of_its_threshold_is_not_converged(side):
     """A drift with a small relative error would take minutes there."""
-    contact = SIDEWAYS | {"amplitude": stroke(0.5)}
+    contact = SIDEWAYS | {"amplitude": stroke(0.5), "tolerance": 1e-2}
     held = microslip.predict("transverse", speed=0.0, **contact)
     force = held.force_threshold_N + side * held.force_threshold_error_N
-    result = microslip.predict("transverse", force=force, tolerance=tolerance, **contact)
+    result = microslip.predict("transverse", force=force, **contact)
     assert result.outcome == "undecided" and not result.converged
     assert result.displacement_m is None and not result.displacement_reason
     assert result.reason.startswith("the force differs from its threshold by less than")
@@ -260,14 +259,11 @@ def test_a_steady_spin_gives_way_to_any_force():
 
 
 EDGES = [
-    ("velocity", "transverse", 0.1, 1.0, 15.1, 0.0),
     ("velocity", "transverse", 0.5, 3.0, 15.1, 0.0),
     ("velocity", "transverse", 0.3, 1.5, 0.03, 3.8),
     ("velocity", "zigzag", 0.3, 1.5, 15.1, 0.0),
     ("velocity", "longitudinal", 0.1, 1.0, 151.0, 0.0),
     ("velocity", "longitudinal", 0.1, 1.0, 0.1, 151.0),
-    ("force", "transverse", 1.0, 0.5, 0.029, 0.0),
-    ("force", "transverse", 0.824, 0.58, 1e-3, 0.0074),
     ("force", "transverse", 2.0, 10.0, 0.0029, 0.0),
     ("force", "transverse", 1.28, 0.743, 1e-3, 0.0074),
 ]

@@ -158,7 +158,7 @@ UNIFORM = "".join(f"{x},{y},5\n" for x in range(40) for y in range(20))
 """A pressure of 5 on 40 x 20 cells: half the longer side is 20, and the load is 4000."""
 
 
-MM, UM = ("forward [{0}],lateral [{0}],pressure [MPa]".format(unit) for unit in ("mm", "um"))
+MM, UM = (f"forward [{unit}],lateral [{unit}],pressure [MPa]" for unit in ("mm", "um"))
 NO_PRESSURE, NO_LENGTH = "forward [mm],lateral [mm],pressure", "forward,lateral,pressure [MPa]"
 
 
