@@ -1,8 +1,6 @@
 """Sweeps of other motions and pressures: configuration, requests, files and datasets."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 import xarray as xr
@@ -80,25 +78,6 @@ def test_jobs_do_not_ask_the_solver():
     mapping = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
     result = load.from_mapping(mapping, ask_solver=False)
     assert result.extended["circle"].motion == "no such"
-
-
-ALONE = """
-import sys
-from microslip.config import load
-from microslip.sweeps import batches
-given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
-    "motion": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
-found = load.from_mapping(given, ask_solver=False)
-batches.points_of(found.sweeps["bore"]).requests
-print("numpy" in sys.modules)
-"""
-
-
-def test_jobs_of_other_sweeps_do_not_import_the_solver():
-    process = subprocess.run(
-        [sys.executable, "-c", ALONE], capture_output=True, text=True, check=True
-    )
-    assert process.stdout == "False\n"
 
 
 def test_a_static_limit_is_allowed_where_the_solver_knows_it():

@@ -12,23 +12,17 @@ from hypothesis import strategies as st
 import microslip
 from microslip.foundation import canonical
 
-PACKAGE = Path(microslip.__file__).parent
-
 
 @pytest.mark.parametrize(
     ("value", "text"),
     [
         (1, "1"),
         (1.0, "1"),
-        (0.1, "0.1"),
         (0.1 + 0.2, "0.3"),
-        (0, "0"),
         (-0.0, "0"),
         (-2.5, "-2.5"),
-        (1e-8, "1e-8"),
         (1.5e-8, "1.5e-8"),
         (1e22, "1e22"),
-        (2.15443, "2.15443"),
         (1000000, "1000000"),
     ],
 )
@@ -49,20 +43,25 @@ def test_what_is_no_finite_number_is_refused(value):
         canonical.number(value)
 
 
+ALONE = """
+import sys
+from microslip.app import plan
+from microslip.config import load
+from microslip.foundation import source_digest
+from microslip.sweeps import batches
+
+source_digest.of_solver()
+axes = {"velocity": [1], "amplitude": [1]}
+ellipse = {"motion": "elliptic:phase=30", "group": "g"}
+mapping = {"sweeps": {"bore": axes}, "extended": {"ellipse": axes | ellipse}}
+batches.points_of(load.from_mapping(mapping, ask_solver=False).sweeps["bore"])
+print([m for m in ("numpy", "scipy", "numba", "xarray", "matplotlib") if m in sys.modules])
+"""
+
+
 @pytest.mark.slow
-def test_the_workflow_reads_this_without_loading_anything_heavy():
-    heavy = ("numpy", "scipy", "numba", "xarray", "matplotlib")
-    program = (
-        "import sys; from microslip.app import plan; from microslip.config import load;"
-        "from microslip.foundation import source_digest;"
-        "source_digest.of_solver();"
-        f"print([m for m in {heavy} if m in sys.modules])"
-    )
-    process = subprocess.run(
-        [sys.executable, "-c", program],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={"PYTHONPATH": str(PACKAGE.parent)},
-    )
+def test_plans_and_jobs_load_nothing_heavy_that_they_do_not_need():
+    environment = {"PYTHONPATH": str(Path(microslip.__file__).parents[1])}
+    command = [sys.executable, "-c", ALONE]
+    process = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
     assert process.stdout.strip() == "[]"

