@@ -75,11 +75,18 @@ def test_an_iwan_model_without_a_contact_is_dimensionless(capsys):
 GRID = "--load '10..20 N, 2' --speed '5..20 mm/s, 3' --amplitude '0.1..0.4 um, 3'"
 
 
-def test_a_table_has_the_predictions_with_their_errors(tmp_path, capsys):
-    file = tmp_path / "friction.csv"
-    code, out, _ = run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")
-    assert code == 0 and "linear interpolation" in out
-    frame = pd.read_csv(file, comment="#")
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A table of three axes as CSV, and as text for Modelica."""
+    folder = tmp_path_factory.mktemp("table")
+    for name in ("friction.csv", "friction.txt"):
+        command = f"table transverse {VIBRATED} {GRID} --output {folder / name}"
+        assert cli.main(["export", *shlex.split(command)]) == 0
+    return pd.read_csv(folder / "friction.csv", comment="#"), (folder / "friction.txt").read_text()
+
+
+def test_a_table_has_the_predictions_with_their_errors(files):
+    frame, _ = files
     axes, force = ["load [N]", "speed [m/s]", "amplitude [m]"], "friction_force [N]"
     columns = ["mu_apparent", "mu_apparent_error", force, "friction_force_error [N]"]
     assert list(frame.columns) == axes + columns and len(frame) == 18
@@ -102,15 +109,11 @@ def tables_of(text):
     }
 
 
-def test_tables_for_modelica_have_the_values_of_the_csv(tmp_path, capsys):
-    text, csv = tmp_path / "friction.txt", tmp_path / "friction.csv"
-    for file in (text, csv):
-        assert run(capsys, f"table transverse {VIBRATED} {GRID} --output {file}")[0] == 0
-    assert text.read_text().startswith("#1\n")
-    tables, frame = tables_of(text.read_text()), pd.read_csv(csv, comment="#")
-    heads = {"mu_apparent": "mu_apparent", "friction_force": "friction_force [N]"}
-    heads |= {"mu_apparent_error": "mu_apparent_error"}
-    heads["friction_force_error"] = "friction_force_error [N]"
+def test_tables_for_modelica_have_the_values_of_the_csv(files):
+    frame, text = files
+    assert text.startswith("#1\n")
+    tables = tables_of(text)
+    heads = {head.partition(" ")[0]: head for head in frame.columns[3:]}
     assert tables.keys() == {f"{name}_{number}" for name in heads for number in (1, 2, 3)}
     for name, head in heads.items():
         values = frame[head].values.reshape(2, 3, 3)

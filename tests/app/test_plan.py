@@ -1,6 +1,8 @@
 """The plan of a configuration, without Snakemake."""
 
 import pytest
+from stubs.claims_stub import CLAIMS
+from stubs.studies_stub import ACCURACY, STABILITY
 from stubs.workflow_project import AXES, TINY
 
 from microslip.app.plan import Plan
@@ -9,9 +11,11 @@ from microslip.config.records import ConfigError
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
 
+STUDIES = {"accuracy": ACCURACY, "stability": STABILITY, "claims": CLAIMS}
+
 
 def plan(**changed):
-    return Plan(load.from_mapping({**TINY, **changed}))
+    return Plan(load.from_mapping(TINY | STUDIES | changed))
 
 
 def test_a_sweep_too_small_for_a_map_has_no_map():

@@ -371,6 +371,13 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors(there.relative_to(ROOT)), f"{page}: {target}"
 
 
+@pytest.mark.parametrize("page", PAGES)
+def test_files_named_on_a_page_exist(page):
+    folders = "src|tests|workflow|config|docs|benchmarks|profiles"
+    for name in re.findall(rf"`((?:{folders})/[\w./-]+)`", (ROOT / page).read_text()):
+        assert (ROOT / name).exists(), f"{page}: {name}"
+
+
 # Tables and lists of the pages against those of the package
 
 
