@@ -103,13 +103,6 @@ def test_a_dataset_that_no_sweep_has_made_is_refused(case):
     assert unchanged.microslip.at(0.15, 1.3).mu_macro_error < 0.1
 
 
-@pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)
-def test_odd_questions(arguments, more, word):
-    with pytest.raises(InputError) as caught:
-        odd.whole().microslip.at(*arguments, **more)
-    one_line(caught, [word])
-
-
 @pytest.mark.parametrize(("name", "more", "word"), odd.OPENED)
 def test_odd_names_of_datasets(name, more, word):
     with pytest.raises((InputError, CacheError)) as caught:

@@ -5,6 +5,7 @@ A row has an input and its result: a value, or words of the error message.
 
 import numpy as np
 import xarray as xr
+from stubs.eq6_map import map_of
 
 from microslip.theory import paper
 
@@ -158,15 +159,7 @@ DIMS = ("amplitude", "velocity")
 def whole(**attributes):
     """A map of Eq 6 that contains (0.15, 1.3)."""
     mu = paper.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
-    return xr.Dataset(
-        {
-            "mu_macro": (DIMS, mu),
-            "mu_macro_error": (DIMS, np.full(mu.shape, 1e-4)),
-            "converged": (DIMS, np.ones(mu.shape, bool)),
-        },
-        {"velocity": VELOCITY, "amplitude": AMPLITUDE, "poisson": 0.0},
-        {"motion": "transverse", "tolerance": 1e-3} | attributes,
-    )
+    return map_of(mu, VELOCITY, AMPLITUDE, 1e-4, tolerance=1e-3, **attributes)
 
 
 def every(name, value):
@@ -198,17 +191,6 @@ DATASETS = {
         "is there twice",
     ),
 }
-
-# Arguments of `at` for a valid dataset, words.
-QUESTIONS = [
-    ((True, 1), {}, "velocity = True"),
-    (("0.5", 1), {}, "velocity = '0.5'"),
-    ((0.5, "1_0"), {}, "amplitude = '1_0'"),
-    ((np.ma.array([1.0, 2.0], mask=[False, True]), 1), {}, "allowed is a finite number"),
-    ((xr.DataArray(["a"], dims="n"), 1), {}, "velocity"),
-    ((1, 1), {"tolerance": "x"}, "tolerance = 'x'"),
-    ((1, 1), {"tolerance": True}, "tolerance = True"),
-]
 
 # Arguments of open_map: name, further arguments, words.
 OPENED = [

@@ -1,6 +1,5 @@
-"""Odd inputs: pairs of equal inputs, and calls with a part of their error message."""
+"""Odd inputs: calls with a part of their error message."""
 
-import math
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,27 +8,11 @@ import pandas as pd
 import xarray as xr
 from bad_input_tables.odd_quantities import Q
 
-# Changes of a contact, and the equal changes in other units.
-
-SAME = [
-    ({"frequency": "1200 krpm"}, {"frequency": "20 kHz"}),
-    ({"radius": "0.5 in"}, {"radius": "12.7 mm"}),
-    ({"load": "1 kgf"}, {"load": "9.80665 N"}),
-    ({"material": " steel "}, {"material": "steel"}),
-    ({"material": None, "young": "210GPa", "nu": "30 %"}, {"material": "steel"}),
-    ({"counterbody": "70 GPa, 22 %"}, {"counterbody": "7e4 N/mm^2, 0.22"}),
-    ({"counter_radius": "\N{MINUS SIGN}1 km"}, {"counter_radius": "-1e3 m"}),
-]
-
 # Function, changes of a valid call, part of the error message.
 
 SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
 NO_NUMBERS = [None, [0.5], "0.5", True, 0.5j, Decimal("0.5"), np.array(0.5), HIDDEN, SPAN, HUGE]
 NAMES = [None, ["a"], b"a", HUGE, np.array(["a"]), pd.Series(["hertz", "a"])]
-
-ROW = {"speed": [1e-3], "amplitude": [1e-6], "frequency": [2e4], "load": [10.0], "mu": [0.1]}
-"""One measurement, in SI units."""
-ONE_ROW = dict.fromkeys(("speed", "frequency", "load"))
 
 CALLS = [("solve", {"velocity": value}, "velocity = ") for value in NO_NUMBERS]
 CALLS += [("solve", {"poisson": value}, "poisson = ") for value in NO_NUMBERS]
@@ -83,28 +66,12 @@ CALLS += [
     ("traction_field", {"velocity": 0}, "velocity = 0.0"),
     ("traction_field", {"motion": "transverse", "amplitude": 1.0}, "motion = 'transverse'"),
     *(
-        (function, {"results": folder}, "is not allowed; allowed: the name of a folder")
-        for function in ("solve_stored", "open_map")
+        ("solve_stored", {"results": folder}, "is not allowed; allowed: the name of a folder")
         for folder in (None, "~", "a\0b")
     ),
-    *(("open_map", {"name": name}, "name = ") for name in (None, ["transverse"], "Transverse")),
     ("open_map", {"name": "transvers"}, "name = 'transvers': did you mean transverse? allowed"),
     ("to_xarray", {"record": 5}, "record = 5: allowed is one of Result,"),
-    (
-        "predict_table",
-        {"cases": {"load": ["1 N"], "mu": [0.1, 0.2]}},
-        "cases = ['load', 'mu']: columns of 1 and 2 values; allowed are columns of one length",
-    ),
-    ("fit", {**ONE_ROW, "measured": ROW}, "'load', 'mu']: 1 row; two numbers take at least 3"),
-    ("fit", {"map": "transverse.nc"}, "map = 'transverse.nc': allowed is the dataset"),
-    (
-        "fit",
-        {**ONE_ROW, "measured": ROW | {"mu": [math.nan]}},
-        "mu = None: empty; allowed: a number in every row",
-    ),
-    ("fit", {"confidence": 95}, "confidence = 95: allowed is a number above 0 and below 1, such"),
     ("Material", {"young": HUGE}, "young = "),
-    ("Material", {"poisson": "300 %"}, "poisson = '300 %'"),
 ]
 
 # Bad arguments of Friction.at, many of which NumPy would convert to numbers.
