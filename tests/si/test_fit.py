@@ -254,8 +254,6 @@ def test_rows_that_tell_neither_are_refused(closed):
         ({"friction": ["1"] * 16}, "without a unit"),
         ({"friction_error": [0.1] * 15 + [0.0]}, "above 0"),
         ({"time": np.ones(16)}, "a column 'time'"),
-        ({"speed": 1e-3}, "a sequence of one value for each row"),
-        ({"load": np.ones(16)}, "load = 10.0: it is both a column and an argument"),
         ({"speed": None}, "speed = None: it is missing"),
         ({"amplitude": np.zeros(16)}, "nothing vibrates"),
     ],

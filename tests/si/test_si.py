@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-import pandas as pd
 import pytest
 from bad_input_tables.odd_quantities import Q
 from scipy.integrate import quad
@@ -106,9 +104,8 @@ def test_a_prediction_is_what_the_solver_says_of_its_groups():
     assert result.mu_apparent == pytest.approx(0.3 * answer.mu_macro)
     assert result.friction_force_N == pytest.approx(3.0 * answer.mu_macro)
     assert result.force_reduction == pytest.approx(1 - answer.mu_macro)
-    assert result.mu_static == pytest.approx(
-        0.0, abs=result.mu_static_error
-    )  # slides in each stroke
+    # the whole contact slides in each stroke
+    assert result.mu_static == pytest.approx(0.0, abs=result.mu_static_error)
 
 
 def test_two_balls_are_one_ball_of_half_the_radius():
@@ -260,9 +257,7 @@ def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():
         microslip.predict("transverse", **MILD | {"counterbody": (79e9, 0.6)})
 
 
-@pytest.mark.parametrize(
-    "speeds", [np.array([1e-3, 2e-3]), ["1 mm/s"], pd.Series([1e-3]), Q([1.0], "m/s")]
-)
+@pytest.mark.parametrize("speeds", [["1 mm/s"], Q([1.0], "m/s")])
 def test_several_speeds_are_for_predict_table(speeds):
     with pytest.raises(InputError, match="predict_table") as caught:
         microslip.predict("transverse", **MILD | {"speed": speeds})
@@ -275,10 +270,3 @@ def test_several_speeds_are_for_predict_table(speeds):
 def test_a_bore_of_no_amplitude_has_no_velocity_to_tell():
     still = microslip.predict("bore", amplitude="0 deg", frequency="20 Hz", **SPIN)
     assert (still.velocity, still.mu_macro, still.force_reduction) == (None, 1.0, 0.0)
-
-
-def test_a_reduction_is_looked_for_at_any_speed():
-    """A small spin has no effect at a high speed, and no amplitude has the reduction."""
-    with pytest.raises(InputError, match="^reduction = '50 %': no amplitude up to"):
-        fast = SPIN | {"speed": "1000 m/s", "tolerance": 0.01}
-        microslip.predict("bore", reduction="50 %", frequency="20 kHz", **fast)
