@@ -22,6 +22,7 @@ from microslip.theory import paper
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0.0}
 SIDEWAYS = BALL | {"frequency": "20 kHz"}
+WORDS = [f"--{name}={value}" for name, value in SIDEWAYS.items()]
 CONTACT = TwoBodies(Material(210e9, 0.0), RIGID, 0.005, 10.0, 0.3)
 STILL = 3.0
 """Friction mu F_z of the ball, N."""
@@ -202,9 +203,7 @@ def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
         return replace(result, **lost, reason="lost on the way")
 
     monkeypatch.setattr(request, "solve", given_up)
-    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
-    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "2.9 N"]
-    words += ["--tolerance", "0.1"]
+    words = [*WORDS, "--amplitude", "0.1 um", "--force", "2.9 N", "--tolerance", "0.1"]
     said_first = said(capsys, *words, code=1)
     assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
     result = json.loads(said(capsys, *words, "--json", code=1))
@@ -330,8 +329,7 @@ def said(capsys, *words, code=0):
 
 
 def test_the_command_line_says_what_comes_of_a_force(capsys):
-    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--young", "210 GPa", "--nu", "0"]
-    words += ["--frequency", "20 kHz", "--amplitude", f"{stroke(0.5)!r} m"]
+    words = [*WORDS, "--amplitude", f"{stroke(0.5)!r} m"]
     stays = said(capsys, *words, "--force", "1 N")
     assert "it stays: the force is below the threshold" in stays and "travel" not in stays
     moves = said(capsys, *words, "--force", "2.5 N")
