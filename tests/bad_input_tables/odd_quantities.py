@@ -23,8 +23,6 @@ class Uncertain:
 
 
 INCH, POUND, GRAVITY = 0.0254, 0.45359237, 9.80665  # by definition
-NONE_OF = "is none of the units"
-NUMBER_EXPECTED = "where a number was expected"
 
 LENGTHS = [
     ("5 mm", 5e-3),
@@ -102,6 +100,9 @@ OTHERS += [
     ("1" + "0" * 5000 + "e-5000 m", "m", 1.0),
     ("30e6 psi", "Pa", 30e6 * POUND * GRAVITY / INCH**2),
     ("2 kips", "N", 2000 * POUND * GRAVITY),
+    ("10 mph", "m/s", 10 * 63360 * INCH / 3600),
+    ("490 lbs/ft^3", "kg/m^3", 490 * POUND / (12 * INCH) ** 3),
+    ("5 Pas", "Pa", "is none of the units"),  # Pa*s is a viscosity
     ("50\N{NO-BREAK SPACE}%", "", 0.5),
     ("5e m", "m", "stopped at 'm'"),
     ("1 m/m", "m/s", "that of a pure number"),
