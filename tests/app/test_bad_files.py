@@ -3,15 +3,12 @@
 import errno
 import logging
 import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from stubs.new_process import output
 
-import microslip
 from microslip.app import cli
 from microslip.foundation import files
 from microslip.foundation.errors import CacheError
@@ -20,7 +17,6 @@ from microslip.report.figures.data import loaded
 from microslip.sweeps import batches, evaluate
 from microslip.sweeps.store import Store
 
-SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
 REQUEST = {
     "kind": "point",
@@ -183,15 +179,9 @@ except CacheError as error:
 def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(dataset):
     """A limit on the size of files stands for a full disk: both interrupt a write."""
     before = dataset.read_bytes()
-    process = subprocess.run(
-        [sys.executable, "-c", FULL_DISK, dataset],
-        env={**os.environ, "PYTHONPATH": SOURCE},
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert (process.stdout.count("\n"), process.returncode) == (1, 0)
-    assert f"cannot write {dataset}: " in process.stdout and "make room" in process.stdout
+    message = output(FULL_DISK, dataset)
+    assert message.count("\n") == 1
+    assert f"cannot write {dataset}: " in message and "make room" in message
     assert dataset.read_bytes() == before
     assert {p.name for p in dataset.parent.iterdir()} == {"bore.nc"}
 

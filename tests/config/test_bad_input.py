@@ -1,22 +1,15 @@
 """Bad input of the command line and configurations: one line, before any work starts."""
 
-import os
 import re
 import shlex
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from bad_input_tables.bad_command_lines import COMMAND_LINES, NUMBERS, RESULTS
+from bad_input_tables.bad_command_lines import COMMAND_LINES
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
-import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.config.strict_yaml import StrictLoader
-
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 @pytest.fixture
@@ -66,20 +59,6 @@ def test_every_option_is_given_a_bad_value():
     options = {name for name in motion._option_string_actions if name.startswith("--")}
     tested = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
     assert options - tested == {"--help"}
-
-
-@pytest.mark.slow
-def test_the_same_lines_come_from_a_process(there):
-    for arguments, *parts in (NUMBERS[0], RESULTS[3]):
-        process = subprocess.run(
-            [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
-            env={**os.environ, "PYTHONPATH": SOURCE},
-            capture_output=True,
-            text=True,
-            timeout=60,
-        )
-        assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
-        assert [part for part in parts if part not in process.stderr] == []
 
 
 # Configurations

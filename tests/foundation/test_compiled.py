@@ -1,19 +1,15 @@
 """Compiled code on disk: it matches the running sources, wherever its folder is."""
 
-import os
 import shutil
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 import pytest
+from stubs.new_process import PACKAGE, output, run
 
-import microslip
 from microslip.foundation import kernel_cache, source_digest
 from microslip.foundation.source_digest import LOADED, Sources
 
-PACKAGE = Path(microslip.__file__).parent
 KERNELS = sorted(name for name, source in LOADED.contents.items() if b"import kernel" in source)
 FOLDER = "from microslip.foundation import compiled; print(compiled.folder())"
 
@@ -29,17 +25,6 @@ def copied(folder):
 def copy(tmp_path):
     """A copy of the package for edits."""
     return copied(tmp_path)
-
-
-def run(program, package, **environment):
-    process = subprocess.run(
-        [sys.executable, "-c", program],
-        env={**os.environ, "PYTHONPATH": str(package.parent), **environment},
-        capture_output=True,
-        text=True,
-    )
-    assert process.returncode == 0, process.stderr
-    return process
 
 
 def of_kernels(package):
@@ -75,14 +60,14 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
         "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
     )
     program = "from microslip.caller import called; print(called(4.0))"
-    assert float(run(program, copy).stdout) == pytest.approx(1.0)
+    assert float(output(program, package=copy)) == pytest.approx(1.0)
     law = copy / "contacts" / "coulomb.py"
     text = law.read_text()
     law.write_text(text.replace("return min(1.0, bound /", "return min(1.0, 0.5 * bound /", 1))
     assert law.read_text() != text
-    assert float(run(program, copy).stdout) == pytest.approx(0.5)
+    assert float(output(program, package=copy)) == pytest.approx(0.5)
     law.write_text(text)
-    assert float(run(program, copy).stdout) == pytest.approx(1.0)
+    assert float(output(program, package=copy)) == pytest.approx(1.0)
 
 
 # A file with the name of the folder makes writing fail, even for root.
@@ -126,14 +111,14 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     program = (
         f"{FOLDER}; from microslip.contacts.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
     )
-    process = run(program, copy, **environment)
+    process = run(program, package=copy, **environment)
     folder, number = process.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")
     assert float(number) == 0.25
     assert list(Path(folder).rglob("*.nbi"))  # the compiled code is on disk
     (line,) = process.stderr.splitlines()
     assert folder in line and "NUMBA_CACHE_DIR" in line
-    again = run(program, copy, **environment)
+    again = run(program, package=copy, **environment)
     assert again.stdout == process.stdout
 
 
@@ -152,7 +137,7 @@ print(scipy.linalg.cython_blas.__name__, scipy.linalg.inv(np.diag([2.0, 4.0]))[1
 
 @pytest.mark.long
 def test_kernels_load_no_linear_algebra_and_leave_it_to_others():
-    message = run(BESIDE_LINEAR_ALGEBRA, PACKAGE).stdout.split()
+    message = output(BESIDE_LINEAR_ALGEBRA).split()
     assert message == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]
 
 
@@ -178,14 +163,11 @@ for question, one in found[:: int(sys.argv[1])]:
 @pytest.mark.long
 def test_equal_inputs_give_equal_bits_whatever_was_compiled_before(tmp_path):
     """Kernels are compiled on demand, then read from disk, then compiled in another order."""
-    program = [sys.executable, "-c", ANSWERS]
 
     def answers(place, order):
-        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / place)}
-        command = [*program, order]
-        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        return output(ANSWERS, order, NUMBA_CACHE_DIR=str(tmp_path / place))
 
-    compiled = answers("one", "1").stdout
+    compiled = answers("one", 1)
     assert compiled.count("\n") == 6
-    assert answers("one", "1").stdout == compiled
-    assert answers("other", "-1").stdout == compiled
+    assert answers("one", 1) == compiled
+    assert answers("other", -1) == compiled

@@ -4,17 +4,14 @@ import ast
 import json
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from stubs.new_process import PACKAGE, output
 
-import microslip
 from microslip.foundation import source_digest
 from microslip.foundation.source_digest import Sources
 
-PACKAGE = Path(microslip.__file__).parent
 MODULE = '''
 """Docstring."""
 import numpy as np
@@ -173,16 +170,8 @@ def test_a_scratch_file_is_no_motion(tmp_path):
         "from microslip.motions import by_name; from microslip.solver import method_names\n"
         "print(*by_name.MOTIONS, *method_names.names())"
     )
-    process = python(program, tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert "copy" not in process.stdout and "checkpoint" not in process.stdout
-
-
-def python(program, path, **settings):
-    environment = {"PYTHONPATH": str(path), "PATH": os.environ["PATH"]}
-    return subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, env=environment, **settings
-    )
+    names = output(program, package=copy)
+    assert "copy" not in names and "checkpoint" not in names
 
 
 REQUESTS = [
@@ -224,13 +213,10 @@ def test_all_that_answering_a_request_loads_counts_for_it():
     for request in requests:
         if request["kind"] == "field":
             del request["amplitude"]
-    process = subprocess.run(
-        [sys.executable, "-c", LOADED_BY, json.dumps(requests)], capture_output=True, text=True
-    )
-    assert process.returncode == 0, process.stderr
+    lines = output(LOADED_BY, json.dumps(requests)).splitlines()
     naming = source_digest.NAMING | {"sweeps/__init__.py", "config/__init__.py", "config/axes.py"}
     naming |= {"config/records.py"}  # constants, and classes that do not occur in results
-    for request, line in zip(requests, process.stdout.splitlines(), strict=True):
+    for request, line in zip(requests, lines, strict=True):
         files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(line)}
         listed = {f for f in files if f.startswith(NAMES) and "__init__" not in f}
         assert "sweeps/evaluate.py" in files
@@ -341,14 +327,7 @@ print(json.dumps(answers))
 def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path):
     copy = tmp_path / "source" / "microslip"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    process = subprocess.run(
-        [sys.executable, "-c", SESSION, tmp_path / "results"],
-        env={**os.environ, "PYTHONPATH": str(copy.parent)},
-        capture_output=True,
-        text=True,
-    )
-    assert process.returncode == 0, process.stderr
-    first, second = json.loads(process.stdout)
+    first, second = json.loads(output(SESSION, tmp_path / "results", package=copy))
     assert first[1:] == [1, []]
     assert second[:2] == [first[0], 0]
     assert "choice.py was edited" in second[2][0]
