@@ -62,11 +62,6 @@ KEYS = [
         ("extended.x.group", "up to 100 small letters"),
     ),
     (
-        'extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, pressure: "file:a'
-        '\\nb.csv"}}',
-        ("extended.x.pressure", "No such file"),
-    ),
-    (
         "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
         "pressure: 'file:~/x.csv'}}",
         ("extended.x.pressure", "~/x.csv", "looked for"),
@@ -74,15 +69,6 @@ KEYS = [
     (
         "extended: {x: {motion: 'elliptic:phase=30 deg', velocity: [1], amplitude: [1], group: g}}",
         ("extended.x.motion", "elliptic:key=0.5"),
-    ),
-    (
-        "extended: {x: {motion: 'elliptic:forward=0,5', velocity: [1], amplitude: [1], group: g}}",
-        ("extended.x.motion", "elliptic:key=0.5"),
-    ),
-    (
-        "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
-        "pressure: 'File:x.csv'}}",
-        ("extended.x.pressure", "did you mean file?"),
     ),
 ]
 
