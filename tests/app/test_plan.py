@@ -38,11 +38,6 @@ def test_a_figure_without_data_is_refused():
         small.products_of("fig2")
 
 
-def test_a_job_may_be_a_point():
-    alone = plan(points_per_job=1)
-    assert [len(batch.requests) for batch in alone.batches_in("transverse").values()] == [1] * 4
-
-
 def changed(before, after):
     return {name for name in before.products if before.made_of(name) != after.made_of(name)}
 

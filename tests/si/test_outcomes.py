@@ -73,17 +73,6 @@ def test_outcomes_and_intervals_are_those_of_a_monte_carlo(settings, drawn):
     assert result.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.04, abs=0.3)
 
 
-def test_one_uncertain_input_decides_by_its_own_distribution():
-    """The contact runs away where mu F is below the force.
-
-    At mu = 0.10 +- 0.02 and 121 N this is mu < 0.121, up to 1.05 standard deviations above the
-    centre: a probability of 0.8531.
-    """
-    settings = JOINT | {"mu": "0.1 +- 0.02", "amplitude": "0.5 um", "force": "121 N"}
-    result = microslip.predict("transverse", **settings)
-    assert result.probability_runs_away == pytest.approx(0.8531, abs=1e-3)
-
-
 def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
     """The interval of the static limit follows from the interval of the load."""
     settings = SPIN | {"mu": 0.3, "load": "10 N +- 10 %", "amplitude": "0.5 deg", "speed": "1 mm/s"}
