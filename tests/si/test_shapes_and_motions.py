@@ -285,74 +285,44 @@ def test_an_oscillating_load_alone_is_its_closed_form():
 
 # Motions from files
 
-OWN = {
-    "sine_cubed": """from dataclasses import dataclass
-
-import numpy as np
-
-from microslip.motions.transverse import Transverse
-
-
-@dataclass(frozen=True)
-class SineCubed(Transverse):
-    summary = "moving as it likes"
-
-    def displacement(self, phase, velocity, amplitude, poisson):
-        return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
-""",
-    "own_bore": """from dataclasses import dataclass
+OWN_BORE = """from dataclasses import dataclass
 
 from microslip.motions.bore import Bore
 
 
 @dataclass(frozen=True)
 class OwnBore(Bore):
-    summary = "moving as it likes"
-""",
-}
+    summary = "turning as it likes"
+"""
 
 
 @pytest.fixture
 def own(tmp_path):
-    """Two motions from files: a translation of another shape, and a copy of the bore."""
+    """A motion from a file: a copy of the bore."""
     registry, path = dict(by_name.MOTIONS), list(motions.__path__)
-    for name, text in OWN.items():
-        (tmp_path / f"{name}.py").write_text(text)
+    (tmp_path / "own_bore.py").write_text(OWN_BORE)
     by_name.find(tmp_path)
     yield
     by_name.MOTIONS.clear()
     by_name.MOTIONS.update(registry)
     motions.__path__[:] = path
-    for file in ("sine_cubed", "own_bore"):
-        del sys.modules[f"microslip.motions.{file}"]
+    del sys.modules["microslip.motions.own_bore"]
 
 
-@pytest.mark.slow
-def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
-    result = microslip.predict("sine-cubed", **SPHERE)
-    assert (result.velocity, result.amplitude) == pytest.approx(
-        (1e-2 / (2.0 * math.pi * 2e4 * result.u_lim_m), 3e-7 / result.u_lim_m), rel=1e-12
-    )
-    assert result.understood["motion"] == "sine-cubed: the sphere is moving as it likes"
-    point = ["--velocity", repr(result.velocity), "--amplitude", repr(result.amplitude)]
-    point += ["--poisson", repr(result.poisson), "--tolerance", "0.01"]
-    assert cli.main(["point", "sine-cubed", *point, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
-    words = [f"--{name}={value}" for name, value in SPHERE.items()]
-    assert cli.main(["predict", "sine-cubed", *words, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
-
-
-@pytest.mark.slow
-def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
+def test_a_motion_of_ones_own_has_the_units_of_its_kind(own, capsys):
     spin = SPHERE | {"amplitude": "0.2 deg"}
     result, bore = (microslip.predict(motion, **spin) for motion in ("own-bore", "bore"))
     assert (result.velocity, result.amplitude) == (bore.velocity, bore.amplitude)
     assert result.mu_macro == bore.mu_macro
+    assert result.understood["motion"] == "own-bore: the sphere is turning as it likes"
     with pytest.raises(InputError, match="units of rad"):
         microslip.predict("own-bore", **spin | {"amplitude": "1 um"})
     assert cli.main(["predict", "own-bore", *(f"--{k}={v}" for k, v in spin.items())]) == 0
     assert "0.003491 rad" in capsys.readouterr().out
+    point = [f"--velocity={result.velocity!r}", f"--amplitude={result.amplitude!r}"]
+    point += [f"--poisson={result.poisson!r}", "--tolerance=0.01", "--json"]
+    assert cli.main(["point", "own-bore", *point]) == 0
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == result.mu_macro
 
 
 @pytest.mark.slow
