@@ -17,7 +17,6 @@ RIGID = {"amplitude": "1 mm", "load": "1 N", "frequency": "2 kHz"}
 """A stroke of thousands of u_lim: the contact is a rigid slider."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("target", ["amplitude", "speed", "load"])
 @pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_whichever_is_left_out_is_found_again(motion, target):
