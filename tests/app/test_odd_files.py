@@ -9,8 +9,8 @@ import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
+from stubs.new_process import PACKAGE
 
-import microslip
 from microslip.app import cli
 from microslip.config import load
 from microslip.config.records import ConfigError
@@ -18,8 +18,6 @@ from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
 from microslip.foundation.files import CacheError
 from microslip.pressures.by_name import pressure_named
-
-SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
 def one_line(caught, words):
@@ -133,32 +131,20 @@ def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
     assert word in line
 
 
-def sweep(folder, *arguments, **environment):
-    (folder / "tiny.yaml").write_text(
-        "sweeps: {bore: {velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}}\n"
-    )
-    return subprocess.run(
-        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": SOURCE} | environment,
+@pytest.mark.long
+def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
+    (tmp_path / "home").write_text("no folder")
+    axes = "{velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}"
+    (tmp_path / "tiny.yaml").write_text(f"sweeps: {{bore: {axes}}}\n")
+    environment = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
+    process = subprocess.run(
+        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", "tiny.yaml"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(PACKAGE.parent)} | environment,
         capture_output=True,
         text=True,
         timeout=120,
     )
-
-
-@pytest.mark.long
-def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
-    process = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
-    assert (process.returncode, process.stdout, process.stderr.count("\n")) == (2, "", 1)
-    assert "--configfile" in process.stderr and "--configfile A B" in process.stderr
-
-
-@pytest.mark.long
-def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
-    (tmp_path / "home").write_text("no folder")
-    more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
-    process = sweep(tmp_path, "tiny.yaml", **more)
     assert process.returncode == 0, process.stderr
     assert "Traceback" not in process.stderr
     assert process.stderr.count("cannot be written to: Snakemake's own files are in") == 1

@@ -47,6 +47,7 @@ REFUSED = [
     ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --configfile none.yaml", "none.yaml: cannot be read: No such file"),
+    ("-n --configfile good.yaml --configfile good.yaml", "--configfile", "--configfile A B"),
     ("-n --configfile good.yaml tabs.yaml", "tabs.yaml: not valid YAML:"),
     (
         "-n --configfile good.yaml --config points_per_job=0",
