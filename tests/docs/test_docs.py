@@ -133,14 +133,6 @@ def write_sweeps(folder, names):
 
 
 @pytest.fixture(scope="session")
-def empty(tmp_path_factory):
-    """An empty folder `results`."""
-    folder = tmp_path_factory.mktemp("docs") / "results"
-    folder.mkdir()
-    return folder
-
-
-@pytest.fixture(scope="session")
 def with_a_sweep(tmp_path_factory):
     """A folder `results` with the sweep `transverse`."""
     folder = tmp_path_factory.mktemp("docs") / "results"
@@ -271,16 +263,17 @@ def rewrite(page, printed):
     (ROOT / page).write_text("\n".join(lines), encoding="utf-8")
 
 
-def opens(page):
-    """Parameters of the test of a page: its fixture with results, and the mark of its duration."""
-    if page in LONG_PAGES:
-        return pytest.param(page, "computed", marks=pytest.mark.long, id=page)
-    if page == "README.md":  # opens the dataset of the sweep `transverse`
-        return pytest.param(page, "with_a_sweep", marks=pytest.mark.slow, id=page)
-    return pytest.param(page, "empty", id=page)
+RUNS = [
+    pytest.param(page, "computed", marks=pytest.mark.long, id=page)
+    if page in LONG_PAGES
+    else pytest.param(page, "with_a_sweep", id=page)
+    for page in PAGES
+    if blocks(page)
+]
+"""Each page with code, and its fixture with results."""
 
 
-@pytest.mark.parametrize(("page", "results"), [opens(page) for page in PAGES if blocks(page)])
+@pytest.mark.parametrize(("page", "results"), RUNS)
 def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
