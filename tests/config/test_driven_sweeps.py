@@ -37,16 +37,6 @@ def test_a_force_stands_in_the_place_of_the_velocity():
     ]
 
 
-def test_what_is_moved_is_asked_for_as_before():
-    """Requests name their results by hashes, so one without a drive must not mention a drive."""
-    (request,) = batches.points_of(
-        load.from_mapping({"sweeps": PAPER}).sweeps["transverse"]
-    ).requests
-    names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
-    assert set(request) == names | {"poisson", "amplitude", "velocity"}
-    assert "drives" not in load.from_mapping({"sweeps": PAPER}).of_sweep("transverse")["sweep"]
-
-
 BAD = [
     ({"motion": "transverse", "amplitude": [1], "velocity": [1]}, "required: force or stiffness"),
     (WEIGHTS | {"velocity": [1]}, "force: 0.2: allowed is a force or a velocity, not both"),

@@ -1,8 +1,6 @@
 """Sweeps of other motions and pressures: configuration, requests, files and datasets."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 import xarray as xr
@@ -82,30 +80,6 @@ def test_jobs_do_not_ask_the_solver():
     assert result.extended["circle"].motion == "no such"
 
 
-ALONE = """
-import sys
-from microslip.config import load
-from microslip.sweeps import batches
-given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
-    "motion": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
-found = load.from_mapping(given, ask_solver=False)
-batches.points_of(found.sweeps["bore"]).requests
-print("numpy" in sys.modules)
-"""
-
-
-def test_jobs_of_other_sweeps_do_not_import_the_solver():
-    process = subprocess.run(
-        [sys.executable, "-c", ALONE], capture_output=True, text=True, check=True
-    )
-    assert process.stdout == "False\n"
-
-
-def test_a_static_limit_is_allowed_where_the_solver_knows_it():
-    line = CIRCLE | {"motion": "elliptic:phase=0", "velocity": [0, 0.1]}
-    assert configured(line=line).extended["line"].velocity == (0.0, 0.1)
-
-
 # Requests
 
 
@@ -113,10 +87,13 @@ def requests_of(**changes):
     return sweep.points_of(configured(circle=CIRCLE | changes).extended["circle"]).requests
 
 
-def test_a_plain_point_is_asked_for_as_ever():
+def test_a_plain_point_mentions_no_pressure_and_no_drive():
+    """Requests name their results by hashes."""
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.points_of(plain.sweeps["bore"]).requests
-    assert "pressure" not in expected
+    names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
+    assert set(expected) == names | {"poisson", "amplitude", "velocity"}
+    assert "drives" not in plain.of_sweep("bore")["sweep"]
     (result,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
     assert result == expected
 
