@@ -6,7 +6,7 @@ import pytest
 import yaml
 from bad_input_tables import odd_files as odd
 from bad_input_tables.odd_files import SWEEP
-from stubs.new_process import PACKAGE
+from stubs.in_process import run_apart
 
 from microslip.app import cli
 from microslip.config import load
@@ -134,14 +134,8 @@ def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     axes = "{velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}"
     (tmp_path / "tiny.yaml").write_text(f"sweeps: {{bore: {axes}}}\n")
     environment = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
-    process = subprocess.run(
-        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", "tiny.yaml"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(PACKAGE.parent)} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    words = ("sweep", "-n", "--configfile", "tiny.yaml")
+    process = run_apart(*words, folder=tmp_path, **environment)
     assert process.returncode == 0, process.stderr
     assert "Traceback" not in process.stderr
     assert process.stderr.count("cannot be written to: Snakemake's own files are in") == 1

@@ -6,7 +6,6 @@ import shlex
 import pytest
 from bad_input_tables.bad_command_lines import COMMAND_LINES
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
-from stubs.in_process import run_apart
 
 from microslip.app import cli
 from microslip.config import load
