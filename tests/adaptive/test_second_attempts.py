@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -113,9 +114,6 @@ def test_these_points_need_it(monkeypatch):
 
 @pytest.mark.parametrize("error", [TypeError, ZeroDivisionError, np.linalg.LinAlgError])
 def test_an_error_of_the_code_in_a_run_is_raised(monkeypatch, error):
-    def fail(*_):
-        raise error("wrong")
-
-    monkeypatch.setattr(simulate, "_run", fail)
+    monkeypatch.setattr(simulate, "_run", Mock(side_effect=error("wrong")))
     with pytest.raises(error):
         microslip.solve("transverse", 0.1, 0.5)

@@ -146,22 +146,19 @@ def test_more_sliders_that_work_against_each_other_in_pairs_do_as_well():
     assert abs(result.velocity - antiphase_drift(0.3, 1.0)) <= result.velocity_error
 
 
-def rigid_velocity(force, contacts, amplitude):
-    """Mean of v(t), where sum of share v / sqrt(v^2 + w^2) = force at every instant."""
-    phase = (np.arange(2000) + 0.5) * np.pi / 2000
-    sideways = [amplitude * a * np.cos(phase + np.deg2rad(p)) for _, p, a in contacts]
-    low, high = np.zeros_like(phase), np.full_like(phase, 100.0 * amplitude)
-    for _ in range(100):
+def velocity_of(force, contacts, friction, phases):
+    """Mean of v(t), where the sum of share * friction(v, w) is the force at every instant.
+
+    contacts: tuples (share, phase in degrees, a) with the lateral velocity w = a cos(t + phase).
+    """
+    phase = (np.arange(phases) + 0.5) * np.pi / phases
+    sideways = [(share, a * np.cos(phase + np.deg2rad(p))) for share, p, a in contacts]
+    low, high = np.zeros_like(phase), np.full_like(phase, 1e4)
+    for _ in range(60):
         middle = 0.5 * (low + high)
-        friction = sum(
-            share * middle / np.hypot(middle, w)
-            for (share, _, _), w in zip(contacts, sideways, strict=True)
-        )
-        low, high = (
-            np.where(friction < force, middle, low),
-            np.where(friction < force, high, middle),
-        )
-    return middle.mean()
+        is_low = sum(share * friction(middle, w) for share, w in sideways) < force
+        low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
+    return float(middle.mean())
 
 
 @pytest.mark.slow
@@ -175,7 +172,8 @@ def test_large_amplitudes_are_those_of_rigid_contacts():
             "transverse", amplitude=amplitude, force=0.4, contacts=contacts, tolerance=3e-3
         )
         assert result.converged
-        rigid = rigid_velocity(0.4, shares, amplitude)
+        contacts_there = [(share, phase, amplitude * a) for share, phase, a in shares]
+        rigid = velocity_of(0.4, contacts_there, lambda v, w: v / np.hypot(v, w), 2000)
         lost.append((rigid - result.velocity) / rigid)
     assert 0.0 < lost[1] < 0.03
     assert lost[1] < 0.45 * lost[0]
@@ -301,34 +299,15 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
 @pytest.mark.long
 def test_large_turns_are_those_of_rigid_contacts():
     """Eq 21 holds for each contact at every instant, at the velocity over its speed of rotation."""
-    shares, leads, force = (0.75, 0.25), (0.0, np.deg2rad(60.0)), 0.4
-    # contact radii over that of the mean load
-    radii = [(2.0 * share) ** (1 / 3) for share in shares]
-    phase = (np.arange(400) + 0.5) * np.pi / 400
-    # all contacts rotate by the same angle, at different phases
-    spins = [
-        radius * np.abs(np.cos(phase + lead)) for radius, lead in zip(radii, leads, strict=True)
-    ]
-    low, high = np.zeros_like(phase), np.full_like(phase, 10.0)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        friction = sum(
-            share
-            * np.array(
-                [float(paper.bore_forward(v / s)) for v, s in zip(middle, spin, strict=True)]
-            )
-            for share, spin in zip(shares, spins, strict=True)
-        )
-        low, high = (
-            np.where(friction < force, middle, low),
-            np.where(friction < force, high, middle),
-        )
-    rigid, lost = float(middle.mean()), []
+    # all contacts rotate by the same angle; their radii are proportional to load^(1/3)
+    contacts = [(0.75, 0.0, 1.5 ** (1 / 3)), (0.25, 60.0, 0.5 ** (1 / 3))]
+    turning = np.vectorize(lambda v, w: float(paper.bore_forward(v / abs(w))))
+    rigid, lost = velocity_of(0.4, contacts, turning, 400), []
     for amplitude in (10.0, 40.0):
         result = microslip.solve(
             "bore",
             amplitude=amplitude,
-            force=force,
+            force=0.4,
             contacts="load=3;load=1,phase=60",
             tolerance=1e-2,
         )

@@ -181,7 +181,7 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
         place = float(request["velocity"]), float(request["amplitude"])
         return certified_stub.record(request, float(masing.longitudinal(*place)), error=0.0)
 
-    data = certified_map.build(map_, certified_stub.played(map_, answered))
+    data = certified_stub.built(map_, answered)
     answer = Friction(data).at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
     truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()

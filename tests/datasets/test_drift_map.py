@@ -142,7 +142,7 @@ def test_what_has_no_such_map_is_refused_in_a_line(settings, message):
 @pytest.mark.long
 def test_the_solver_agrees_at_places_that_no_map_has_used():
     (map_,) = configured(adaptive={"error": 3e-2}, amplitude=[0.3, 2]).certified.values()
-    data = certified_map.build(map_, certified_stub.played(map_, certified_stub.solved))
+    data = certified_stub.built(map_, certified_stub.solved)
     rng = np.random.default_rng(17)
     for amplitude in rng.uniform(0.3, 2.0, 6):
         force = rng.uniform(float(threshold("transverse", amplitude)), 0.95)

@@ -283,10 +283,7 @@ def rigid(contact, motion):
     """Rigid displacement (forward, lateral) of every point."""
     forward, lateral, angle = motion
     return np.stack(
-        [
-            forward + angle * contact.lateral_position,
-            lateral - angle * contact.forward_position,
-        ]
+        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
     )
 
 

@@ -143,10 +143,7 @@ def test_steps_are_solved_down_to_rounding(size, nu, rng):
     forward, lateral, angle = size * rng.normal(size=3)
     b = contact.displacement(before)
     b += np.stack(
-        [
-            forward + angle * contact.lateral_position,
-            lateral - angle * contact.forward_position,
-        ]
+        [forward + angle * contact.lateral_position, lateral - angle * contact.forward_position]
     )
     q, slip, residual, iterations = solved(contact, b, before, 1e-12)
     assert residual <= 1e-12

@@ -345,8 +345,7 @@ def test_a_history_follows_the_load():
     ["power:exponent=1", "power:exponent=8", pytest.param("punch", marks=pytest.mark.long)],
 )
 @pytest.mark.parametrize(
-    ("motion", "velocity", "amplitude"),
-    [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],
+    ("motion", "velocity", "amplitude"), [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)]
 )
 def test_closed_form_springs_and_rings_agree_for_other_indenters(
     pressure, motion, velocity, amplitude

@@ -21,6 +21,7 @@ CASES = {
     "slow": ("transverse", {"lateral": SINE}, 0.003, 0.6, {}),
     "static limit": ("transverse", {"lateral": SINE}, 0.0, 0.5, {}),
     "longitudinal": ("longitudinal", {"forward": SINE}, 0.2, 1.5, {}),
+    "spring": ("longitudinal", {"forward": SINE}, 0.1, 1.0, {"stiffness": 1.0}),
     "nu": ("transverse", {"lateral": SINE}, 0.1, 1.0, {"poisson": 0.4}),
     "two tones": (
         "elliptic:forward=0.5,forward_cycles=2",

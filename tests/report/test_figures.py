@@ -11,11 +11,10 @@ import pytest
 import xarray as xr
 from matplotlib.collections import PolyCollection
 from matplotlib.legend import Legend
-from matplotlib.text import Text
 from PIL import Image
 from stubs import figures_stub as stub
 from stubs import fit_stub
-from stubs.figures_stub import artists
+from stubs.figures_stub import artists, words
 
 from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing
@@ -28,10 +27,6 @@ def datasets() -> dict[str, xr.Dataset]:
     """Small datasets with every variable of the paper's figures."""
     maps = {"transverse": stub.fake_transverse(), "bore": stub.fake_bore()}
     return maps | {"continuous_bore": stub.fake_continuous_bore()}
-
-
-def words(figure) -> str:
-    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.text import Text
 from scipy.ndimage import binary_dilation
 from stubs import figures_stub as stub
-from stubs.figures_stub import VELOCITY, artists
+from stubs.figures_stub import VELOCITY, artists, words
 
 from microslip.datasets.query import accessor
 from microslip.datasets.query.surface import Surface
@@ -26,10 +26,6 @@ from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
 
 pytestmark = pytest.mark.slow  # drawing takes one to two seconds
-
-
-def words(figure) -> str:
-    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def maps_in(figure) -> list:

@@ -14,11 +14,7 @@ from microslip.solver.budget import Budget, Spent
 from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import (
-    edges_on_a_line,
-    edges_on_a_loop,
-    simulate_static,
-)
+from microslip.solver.static_run import edges_on_a_line, edges_on_a_loop, simulate_static
 from microslip.solver.stick_edge import (
     FINE_RESOLUTION,
     FINE_TOLERANCE,

@@ -39,6 +39,11 @@ def played(map_, answer):
     return records
 
 
+def built(map_, answer):
+    """Dataset of a map; answer: function from a request to its record."""
+    return certified_map.build(map_, played(map_, answer))
+
+
 def first_requests(map_):
     """Requests of the first round, the only round for a constant."""
     result = {"mu_macro": 0.5, "velocity": 0.5, "converged": True}
@@ -57,7 +62,7 @@ def bore(**settings) -> xr.Dataset:
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | settings)
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def drift(force, amplitude):
@@ -82,7 +87,7 @@ def drifting(*, fails=lambda force, amplitude: False, **settings) -> xr.Dataset:
 
     drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | settings}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def solved(request):

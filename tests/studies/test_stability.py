@@ -198,10 +198,7 @@ COMPILED = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "method",
-    ["euler", "extrapolated", "march", *COMPILED],
-)
+@pytest.mark.parametrize("method", ["euler", "extrapolated", "march", *COMPILED])
 def test_methods_agree_with_what_ships(method):
     """At a fast point the difference is within the two error estimates."""
     for place in (("transverse", 1.0, 1.0), ("bore", 1.0, 1.0)):

@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from types import SimpleNamespace
 from typing import get_args
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -301,19 +302,10 @@ def test_what_does_not_apply_is_not_run(monkeypatch):
     assert not stub.calls
 
 
-@pytest.mark.parametrize(
-    "error",
-    [
-        SolverError("no"),
-        StepFailure("diverged"),
-    ],
-)
+@pytest.mark.parametrize("error", [SolverError("no"), StepFailure("diverged")])
 def test_a_method_that_fails_is_data(monkeypatch, error):
     Trials(monkeypatch)
-
-    def fail(*_, **__):
-        raise error
-
+    fail = Mock(side_effect=error)
     monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
     probe = stability.probe(

@@ -2,6 +2,7 @@
 
 import json
 import math
+from unittest.mock import Mock
 
 import pytest
 
@@ -78,10 +79,7 @@ def test_a_velocity_below_0_is_answered_where_the_motion_drives(tmp_path, monkey
 
 
 def test_a_failure_comes_back_as_one(tmp_path, monkeypatch):
-    def fail(*_, **__):
-        raise SolverError("no such contact")
-
-    monkeypatch.setattr(microslip, "solve", fail)
+    monkeypatch.setattr(microslip, "solve", Mock(side_effect=SolverError("no such contact")))
     answer = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
     assert not answer.converged
     assert "no such contact" in answer.reason

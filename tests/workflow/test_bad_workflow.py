@@ -80,6 +80,11 @@ CASES = {
         GIVEN,
         "given.yaml: results: cannot use xxx",
     ),
+    "nothing to explore": (
+        given("sweeps: {transverse: {velocity: [1], amplitude: [1]}}\n"),
+        [*GIVEN, "explorer"],
+        "given.yaml: sweeps: no map for the explorer",
+    ),
 }
 # Half of them are dry runs, half runs: all must end before planning.
 MODES = {case: ["-n"] if index % 2 else ["-j1"] for index, case in enumerate(CASES)}
@@ -105,33 +110,18 @@ def content(folder):
     return {p: p.is_file() and p.read_bytes() for p in files}
 
 
-@pytest.fixture(scope="module")
-def done(tmp_path_factory):
-    """Finished runs of all cases, and the contents of their folders before."""
-
-    def run(case):
-        prepare, arguments, _ = CASES[case]
-        folder = project(tmp_path_factory.getbasetemp() / case.replace(" ", "_"), prepare)
-        before = content(folder)
-        return snakemake(folder, *MODES[case], *arguments), folder, before
-
-    return {case: run(case) for case in CASES}
-
-
 @pytest.mark.parametrize("case", CASES)
-def test_the_workflow_ends_with_one_line_before_any_job(case, done):
-    ended, folder, before = done[case]
+def test_the_workflow_ends_with_one_line_before_any_job(case, tmp_path):
+    prepare, arguments, message = CASES[case]
+    folder = project(tmp_path / "it", prepare)
+    before = content(folder)
+    ended = snakemake(folder, *MODES[case], *arguments)
     assert ended.returncode == 1
     assert ended.stdout == ""
     lines = [line for line in ended.stderr.splitlines() if "specific profile" not in line]
     assert len(lines) == 1
-    assert lines[0].startswith(f"Error in {CASES[case][2]}")
+    assert lines[0].startswith(f"Error in {message}")
     assert content(folder) == before
-
-
-def test_half_of_the_cases_are_runs():
-    assert sum(mode == ["-j1"] for mode in MODES.values()) >= 6
-    assert {mode for (mode,) in MODES.values()} == {"-n", "-j1"}
 
 
 def test_results_that_cannot_be_written_end_a_run_before_its_first_job(tmp_path):
