@@ -19,7 +19,7 @@ from stubs.figures_stub import artists, words
 from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 @pytest.fixture(scope="module")
@@ -193,13 +193,14 @@ def test_an_error_in_the_code_is_not_reported_as_a_missing_variable(monkeypatch)
 
 
 def test_a_file_contains_its_provenance(datasets, tmp_path):
-    made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
-    figure = drawing.draw("fig6_bore_map", {"bore": made})
-    with Image.open(drawing.save(figure, tmp_path / "map.png")) as image:
+    attributes = {"title": "friction", "source_digest": "f00d", "author": "nobody"}
+    made = datasets["continuous_bore"].assign_attrs(attributes)
+    figure = drawing.draw("fig4_continuous_bore", {"continuous_bore": made})
+    with Image.open(drawing.save(figure, tmp_path / "figure.png")) as image:
         (provenance,) = json.loads(image.info["Description"])
         assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
     assert provenance["source_digest"] == "f00d" and "author" not in provenance
-    assert b"f00d" in drawing.save(figure, tmp_path / "map.pdf").read_bytes()
+    assert b"f00d" in drawing.save(figure, tmp_path / "figure.pdf").read_bytes()
     with pytest.raises(ValueError, match=r"\.png or \.pdf"):
         drawing.save(figure, tmp_path / "figure.svg")
 

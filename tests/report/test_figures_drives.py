@@ -7,7 +7,7 @@ from stubs.figures_stub import artists
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():

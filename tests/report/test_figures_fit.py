@@ -7,7 +7,7 @@ from stubs.fit_stub import fitted
 
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes a second
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 def test_rows_model_and_residuals_have_the_values_of_the_dataset():
