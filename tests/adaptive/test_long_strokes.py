@@ -10,7 +10,7 @@ from microslip.motions.problem import Problem
 PLACES = [(115.0, 50000.0), (23.0, 10000.0), (0.5, 1000.0), (300.0, 3000.0)]
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, pytest.param(1e-5, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("velocity", "amplitude"), PLACES)
 def test_a_zigzag_is_that_of_a_rigid_contact(velocity, amplitude, tolerance):
     """The direction is constant between turns.  An elastic contact lags by u_lim at each turn,

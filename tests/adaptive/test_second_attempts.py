@@ -72,7 +72,7 @@ HARD = [
     ("transverse", 0.0, 1.2e-8, 0.909, 1e-3),
     ("bore", 0.0, 2.78e-8, 0.0959, 1e-2),
 ]
-LONG = HARD[1:3]
+LONG = HARD[:3]
 
 
 @cache

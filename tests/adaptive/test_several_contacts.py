@@ -374,7 +374,7 @@ def rough(motion, velocity, amplitude):
     return microslip.solve(problem)
 
 
-def mean_force_of_springs(velocity, amplitude, springs=400, steps=20_000):
+def mean_force_of_springs(velocity, amplitude, springs=200, steps=4_000):
     """Mean force of Mindlin's contact under a forward drift and oscillation, from sliders in series
     with springs.
 
