@@ -82,7 +82,7 @@ CASES = {
     ),
     "nothing to explore": (
         given("sweeps: {transverse: {velocity: [1], amplitude: [1]}}\n"),
-        [*GIVEN, "explorer"],
+        ["explorer", *GIVEN],
         "given.yaml: sweeps: no map for the explorer",
     ),
 }
