@@ -39,8 +39,8 @@ def norm(content, size):
 def solved_stage(matrix, b, bound, start):
     """Tractions of a stage, by projected gradients with Nesterov's acceleration.
 
-    With the step 1 / norm, at most 1 / (largest eigenvalue), the energy decreases. After an increase the momentum
-    is reset.
+    With the step 1 / norm, at most 1 / (largest eigenvalue), the energy decreases. After an
+    increase the momentum is reset.
     """
     length = 1.0 / norm(matrix.tobytes(), len(matrix))
     q, ahead, momentum = start, start, 1.0
