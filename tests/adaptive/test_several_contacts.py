@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from stubs.agreement import assert_agree
 
 import microslip
 from microslip.foundation.errors import InputError
@@ -41,11 +42,6 @@ ALONE = {
 LONG = ("a rotation on a spring", "an oscillating load with a rotation", "no axis of symmetry")
 
 
-def answer(result):
-    """The requested quantity and its error."""
-    return result.answer.value, result.answer.error
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=pytest.mark.long if n in LONG else ()) for n in ALONE]
@@ -54,10 +50,12 @@ def answer(result):
 def test_equal_contacts_give_the_answer_of_one_contact(contacts, name):
     """The phase at which a period begins does not count; with phase 0 the steps are the same."""
     motion, arguments = ALONE[name]
-    alone, error = answer(microslip.solve(motion, **arguments))
-    together, other = answer(microslip.solve(motion, contacts=contacts, **arguments))
-    assert abs(alone - together) <= (1e-5 if contacts == "phase=0" else error + other)
-    assert alone > 0.05  # the contact moves
+    alone = microslip.solve(motion, **arguments)
+    together = microslip.solve(motion, contacts=contacts, **arguments)
+    assert_agree(alone, together)
+    if contacts == "phase=0":
+        assert alone.answer.value == pytest.approx(together.answer.value, abs=1e-5)
+    assert alone.answer.value > 0.05  # the contact moves
 
 
 THREE = {"velocity": 0.1, "contacts": "load=2;load=1,phase=90;amplitude=0.5,phase=180"}
@@ -88,9 +86,7 @@ def test_an_endlessly_stiff_or_heavy_drive_has_the_friction_of_the_velocity(
     place = {"velocity": 0.2, "amplitude": 0.8} | arguments
     prescribed = microslip.solve(motion, **place)
     driven = microslip.solve(motion, **place, **endless)
-    assert prescribed.converged and driven.converged
-    (one, error), (two, other) = answer(prescribed), answer(driven)
-    assert abs(one - two) <= error + other
+    assert_agree(prescribed, driven)
 
 
 @pytest.mark.slow
@@ -99,7 +95,7 @@ def test_a_contact_half_a_period_later_is_its_mirror_image_sideways():
     alone = microslip.solve("transverse", amplitude=1.5, force=0.3)
     against = microslip.solve("transverse", amplitude=1.5, force=0.3, contacts=AGAINST)
     across = microslip.solve("transverse", amplitude=1.5, force=0.3, contacts="phase=0;phase=90")
-    assert abs(alone.velocity - against.velocity) <= alone.velocity_error + against.velocity_error
+    assert_agree(alone, against)
     assert alone.velocity - across.velocity > 10.0 * across.velocity_error
 
 
@@ -327,8 +323,8 @@ def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
         "transverse", model="cartesian", cells=12, steps=32, tolerance=None, **settings
     )
     for other in (angles, squares):
-        assert abs(answer(rings)[0] - answer(other)[0]) <= answer(rings)[1] + answer(other)[1]
-        assert answer(other)[1] < 0.02
+        assert_agree(rings, other)
+        assert other.answer.error < 0.02
 
 
 @pytest.mark.long
@@ -343,7 +339,7 @@ def test_angles_and_squares_agree_on_contacts_that_turn():
     squares = microslip.solve(
         "bore", model="cartesian", cells=12, steps=32, tolerance=None, **settings
     )
-    assert abs(angles.velocity - squares.velocity) <= angles.velocity_error + squares.velocity_error
+    assert_agree(angles, squares)
     assert squares.velocity_error < 0.02
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from stubs import certified_stub
+from stubs.eq6_map import places
 
-import microslip
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
@@ -39,18 +39,8 @@ def made():
 @pytest.fixture(scope="module")
 def dataset(made, tmp_path_factory):
     """The dataset of `made`, read from a file."""
-    path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
-    certified_map.write(path, certified_map.build(made.map, made.records))
-    with microslip.open_map("certified_transverse", path.parent) as opened:
-        return opened.load()
-
-
-def places(count, seed=4):
-    rng = np.random.default_rng(seed)
-    return (
-        xr.DataArray(10 ** rng.uniform(-3, 1, count), dims="n"),
-        xr.DataArray(rng.uniform(0, 3, count), dims="n"),
-    )
+    built = certified_map.build(made.map, made.records)
+    return certified_stub.reopened(built, tmp_path_factory.mktemp("certified"))
 
 
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):

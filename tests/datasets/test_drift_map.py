@@ -21,10 +21,8 @@ DRIFT = certified_stub.DRIFT | {"adaptive": {"error": ERROR}}
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
     """A map of an invented drift, read from a file."""
-    path = tmp_path_factory.mktemp("drift") / "certified_weights.nc"
-    certified_map.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
-    with microslip.open_map("certified_weights", path.parent) as opened:
-        return opened.load()
+    map_ = certified_stub.drifting(adaptive={"error": ERROR})
+    return certified_stub.reopened(map_, tmp_path_factory.mktemp("drift"))
 
 
 def configured(**settings):

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+import microslip
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.si.friction_map import FrictionMap
@@ -42,6 +43,14 @@ def played(map_, answer):
 def built(map_, answer):
     """Dataset of a map; answer: function from a request to its record."""
     return certified_map.build(map_, played(map_, answer))
+
+
+def reopened(dataset, folder) -> xr.Dataset:
+    """A dataset of a map, written to a file and read from it."""
+    path = folder / "certified.nc"
+    certified_map.write(path, dataset)
+    with microslip.open_map(path) as opened:
+        return opened.load()
 
 
 def first_requests(map_):
