@@ -144,7 +144,7 @@ def over_poisson(poissons):
 
 @pytest.mark.parametrize("poissons", [(0.0, 0.5), (0.5, 0.0, 0.25), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)])
 def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
-    v, a = places(300)
+    v, a = places(300, seed=7)
     both = over_poisson(poissons)
     for nu in (0.05, 0.2, 0.33, 0.5):
         answer = both.microslip.at(v, a, poisson=nu)

@@ -48,8 +48,8 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
 )
 def test_rings_and_squares_agree(motion):
     rings = microslip.solve(motion, 0.1, 0.5)
-    squares = microslip.solve(motion, 0.1, 0.5, model="cartesian", cells=24, steps=96)
-    assert_agree(rings, squares)
+    imposed = {"model": "cartesian", "cells": 24, "steps": 96, "tolerance": None}
+    assert_agree(rings, microslip.solve(motion, 0.1, 0.5, **imposed))
 
 
 @pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
