@@ -6,7 +6,7 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
-from microslip.datasets import certified_map, netcdf
+from microslip.datasets import netcdf
 from microslip.theory import paper
 
 ERROR = 2e-3
@@ -22,7 +22,7 @@ def record(request):
 
 def built(**settings):
     map_ = certified_stub.configured("transverse", **STATIC | settings)
-    return certified_map.build(map_, certified_stub.played(map_, record))
+    return certified_stub.built(map_, record)
 
 
 def test_only_points_at_velocity_0_are_asked():

@@ -8,7 +8,7 @@ import pytest
 from stubs import explorer_stub as stub
 from stubs.in_node import needs_node, page_says
 from stubs.unpacked_period import unpacked
-from stubs.workflow_project import AXES, ROOT, Project, jobs_in
+from stubs.workflow_project import ROOT, jobs_in
 
 from microslip.config import load
 from microslip.datasets.catalogue import FORMS
@@ -278,17 +278,3 @@ def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(fin
     assert project.planned("explorer") == {}
     project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
     assert project.planned("explorer") == {"explore": 1, "explorer": 1}
-
-
-@pytest.mark.slow
-def test_without_a_map_there_is_nothing_to_explore(tmp_path):
-    project = Project(tmp_path)
-    project.configure({"sweeps": {"transverse": AXES | {"amplitude": [1]}}})
-    process = project.snakemake("explorer", "-j2", "--configfile", "tiny.yaml")
-    assert process.returncode != 0
-    assert (
-        process.stderr.strip()
-        .split("\n")[-1]
-        .startswith("Error in tiny.yaml: sweeps: no map for the explorer")
-    )
-    assert "Traceback" not in process.stderr

@@ -11,15 +11,14 @@ import pytest
 import xarray as xr
 from matplotlib.collections import PolyCollection
 from matplotlib.legend import Legend
-from matplotlib.text import Text
 from PIL import Image
 from stubs import figures_stub as stub
-from stubs.figures_stub import artists
+from stubs.figures_stub import artists, words
 
 from microslip.foundation.files import CacheError
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow  # drawing takes one to two seconds
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("without_layout")]
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +26,6 @@ def datasets() -> dict[str, xr.Dataset]:
     """Small datasets with every variable of the paper's figures."""
     maps = {"transverse": stub.fake_transverse(), "bore": stub.fake_bore()}
     return maps | {"continuous_bore": stub.fake_continuous_bore()}
-
-
-def words(figure) -> str:
-    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 @pytest.mark.parametrize(
@@ -143,13 +138,16 @@ def test_the_effect_of_poissons_ratio_has_a_scale_from_the_tolerance(datasets):
 
 
 def test_a_file_contains_its_provenance(datasets, tmp_path):
-    made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
-    figure = drawing.draw("fig6_bore_map", {"bore": made})
-    with Image.open(drawing.save(figure, tmp_path / "map.png")) as image:
+    attributes = {"title": "friction", "source_digest": "f00d", "author": "nobody"}
+    made = datasets["continuous_bore"].assign_attrs(attributes)
+    figure = drawing.draw("fig4_continuous_bore", {"continuous_bore": made})
+    with Image.open(drawing.save(figure, tmp_path / "figure.png")) as image:
         (provenance,) = json.loads(image.info["Description"])
         assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
     assert provenance["source_digest"] == "f00d" and "author" not in provenance
-    assert b"f00d" in drawing.save(figure, tmp_path / "map.pdf").read_bytes()
+    assert b"f00d" in drawing.save(figure, tmp_path / "figure.pdf").read_bytes()
+    with pytest.raises(ValueError, match=r"\.png or \.pdf"):
+        drawing.save(figure, tmp_path / "figure.svg")
 
 
 def test_a_failed_save_leaves_the_old_file(datasets, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+import microslip
 from microslip.app import question
 from microslip.config import load
 from microslip.datasets import certified_map
@@ -40,6 +41,19 @@ def played(map_, answer):
     return records
 
 
+def built(map_, answer):
+    """Dataset of a map; answer: function from a request to its record."""
+    return certified_map.build(map_, played(map_, answer))
+
+
+def reopened(dataset, folder) -> xr.Dataset:
+    """A dataset of a map, written to a file and read from it."""
+    path = folder / "certified.nc"
+    certified_map.write(path, dataset)
+    with microslip.open_map(path) as opened:
+        return opened.load()
+
+
 def first_requests(map_):
     """Requests of the first round, the only round for a constant."""
     result = {"mu_macro": 0.5, "velocity": 0.5, "converged": True}
@@ -58,7 +72,7 @@ def bore(**settings) -> xr.Dataset:
 
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | settings)
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def drift(force, amplitude):
@@ -83,7 +97,7 @@ def drifting(*, fails=lambda force, amplitude: False, **settings) -> xr.Dataset:
 
     drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | settings}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
-    return certified_map.build(map_, played(map_, answer))
+    return built(map_, answer)
 
 
 def solved(request):

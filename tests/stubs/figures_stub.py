@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.text import Text
 from stubs import claims_stub, drives_stub, propulsion_stub, studies_stub
 
 from microslip.studies import registry
@@ -192,6 +193,11 @@ def pulled() -> dict[str, xr.Dataset]:
     """Datasets of the figures of drives."""
     maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
     return maps | drives_stub.pulled() | drives_stub.pairs()
+
+
+def words(figure) -> str:
+    """All texts of a figure."""
+    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def artists(where, gid: str) -> list:

@@ -2,8 +2,6 @@
 
 import json
 
-import netCDF4
-import numpy as np
 import pytest
 import xarray as xr
 from stubs import claims_stub, propulsion_stub, studies_stub
@@ -72,11 +70,3 @@ def test_equal_results_give_equal_bytes(file, tmp_path):
     study, path = file
     netcdf.write(tmp_path / "again.nc", *netcdf.divide(answered(study)[0], registry.groups(study)))
     assert (tmp_path / "again.nc").read_bytes() == path.read_bytes()
-
-
-def test_codes_are_bytes_with_meanings(tmp_path):
-    path = tmp_path / "claims.nc"
-    netcdf.write(path, *netcdf.divide(answered("claims")[0], registry.groups("claims")))
-    with netCDF4.Dataset(path) as raw:
-        assert raw["verdict"].flag_meanings == "not_decided holds holds_in_part does_not_hold"
-        assert raw["checks/check_outcome"].dtype == np.int8

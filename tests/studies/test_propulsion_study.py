@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from stubs import propulsion_stub, studies_stub
+from stubs.figures_stub import artists
 
 from microslip.datasets import netcdf
 from microslip.report.figures import drawing
@@ -52,7 +53,7 @@ def test_the_figure_draws_every_line_and_computes_nothing(data):
     figure = drawing.draw("propulsion", {"propulsion": data})
     above, beside, below, _ = figure.axes
     for axes, name in ((above, "force"), (below, "efficiency")):
-        drawn = [line for line in axes.get_lines() if line.get_gid() == name]
+        drawn = artists(axes, name)
         lines = [line for line in drawn if line.get_linestyle() != "None"]  # without error bars
         assert len(lines) == 2
         for index, line in enumerate(lines):

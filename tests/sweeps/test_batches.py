@@ -2,6 +2,7 @@
 
 import errno
 import json
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -122,13 +123,13 @@ def test_swapped_values_and_the_format_of_records_count(monkeypatch):
     assert sweep.key_of(REQUEST) != key
 
 
-def failing_at(monkeypatch, error, amplitude=2.0):
-    """Let the stub of the solver raise an error at one amplitude."""
+def failing_at(monkeypatch, error):
+    """Let the stub of the solver raise an error at the amplitude 2."""
     Solver(monkeypatch)
     solve = microslip.solve
 
     def fail(**arguments):
-        if arguments["amplitude"] == amplitude:
+        if arguments["amplitude"] == 2.0:
             raise error
         return solve(**arguments)
 
@@ -241,21 +242,14 @@ def test_an_error_of_the_code_or_the_machine_fails_the_batch(monkeypatch, store,
 
 
 def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, store):
-    Solver(monkeypatch)
-
-    def fail(*_, **__):
-        raise SolverError("stalled")
-
-    monkeypatch.setattr("microslip.solve", fail)
-    with pytest.raises(SolverError, match=r"every point of this batch failed \(6\).*: stalled"):
-        sweep.run_batch(requests_of(), store)
+    failing_at(monkeypatch, SolverError("stalled"))
+    with pytest.raises(SolverError, match=r"every point of this batch failed \(2\).*: stalled"):
+        sweep.run_batch(requests_of(amplitude=[2]), store)
 
 
 @pytest.mark.parametrize("kind", sorted(sweep.FOLDERS))
 def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
-    def fail(**_):
-        raise SolverError("a root finder\nfound none")
-
+    fail = Mock(side_effect=SolverError("a root finder\nfound none"))
     monkeypatch.setitem(evaluate._KINDS, kind, fail)
     result = evaluate.computed({"kind": kind})
     assert result["converged"] is False
