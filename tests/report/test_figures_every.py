@@ -172,8 +172,7 @@ def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
     with look.style():
         figure = look.new_figure(width, 1.5)
         axes = figure.subplots()
-        axes.set(xscale="log", xlim=(low, high))
-        panels.logarithmic(axes.xaxis)
+        panels.logarithmic(axes, (low, high))
         figure.draw_without_rendering()
         shown = [
             tick.label1.get_window_extent()

@@ -6,7 +6,7 @@ import xarray as xr
 import microslip
 from microslip.app import question
 from microslip.config import load
-from microslip.datasets import certified_map
+from microslip.datasets import certified_map, netcdf
 from microslip.si.friction_map import FrictionMap
 from microslip.sweeps import evaluate, map_refinement
 from microslip.sweeps.batches import key_of
@@ -49,7 +49,7 @@ def built(map_, answer):
 def reopened(dataset, folder) -> xr.Dataset:
     """A dataset of a map, written to a file and read from it."""
     path = folder / "certified.nc"
-    certified_map.write(path, dataset)
+    netcdf.write(path, dataset)
     with microslip.open_map(path) as opened:
         return opened.load()
 
