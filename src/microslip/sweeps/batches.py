@@ -121,18 +121,17 @@ def points_of(sweep: Sweep) -> Batch:
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
     """Requests for the single runs in the dataset of the sweep `name`; the list is empty for
     extended sweeps."""
-    steady = {"motion": "continuous-bore"}
-    kinds: dict[str, list[dict]] = {
-        "transverse": [{"kind": "history", "motion": "transverse", "start": STARTS[0]}],
-        "field": [{"kind": "field"} | steady],
-        "transients": [{"kind": "history", "start": start} | steady for start in STARTS],
+    transverse, steady = {"motion": "transverse"}, {"motion": "continuous-bore"}
+    kinds: dict[str, list[tuple[str, dict]]] = {
+        "transverse": [("history", transverse | {"start": STARTS[0]})],
+        "field": [("field", steady)],
+        "transients": [("history", steady | {"start": start}) for start in STARTS],
     }
-    counts, requests = ("cells", "steps", "periods"), []
-    for run in HISTORIES_OF_SWEEP.get(name, ()):
-        settings = configuration.histories[run]
-        numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-        requests += [kind | settings | numbers for kind in kinds[run]]
-    return requests
+    return [
+        evaluate.request_of(kind, **place, **configuration.histories[run])
+        for run in HISTORIES_OF_SWEEP.get(name, ())
+        for kind, place in kinds[run]
+    ]
 
 
 def divide(points: Batch, size: int) -> list[Batch]:

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import microslip
 from microslip.config.axes import DRIVES
 from microslip.foundation import machine
+from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError, SolverError
 
 Answer = TypeVar("Answer")
@@ -47,6 +48,13 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
         log.debug("%s", request, exc_info=True)
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         return {"converged": False, "crashed": True, "reason": reason}
+
+
+def request_of(kind: str, **arguments: Any) -> dict:
+    """Return a request.  The arguments are those of the function that computes it, and numbers
+    become canonical texts."""
+    texts = {name: number(v) for name, v in arguments.items() if name in REALS and v is not None}
+    return {"kind": kind} | arguments | texts
 
 
 def arguments(request: dict) -> dict:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from math import prod
 
 from microslip.config.records import CertifiedMap, Configuration, Sweep
-from microslip.foundation.canonical import number
+from microslip.sweeps.evaluate import request_of
 
 SCRIPTS = "certified elliptic limits beyond contact data charts disc lines views form link page"
 ASSETS = ("page.html", "style.css", *(f"{name}.js" for name in SCRIPTS.split()))
@@ -119,16 +119,10 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
     every = 1
     while len(axes[0][::every]) * len(axes[1][::every]) > most:
         every += 1
-    common = {
-        "kind": "period",
-        "motion": sweep.motion,
-        "poisson": number(sweep.poisson[0]),
-        "cells": CELLS,
-        "angles": ANGLES,
-        "steps": STEPS,
-    }
+    run = {"motion": sweep.motion, "poisson": sweep.poisson[0]}
+    run |= {"cells": CELLS, "angles": ANGLES, "steps": STEPS}
     return [
-        common | {"amplitude": number(amplitude), "velocity": number(velocity)}
+        request_of("period", amplitude=amplitude, velocity=velocity, **run)
         for amplitude in axes[0][::every]
         for velocity in axes[1][::every]
     ]
