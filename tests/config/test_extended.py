@@ -58,6 +58,7 @@ def test_names_of_other_results_are_taken():
     for name in ("transverse", "claims", "bore_histories"):
         with pytest.raises(load.ConfigError, match=f"extended.{name}: another result has this"):
             configured(**{name: CIRCLE})
+    assert configured(claims_first=CIRCLE).extended.keys() == {"claims_first"}
 
 
 def test_a_figure_has_room_for_so_many():

@@ -18,7 +18,6 @@ HISTORIES_OF_SWEEP = {
 RESERVED = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
 RESERVED += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
 RESERVED += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
-RESERVED += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
 RESERVED += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
 """Names of datasets and batch folders.  Other sweeps must not have these names."""
 MODELS_OF_MOTION = {
