@@ -95,6 +95,13 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
             "in place of the solver",
         ),
         **{name: (word, f"with --table: {text}") for name, (word, text) in FILE_FORMAT.items()},
+        "table": (
+            "CSV",
+            "predict one contact for each line of a file.  Its heading names options, as in "
+            "load [N],speed [mm/s],material; options on the command line apply to all lines",
+        ),
+        "output": ("FILE", "with --table or ranges: write all columns to a .csv or .nc file"),
+        "figure": ("FILE", "with one or two ranges: draw friction, .png or .pdf"),
     },
 }
 """Options by heading in the help text.  Each option has a metavar and a help text."""
@@ -149,20 +156,6 @@ def fill(parser: argparse.ArgumentParser) -> None:
                 help="compute the stall force, the no-load speed, the power and the efficiency of "
                 "a self-propelled motion, such as elliptic:forward_cycles=2,phase=0",
             )
-    group.add_argument(
-        "--table",
-        metavar="CSV",
-        help="predict one contact for each line of a file.  Its heading names options, as in "
-        "load [N],speed [mm/s],material; options on the command line apply to all lines",
-    )
-    group.add_argument(
-        "--output",
-        metavar="FILE",
-        help="with --table or ranges: write all columns to a .csv or .nc file",
-    )
-    group.add_argument(
-        "--figure", metavar="FILE", help="with one or two ranges: draw friction, .png or .pdf"
-    )
     add_answer(parser, _answer, group)
 
 

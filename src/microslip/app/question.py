@@ -23,8 +23,8 @@ ENDINGS = (".csv", ".nc")
 """File extensions of output files."""
 FIGURES = (".png", ".pdf")
 """File extensions of figures."""
-OUTPUTS = ("output", "figure")
-"""Options for output files."""
+FILES = ("output", "figure", "table")
+"""Options for files that the commands themselves read and write."""
 FILE_FORMAT = {
     "decimal": ("MARK", "decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "encoding of the file, such as cp1252 (utf-8)"),
@@ -92,10 +92,10 @@ def typed_options(
     """Return the values of the options on the command line, by argument name.
 
     The options in `reals` and `wholes` are converted to numbers, and the dataset of --map is
-    opened.  Options for output files are left out.  Raises InputError for a text that is not a
+    opened.  The options FILES are left out.  Raises InputError for a text that is not a
     number, and InputError and CacheError for a map that cannot be opened.
     """
-    words = {name: word for name, word in options.spellings.items() if name not in OUTPUTS}
+    words = {name: word for name, word in options.spellings.items() if name not in FILES}
     typed = {name: getattr(options, name) for name, word in words.items() if word.startswith("--")}
     for name, text in typed.items():
         if name in reals or name in wholes:
