@@ -86,7 +86,7 @@ OUT_OF_RANGE = [
     (f"{TRANSVERSE} --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
     (f"{TRANSVERSE} --contacts phase=1e-400", "--contacts", "'phase=1e-400'", NEARER_0),
     (f"{TRANSVERSE} --pressure power:exponent=1e400", "'exponent=1e400'", BEYOND, "power:key=0.5"),
-    (f"{PREDICTED} --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
+    (f"{PREDICTED} --nu 0 --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
     (f"{PREDICTED} --nu 0 --contacts 'phase=0;phase=1e-400'", "--contacts", NEARER_0),
 ]
 
